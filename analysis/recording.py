@@ -1,0 +1,131 @@
+"""One type for a run: channels, sampling, photocell edges, set-points, and where it came from."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import Channel
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag
+from hardware.description.setpoint import SetPoint
+
+FloatArray = NDArray[np.float64]
+
+
+class Samples(Protocol):
+    """The sampled values of a run, shape ``(channels, samples)``: an array, or a file read lazily."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """``(channels, samples)``."""
+        ...
+
+    def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
+        """Return the values of some channels between two sample numbers."""
+        ...
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A run as it was recorded.
+
+    Attributes
+    ----------
+    samples
+        Values in SI units, shape ``(channels, samples)``; NaN where a sample is missing.
+    sample_rate_hz
+        Samples are evenly spaced; readers refuse or repair what is not.
+    start_s
+        Time of the first sample.
+    photocell_edges_s
+        Times of the photocell's pulses, increasing, on the same clock; ``None`` without a photocell.
+    flags
+        What the reader noticed or repaired.
+    """
+
+    name: str
+    channels: tuple[Channel, ...]
+    samples: Samples
+    sample_rate_hz: float
+    start_s: float = 0.0
+    photocell_edges_s: FloatArray | None = None
+    set_point: SetPoint | None = None
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def sample_count(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.shape[1]
+
+    @property
+    def end_s(self) -> float:
+        """Time of the last sample."""
+        return self.start_s + (self.sample_count - 1) / self.sample_rate_hz
+
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """The channels' names, in the order of ``samples``."""
+        return tuple(channel.name for channel in self.channels)
+
+    def time_s(self, start: int = 0, stop: int | None = None) -> FloatArray:
+        """Return the times of samples ``start`` to ``stop`` (exclusive)."""
+        stop = self.sample_count if stop is None else stop
+        return self.start_s + np.arange(start, stop) / self.sample_rate_hz
+
+    def sample_number(self, time_s: FloatArray) -> FloatArray:
+        """Turn times into fractional sample numbers; the first sample is number 0."""
+        return (np.asarray(time_s, dtype=np.float64) - self.start_s) * self.sample_rate_hz
+
+    def index(self, name: str) -> int:
+        """Return the row of a channel.
+
+        Raises
+        ------
+        DataError
+            If there is no such channel; the message names the nearest ones.
+        """
+        if name in self.channel_names:
+            return self.channel_names.index(name)
+        near = get_close_matches(name, self.channel_names, n=3, cutoff=0.4)
+        hint = f"; did you mean {', '.join(near)}?" if near else ""
+        raise DataError(
+            f"{self.name}: no channel {name!r}{hint} (channels: {', '.join(self.channel_names)})"
+        )
+
+    def values(self, name: str) -> FloatArray:
+        """Return all samples of one channel, shape ``(samples,)``."""
+        row = self.index(name)
+        return self.samples[row : row + 1, 0 : self.sample_count][0]
+
+    def select(self, names: Sequence[str]) -> "Recording":
+        """Return the recording with these channels only, in this order."""
+        rows = [self.index(name) for name in names]
+        if rows == list(range(len(self.channels))):
+            return self
+        return replace(
+            self,
+            channels=tuple(self.channels[row] for row in rows),
+            samples=_Rows(self.samples, tuple(rows)),
+        )
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Some rows of other samples, read only when asked for."""
+
+    source: Samples
+    rows: tuple[int, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (len(self.rows), self.source.shape[1])
+
+    def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
+        chosen, when = key
+        rows = self.rows[chosen] if isinstance(chosen, slice) else [self.rows[i] for i in chosen]
+        return np.ascontiguousarray(self.source[list(rows), when])

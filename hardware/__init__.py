@@ -1,0 +1,1 @@
+"""What moves and what measures, and the words for both (:mod:`hardware.description`)."""

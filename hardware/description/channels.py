@@ -1,0 +1,62 @@
+"""What a run's channels are called and what they measure."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Quantity(StrEnum):
+    """What a channel measures; decides which plots and checks apply to it."""
+
+    FORCE = "force"
+    MOMENT = "moment"
+    DISPLACEMENT = "displacement"
+    ANGLE = "angle"
+    SPEED = "speed"
+    VOLTAGE = "voltage"
+    OTHER = "other"
+
+
+_BY_SI_UNIT = {
+    "N": Quantity.FORCE,
+    "N m": Quantity.MOMENT,
+    "m": Quantity.DISPLACEMENT,
+    "rad": Quantity.ANGLE,
+    "m/s": Quantity.SPEED,
+    "V": Quantity.VOLTAGE,
+}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One sampled signal of a run.
+
+    Attributes
+    ----------
+    name
+        Unique within the run. The standard names below are used where the channel is one of them.
+    unit
+        SI unit of the stored values; ``"1"`` for none, ``""`` where nobody stated one.
+    full_scale
+        Largest magnitude that the instrument can deliver, in ``unit``; ``None`` if unknown. Samples
+        at or above it are saturated.
+    """
+
+    name: str
+    unit: str = ""
+    full_scale: float | None = None
+
+    @property
+    def quantity(self) -> Quantity:
+        """What the channel measures, told from its unit."""
+        return _BY_SI_UNIT.get(self.unit, Quantity.OTHER)
+
+
+# The standard names. Strut displacements are positive down (vertical oscillator) or to starboard
+# (horizontal); strut forces are those of the strut on the model, positive along the displacement.
+SHAFT_ANGLE = Channel("shaft_angle", "rad")
+DISPLACEMENT_AFT = Channel("displacement_aft", "m")
+DISPLACEMENT_FORE = Channel("displacement_fore", "m")
+FORCE_AFT = Channel("force_aft", "N")
+FORCE_FORE = Channel("force_fore", "N")
+FORCE_X = Channel("force_x", "N")
+CARRIAGE_SPEED = Channel("carriage_speed", "m/s")

@@ -1,0 +1,65 @@
+"""The oscillator: its plane, its struts and its limits."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+
+class Plane(StrEnum):
+    """The plane of motion: heave and pitch, or sway and yaw."""
+
+    VERTICAL = "vertical"
+    HORIZONTAL = "horizontal"
+
+
+@dataclass(frozen=True)
+class Range:
+    """A closed interval; ``value in range`` asks whether a value lies in it."""
+
+    low: float
+    high: float
+
+    def __contains__(self, value: float) -> bool:
+        return self.low <= value <= self.high
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """A two-strut oscillator.
+
+    Attributes
+    ----------
+    half_spacing_m
+        Distance ``l`` of each strut from the midpoint; the struts stand at ``x = +l`` (fore) and
+        ``x = -l`` (aft).
+    rod_length_m
+        Length of the connecting rod of a crank and slider; ``None`` for a scotch yoke.
+    force_per_strut_n
+        Largest force that one strut may carry, in newtons.
+    """
+
+    plane: Plane
+    half_spacing_m: float
+    frequency_hz: Range
+    eccentricity_m: Range
+    force_per_strut_n: float
+    rod_length_m: float | None = None
+
+
+# The limits of the two rigs of 1963 (Delft). Their strut spacing is not published: 1 m is assumed.
+# The force of the horizontal one is not published either: that of the vertical one is taken.
+VERTICAL_1963 = Oscillator(
+    plane=Plane.VERTICAL,
+    half_spacing_m=0.5,
+    frequency_hz=Range(0.1, 2.0),
+    eccentricity_m=Range(0.0, 0.060),
+    force_per_strut_n=50.0 * STANDARD_GRAVITY_M_S2,
+)
+HORIZONTAL_1963 = Oscillator(
+    plane=Plane.HORIZONTAL,
+    half_spacing_m=0.5,
+    frequency_hz=Range(0.01, 2.0),
+    eccentricity_m=Range(0.0, 0.300),
+    force_per_strut_n=50.0 * STANDARD_GRAVITY_M_S2,
+)

@@ -1,0 +1,71 @@
+"""Units a recording may come in, and what turns them into SI."""
+
+import math
+from dataclasses import dataclass
+
+from hardware.description.errors import ConfigurationError
+
+
+@dataclass(frozen=True)
+class Unit:
+    """One unit: multiply a value by ``factor`` to have it in the SI unit ``si``."""
+
+    si: str
+    factor: float
+
+
+STANDARD_GRAVITY_M_S2 = 9.80665
+
+_UNITS: dict[str, Unit] = {
+    "s": Unit("s", 1.0),
+    "ms": Unit("s", 1e-3),
+    "us": Unit("s", 1e-6),
+    "min": Unit("s", 60.0),
+    "m": Unit("m", 1.0),
+    "cm": Unit("m", 1e-2),
+    "mm": Unit("m", 1e-3),
+    "N": Unit("N", 1.0),
+    "kN": Unit("N", 1e3),
+    "kgf": Unit("N", STANDARD_GRAVITY_M_S2),
+    "Nm": Unit("N m", 1.0),
+    "N m": Unit("N m", 1.0),
+    "N*m": Unit("N m", 1.0),
+    "kNm": Unit("N m", 1e3),
+    "rad": Unit("rad", 1.0),
+    "deg": Unit("rad", math.pi / 180.0),
+    "rev": Unit("rad", 2.0 * math.pi),
+    "m/s": Unit("m/s", 1.0),
+    "mm/s": Unit("m/s", 1e-3),
+    "rad/s": Unit("rad/s", 1.0),
+    "deg/s": Unit("rad/s", math.pi / 180.0),
+    "rpm": Unit("rad/s", 2.0 * math.pi / 60.0),
+    "m/s2": Unit("m/s2", 1.0),
+    "m/s^2": Unit("m/s2", 1.0),
+    "g": Unit("m/s2", STANDARD_GRAVITY_M_S2),
+    "Hz": Unit("Hz", 1.0),
+    "V": Unit("V", 1.0),
+    "mV": Unit("V", 1e-3),
+    "degC": Unit("degC", 1.0),
+    "-": Unit("1", 1.0),
+    "1": Unit("1", 1.0),
+}
+
+
+def unit(name: str) -> Unit:
+    """Return the unit called ``name``, for example ``"mm"``, ``"kN"`` or ``"deg"``.
+
+    Raises
+    ------
+    ConfigurationError
+        If the name is not known; the message lists the known ones.
+    """
+    try:
+        return _UNITS[name.strip()]
+    except KeyError:
+        known = ", ".join(_UNITS)
+        raise ConfigurationError(f"unknown unit {name!r}; known units: {known}") from None
+
+
+def is_unit(name: str) -> bool:
+    """Tell whether ``name`` is a unit that :func:`unit` knows."""
+    return name.strip() in _UNITS

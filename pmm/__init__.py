@@ -1,0 +1,1 @@
+"""Planar motion mechanism: run tests and analyse their recordings."""
