@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Samples(Protocol):
-    """The sampled values of a run, shape ``(channels, samples)``: an array, or a file read lazily."""
+    """A run's values, shape ``(channels, samples)``: an array, or a file read lazily."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -42,7 +42,7 @@ class Recording:
     start_s
         Time of the first sample.
     photocell_edges_s
-        Times of the photocell's pulses, increasing, on the same clock; ``None`` without a photocell.
+        Times of the photocell's pulses on the same clock, increasing; ``None`` without one.
     flags
         What the reader noticed or repaired.
     """
@@ -75,7 +75,8 @@ class Recording:
     def time_s(self, start: int = 0, stop: int | None = None) -> FloatArray:
         """Return the times of samples ``start`` to ``stop`` (exclusive)."""
         stop = self.sample_count if stop is None else stop
-        return self.start_s + np.arange(start, stop) / self.sample_rate_hz
+        times: FloatArray = self.start_s + np.arange(start, stop) / self.sample_rate_hz
+        return times
 
     def sample_number(self, time_s: FloatArray) -> FloatArray:
         """Turn times into fractional sample numbers; the first sample is number 0."""
