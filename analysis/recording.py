@@ -101,7 +101,8 @@ class Recording:
     def values(self, name: str) -> FloatArray:
         """Return all samples of one channel, shape ``(samples,)``."""
         row = self.index(name)
-        return self.samples[row : row + 1, 0 : self.sample_count][0]
+        values: FloatArray = self.samples[row : row + 1, 0 : self.sample_count][0]
+        return values
 
     def select(self, names: Sequence[str]) -> "Recording":
         """Return the recording with these channels only, in this order."""
