@@ -1,0 +1,194 @@
+"""Stages in order, run whole or in blocks, with every signal between them kept."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError, DataError
+from sim.signals import FloatArray, Signal, Signals
+from sim.stage import Block, Stage
+
+
+@dataclass(frozen=True)
+class ChainState:
+    """Everything a run remembers between two blocks: a value, so it can be kept and gone back to.
+
+    Attributes
+    ----------
+    next_sample
+        Number of the sample that the next block starts with.
+    stages
+        State of each stage, in the chain's order.
+    """
+
+    next_sample: int
+    sample_rate_hz: float
+    stages: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Stages, each fed by those before it.
+
+    Attributes
+    ----------
+    inputs
+        Signals that no stage writes and that every call of :meth:`run` has to supply: commands to a
+        drive, or the measured input of a chain cut off upstream.
+
+    Raises
+    ------
+    ConfigurationError
+        If a stage reads a signal that nothing before it writes, if two stages write the same
+        signal, or if two have the same name.
+    """
+
+    stages: tuple[Stage[Any], ...]
+    inputs: tuple[Signal, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = {signal.name for signal in self.inputs}
+        names: set[str] = set()
+        for stage in self.stages:
+            _check_name(stage, names)
+            _check_reads(stage, known)
+            _check_writes(stage, known)
+            names.add(stage.name)
+            known |= {signal.name for signal in stage.writes}
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """Every signal of the chain, in the order in which they come into being."""
+        return self.inputs + tuple(signal for stage in self.stages for signal in stage.writes)
+
+    def stage(self, name: str) -> Stage[Any]:
+        """Return the stage called ``name``.
+
+        Raises
+        ------
+        ConfigurationError
+            If there is none; the message names those there are.
+        """
+        for stage in self.stages:
+            if stage.name == name:
+                return stage
+        raise ConfigurationError(_unknown("stage", name, [stage.name for stage in self.stages]))
+
+    def change(self, name: str, change: Callable[[Stage[Any]], Stage[Any]]) -> "Chain":
+        """Return the chain with ``change`` applied to one stage: how an effect is switched on."""
+        old = self.stage(name)
+        new = change(old)
+        return replace(self, stages=tuple(new if s is old else s for s in self.stages))
+
+    def start(self, sample_rate_hz: float, seed: int) -> ChainState:
+        """Return the state before sample 0."""
+        states = tuple(stage.start(sample_rate_hz, seed) for stage in self.stages)
+        return ChainState(0, sample_rate_hz, states)
+
+    def run(
+        self, state: ChainState, count: int, substitute: Mapping[str, FloatArray] | None = None
+    ) -> tuple[ChainState, Signals]:
+        """Run the next ``count`` samples, the whole run or a block of it.
+
+        Any way of cutting a run into blocks gives the same samples, and the same state and count
+        always give the same samples.
+
+        Parameters
+        ----------
+        substitute
+            Signals to use in place of the simulated ones, by name, over this block: shape
+            ``(count,)`` for sampled ones. Every stage downstream is fed with them; the stage that
+            would have written one still runs. Displacement, velocity and acceleration of a strut
+            are three signals: whoever substitutes a measured motion supplies all three.
+
+        Returns
+        -------
+        state, signals
+            The state after the block, and every signal of the chain over the block, by name.
+
+        Raises
+        ------
+        ConfigurationError
+            If a substituted signal is not one of the chain's, or a chain input is missing.
+        DataError
+            If a substituted signal has the wrong shape or a value that is not finite.
+        """
+        given = self._checked(substitute or {}, count)
+        block = Block(state.next_sample, count, state.sample_rate_hz)
+        signals: dict[str, FloatArray] = {one.name: given[one.name] for one in self.inputs}
+        after: list[Any] = []
+        for stage, before in zip(self.stages, state.stages, strict=True):
+            fed = {one.name: signals[one.name] for one in stage.reads}
+            stage_state, written = stage.run(before, block, fed)
+            after.append(stage_state)
+            signals |= {name: given.get(name, values) for name, values in written.items()}
+        return ChainState(block.first + count, state.sample_rate_hz, tuple(after)), signals
+
+    def _checked(self, given: Mapping[str, FloatArray], count: int) -> dict[str, FloatArray]:
+        """Return the substituted signals as float arrays after all checks."""
+        known = {signal.name: signal for signal in self.signals}
+        for name in given:
+            if name not in known:
+                raise ConfigurationError(_unknown("signal", name, list(known)))
+        for signal in self.inputs:
+            if signal.name not in given:
+                raise ConfigurationError(
+                    f"signal {signal.name!r} ({signal.unit}) is an input of this chain and has to "
+                    f"be supplied for every block"
+                )
+        return {name: _as_signal(known[name], values, count) for name, values in given.items()}
+
+
+def join(parts: Iterable[Signals]) -> dict[str, FloatArray]:
+    """Join the signals of consecutive blocks into those of the whole stretch."""
+    blocks = list(parts)
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _as_signal(signal: Signal, values: FloatArray, count: int) -> FloatArray:
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim != 1 or (signal.sampled and array.size != count):
+        wanted = f"({count},)" if signal.sampled else "(events,)"
+        raise DataError(
+            f"signal {signal.name!r}: shape {array.shape} was given where {wanted} is needed; "
+            f"supply one value per sample of the block"
+        )
+    bad = array.size - int(np.count_nonzero(np.isfinite(array)))
+    if bad:
+        raise DataError(
+            f"signal {signal.name!r}: {bad} of {array.size} substituted values are not finite; "
+            f"fill the gaps or choose a stretch without any"
+        )
+    return array
+
+
+def _check_name(stage: Stage[Any], taken: set[str]) -> None:
+    if stage.name in taken:
+        raise ConfigurationError(f"two stages are called {stage.name!r}; rename one")
+
+
+def _check_reads(stage: Stage[Any], known: set[str]) -> None:
+    for signal in stage.reads:
+        if signal.name not in known:
+            raise ConfigurationError(
+                f"stage {stage.name!r} reads {signal.name!r}, which nothing before it writes; "
+                f"put the stage that writes it first, or declare it an input of the chain"
+            )
+
+
+def _check_writes(stage: Stage[Any], known: set[str]) -> None:
+    for signal in stage.writes:
+        if signal.name in known:
+            raise ConfigurationError(
+                f"stage {stage.name!r} writes {signal.name!r}, which is already there; "
+                f"change the stage that writes it instead"
+            )
+
+
+def _unknown(kind: str, name: str, known: list[str]) -> str:
+    near = get_close_matches(name, known, n=3, cutoff=0.4)
+    hint = f"; did you mean {', '.join(near)}?" if near else ""
+    return f"the chain has no {kind} {name!r}{hint} ({kind}s: {', '.join(known)})"

@@ -1,0 +1,165 @@
+"""The photocell: a pulse each time the shaft passes the mark."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from sim import signals
+from sim.noise import NoiseState, draw_normal, start_stream
+from sim.signals import FloatArray, Signal, Signals
+from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+_TURN = 2.0 * math.pi
+_MOST_STEPS = 100
+
+
+@dataclass(frozen=True)
+class PhotocellState:
+    """What is remembered of the last sample, so that marks passed between blocks are found.
+
+    Attributes
+    ----------
+    last
+        Angle, speed and acceleration of the shaft at the last sample; ``None`` before the first.
+    jitter
+        The stream of random delays.
+    """
+
+    last: tuple[float, float, float] | None
+    jitter: NoiseState
+
+
+@dataclass(frozen=True)
+class Photocell:
+    """Times at which the shaft passes the mark, found between samples.
+
+    Between two samples the angle is the polynomial of fifth degree that has the angle, speed and
+    acceleration of both: exact for a steady shaft and, wherever the sampling resolves the change of
+    speed, to rounding. The very first sample counts as before the mark.
+
+    Attributes
+    ----------
+    mark_angle_rad
+        Shaft angle at which the pulse comes.
+    latency_s
+        Delay of every pulse behind the mark.
+    jitter_rms_s
+        Standard deviation of the delay from pulse to pulse.
+    """
+
+    mark_angle_rad: float = 0.0
+    latency_s: float = 0.0
+    jitter_rms_s: float = 0.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    name: ClassVar[str] = "photocell"
+    reads: ClassVar[tuple[Signal, ...]] = (
+        signals.SHAFT_ANGLE,
+        signals.SHAFT_SPEED,
+        signals.SHAFT_ACCELERATION,
+    )
+    writes: ClassVar[tuple[Signal, ...]] = (signals.PHOTOCELL_EDGE_TIME,)
+
+    def start(self, sample_rate_hz: float, seed: int) -> PhotocellState:  # noqa: ARG002
+        """Return the state before the first sample."""
+        return PhotocellState(None, start_stream(seed, self.name))
+
+    def run(
+        self, state: PhotocellState, block: Block, inputs: Signals
+    ) -> tuple[PhotocellState, Signals]:
+        """Return the times of the pulses up to the block's last sample.
+
+        Raises
+        ------
+        ConfigurationError
+            If the shaft turns so fast that two marks fall between two samples.
+        """
+        shaft = np.stack([inputs[signal.name] for signal in self.reads])
+        first = block.first
+        if state.last is not None:
+            shaft = np.hstack([np.array(state.last)[:, np.newaxis], shaft])
+            first -= 1
+        last = _last(shaft)
+        shaft[0] -= self.mark_angle_rad
+        edges = (first + _passages(shaft, block.sample_rate_hz)) / block.sample_rate_hz
+        jitter = state.jitter
+        if self.jitter_rms_s > 0.0:
+            jitter, deviates = draw_normal(jitter, edges.size)
+            edges = edges + self.jitter_rms_s * deviates
+        after = PhotocellState(last, jitter)
+        return after, {signals.PHOTOCELL_EDGE_TIME.name: edges + self.latency_s}
+
+
+def _last(shaft: FloatArray) -> tuple[float, float, float] | None:
+    if not shaft.shape[1]:
+        return None
+    angle, speed, acceleration = (float(value) for value in shaft[:, -1])
+    return angle, speed, acceleration
+
+
+def _passages(shaft: FloatArray, sample_rate_hz: float) -> FloatArray:
+    """Return where the angle passes whole turns, in samples after the first one.
+
+    ``shaft`` has the rows angle, speed and acceleration, in radians and seconds.
+    """
+    turns = np.floor(shaft[0] / _TURN)
+    steps = np.diff(turns)
+    (at,) = np.nonzero(steps)
+    if at.size and np.abs(steps[at]).max() > 1:
+        raise ConfigurationError(
+            f"the shaft passes the photocell's mark more than once between two samples at "
+            f"{sample_rate_hz:g} Hz; sample faster"
+        )
+    marks = _TURN * np.maximum(turns[at], turns[at + 1])
+    # Derivatives by the fraction of a sample interval.
+    scale = np.array([1.0, 1.0 / sample_rate_hz, 1.0 / sample_rate_hz**2])[:, np.newaxis]
+    before, after = shaft[:, at] * scale, shaft[:, at + 1] * scale
+    before[0] -= marks
+    after[0] -= marks
+    passages: FloatArray = at + _root(_quintic(before, after))
+    return passages
+
+
+def _quintic(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return the coefficients, constant first, of the polynomials on 0 to 1 with both ends' values.
+
+    Each end has the rows value, first and second derivative; the result has shape (6, edges).
+    """
+    (f0, d0, c0), (f1, d1, c1) = before, after
+    rise = f1 - f0
+    return np.stack(
+        [
+            f0,
+            d0,
+            c0 / 2.0,
+            10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * c0 + 0.5 * c1,
+            -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * c0 - c1,
+            6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (c0 - c1),
+        ]
+    )
+
+
+def _root(coefficients: FloatArray) -> FloatArray:
+    """Return the root of each polynomial between 0 and 1 by Newton's method from the chord."""
+    value_at_1 = coefficients.sum(axis=0)
+    u: FloatArray = coefficients[0] / (coefficients[0] - value_at_1)
+    slopes = coefficients[1:] * np.arange(1, 6)[:, np.newaxis]
+    for _ in range(_MOST_STEPS):
+        slope = _polynomial(slopes, u)
+        flat = slope == 0.0
+        step = np.where(flat, 0.0, _polynomial(coefficients, u) / np.where(flat, 1.0, slope))
+        moved: FloatArray = np.clip(u - step, 0.0, 1.0)
+        if not np.any(np.abs(moved - u) > np.finfo(np.float64).eps):
+            return moved
+        u = moved
+    return u
+
+
+def _polynomial(coefficients: FloatArray, u: FloatArray) -> FloatArray:
+    value: FloatArray = coefficients[-1]
+    for lower in coefficients[-2::-1]:
+        value = value * u + lower
+    return value

@@ -1,0 +1,134 @@
+"""A simulated rig: the parameters of all its stages, and two nominal ones as data."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+from hardware.description.body import Body
+from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
+from hardware.description.setpoint import Medium, SetPoint, check_within
+from sim.acquisition import Acquisition, Digitiser
+from sim.carriage import Carriage
+from sim.chain import Chain
+from sim.drive import ConstantSpeedDrive, DriveSettings
+from sim.dynamometer import Dynamometers, Gauge
+from sim.hull import Hull, HullCoefficients
+from sim.mechanism import Mechanism
+from sim.photocell import Photocell
+from sim.stage import UNKNOWN_KEYS_REFUSED
+
+
+@dataclass(frozen=True)
+class SimulatedRig:
+    """Everything that the simulation believes of a rig, its model and the water.
+
+    Attributes
+    ----------
+    body
+        The model, measured about the midpoint between the struts.
+    water
+        What the water does to the model; ignored for runs in air.
+    photocell
+        ``None`` for a rig without one.
+    """
+
+    oscillator: Oscillator
+    body: Body
+    water: HullCoefficients = field(default_factory=HullCoefficients)
+    drive: DriveSettings = field(default_factory=DriveSettings)
+    dynamometers: Dynamometers = field(default_factory=Dynamometers)
+    acquisition: Acquisition = field(default_factory=Acquisition)
+    photocell: Photocell | None = field(default_factory=Photocell)
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def chain(self, set_point: SetPoint) -> Chain:
+        """Return the stages of this rig, set for one run.
+
+        Raises
+        ------
+        ConfigurationError
+            If the oscillator cannot run the set-point.
+        """
+        check_within(self.oscillator, set_point)
+        in_water = set_point.medium is Medium.WATER
+        stages = (
+            ConstantSpeedDrive(set_point.frequency_hz, self.drive),
+            Carriage(set_point.carriage_speed_m_s),
+            Mechanism(
+                set_point.eccentricity_m, set_point.strut_phase_rad, self.oscillator.rod_length_m
+            ),
+            Hull(
+                self.oscillator.plane,
+                self.oscillator.half_spacing_m,
+                self.body,
+                self.water if in_water else HullCoefficients(),
+            ),
+            self.dynamometers,
+            self.acquisition,
+        )
+        return Chain(stages if self.photocell is None else (*stages, self.photocell))
+
+    def ideal(self) -> "SimulatedRig":
+        """Return the same rig with perfect sensors: no noise, drift, rounding, gain or delay.
+
+        The channels that it records stay the same.
+        """
+        perfect = {line.channel.name: Digitiser() for line in self.acquisition.lines}
+        return replace(
+            self,
+            dynamometers=Dynamometers(),
+            acquisition=replace(self.acquisition, **perfect),
+            photocell=None if self.photocell is None else Photocell(),
+        )
+
+
+# A model of 2.5 m, 0.36 m beam and 0.13 m draught; magnitudes as strip theory gives them for such a
+# hull near 1 Hz. They serve examples and tests, not any real ship.
+MODEL_2M5 = Body(mass_kg=70.0, inertia_kg_m2=27.5, cg_x_m=-0.02, cg_z_m=0.02)
+WATER_VERTICAL = HullCoefficients(
+    added_mass=((75.0, 3.0), (3.0, 22.0)),
+    damping=((190.0, 12.0), (12.0, 55.0)),
+    restoring=((6900.0, 345.0), (345.0, 2400.0)),
+)
+WATER_HORIZONTAL = HullCoefficients(
+    added_mass=((62.0, 2.0), (2.0, 18.0)),
+    damping=((120.0, -15.0), (40.0, 35.0)),
+)
+_DYNAMOMETERS = Dynamometers(Gauge(full_scale_n=500.0), Gauge(full_scale_n=500.0))
+
+
+def vertical_rig() -> SimulatedRig:
+    """Return a nominal heave and pitch rig: the oscillator of 1963 and a model of 2.5 m."""
+    return SimulatedRig(
+        oscillator=VERTICAL_1963,
+        body=MODEL_2M5,
+        water=WATER_VERTICAL,
+        dynamometers=_DYNAMOMETERS,
+        acquisition=_acquisition(displacement_noise_m=5e-6),
+    )
+
+
+def horizontal_rig(rod_length_m: float | None = None) -> SimulatedRig:
+    """Return a nominal sway and yaw rig; with a rod length it has cranks in place of yokes."""
+    return SimulatedRig(
+        oscillator=replace(HORIZONTAL_1963, rod_length_m=rod_length_m),
+        body=MODEL_2M5,
+        water=WATER_HORIZONTAL,
+        dynamometers=_DYNAMOMETERS,
+        acquisition=_acquisition(displacement_noise_m=2e-5),
+    )
+
+
+def _acquisition(displacement_noise_m: float) -> Acquisition:
+    """Return 16 bit channels with the noise of good amplifiers, and an encoder of 2^16 steps."""
+    displacement = Digitiser(noise_rms=displacement_noise_m)
+    force = Digitiser(noise_rms=0.05, resolution=1000.0 / 2**16, full_scale=500.0)
+    return Acquisition(
+        shaft_angle=Digitiser(resolution=2.0 * math.pi / 2**16),
+        displacement_aft=displacement,
+        displacement_fore=displacement,
+        force_aft=force,
+        force_fore=force,
+        carriage_speed=Digitiser(noise_rms=1e-3),
+    )

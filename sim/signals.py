@@ -1,0 +1,73 @@
+"""The signals between stages: one name and one unit each, said here and nowhere else.
+
+A quantity that a rig can also record keeps its channel's name; what the acquisition makes of it is
+called ``recorded_`` and that name. Axes and signs are those of :mod:`hardware.description`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description import channels
+from hardware.description.channels import Channel
+from hardware.description.dataset import EDGE_TIME
+
+FloatArray: TypeAlias = NDArray[np.float64]
+
+# Values by signal name: one array of shape ``(samples,)`` each, events of shape ``(events,)``.
+Signals: TypeAlias = Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One quantity that stages hand to each other.
+
+    Attributes
+    ----------
+    sampled
+        True for one value per sample of the block; False for events, of which a block may hold any
+        number (the photocell's edges).
+    """
+
+    name: str
+    unit: str
+    sampled: bool = True
+
+
+def of_channel(channel: Channel) -> Signal:
+    """Return the true quantity that a channel measures, under the channel's own name and unit."""
+    return Signal(channel.name, channel.unit)
+
+
+def recorded(channel: Channel) -> Signal:
+    """Return what the acquisition delivers for a channel."""
+    return Signal(f"recorded_{channel.name}", channel.unit)
+
+
+# Drive and carriage.
+SHAFT_ANGLE = of_channel(channels.SHAFT_ANGLE)  # unwrapped
+SHAFT_SPEED = Signal("shaft_speed", "rad/s")
+SHAFT_ACCELERATION = Signal("shaft_acceleration", "rad/s2")
+CARRIAGE_SPEED = of_channel(channels.CARRIAGE_SPEED)
+
+# Mechanism: motion of each strut.
+DISPLACEMENT_AFT = of_channel(channels.DISPLACEMENT_AFT)
+VELOCITY_AFT = Signal("velocity_aft", "m/s")
+ACCELERATION_AFT = Signal("acceleration_aft", "m/s2")
+DISPLACEMENT_FORE = of_channel(channels.DISPLACEMENT_FORE)
+VELOCITY_FORE = Signal("velocity_fore", "m/s")
+ACCELERATION_FORE = Signal("acceleration_fore", "m/s2")
+
+# Model and water: force of each strut on the model, positive along the strut's displacement.
+FORCE_AFT = of_channel(channels.FORCE_AFT)
+FORCE_FORE = of_channel(channels.FORCE_FORE)
+
+# Dynamometers: what the gauges make of those forces.
+DYNAMOMETER_FORCE_AFT = Signal("dynamometer_force_aft", "N")
+DYNAMOMETER_FORCE_FORE = Signal("dynamometer_force_fore", "N")
+
+# Photocell.
+PHOTOCELL_EDGE_TIME = Signal(EDGE_TIME, "s", sampled=False)
