@@ -105,7 +105,7 @@ def _passages(shaft: FloatArray, sample_rate_hz: float) -> FloatArray:
 
     ``shaft`` has the rows angle, speed and acceleration, in radians and seconds.
     """
-    turns = np.floor(shaft[0] / _TURN)
+    turns = _whole_turns(shaft[0])
     steps = np.diff(turns)
     (at,) = np.nonzero(steps)
     if at.size and np.abs(steps[at]).max() > 1:
@@ -119,8 +119,20 @@ def _passages(shaft: FloatArray, sample_rate_hz: float) -> FloatArray:
     before, after = shaft[:, at] * scale, shaft[:, at + 1] * scale
     before[0] -= marks
     after[0] -= marks
-    passages: FloatArray = at + _root(_quintic(before, after))
+    passages: FloatArray = at + _root(_quintic(before, after), after[0])
     return passages
+
+
+def _whole_turns(angle: FloatArray) -> FloatArray:
+    """Return the largest n with ``n * 2 pi <= angle``, as floating point multiplies.
+
+    The quotient alone may round up to a whole number from just below the mark; the root search
+    would then look for it between the wrong samples.
+    """
+    turns = np.floor(angle / _TURN)
+    turns -= angle < turns * _TURN
+    turns += angle >= (turns + 1.0) * _TURN
+    return turns
 
 
 def _quintic(before: FloatArray, after: FloatArray) -> FloatArray:
@@ -142,16 +154,21 @@ def _quintic(before: FloatArray, after: FloatArray) -> FloatArray:
     )
 
 
-def _root(coefficients: FloatArray) -> FloatArray:
-    """Return the root of each polynomial between 0 and 1 by Newton's method from the chord."""
-    value_at_1 = coefficients.sum(axis=0)
-    u: FloatArray = coefficients[0] / (coefficients[0] - value_at_1)
+def _root(coefficients: FloatArray, at_1: FloatArray) -> FloatArray:
+    """Return the root between 0 and 1 of each polynomial that changes sign to ``at_1`` at 1.
+
+    Newton's method from the chord; a step that leaves the bracket is replaced by halving it.
+    """
+    low, high = np.zeros_like(at_1), np.ones_like(at_1)
+    u: FloatArray = coefficients[0] / (coefficients[0] - at_1)
     slopes = coefficients[1:] * np.arange(1, 6)[:, np.newaxis]
     for _ in range(_MOST_STEPS):
-        slope = _polynomial(slopes, u)
-        flat = slope == 0.0
-        step = np.where(flat, 0.0, _polynomial(coefficients, u) / np.where(flat, 1.0, slope))
-        moved: FloatArray = np.clip(u - step, 0.0, 1.0)
+        value, slope = _polynomial(coefficients, u), _polynomial(slopes, u)
+        beyond = value * at_1 > 0.0
+        low, high = np.where(beyond, low, u), np.where(beyond, u, high)
+        newton = u - value / np.where(slope == 0.0, np.inf, slope)
+        inside = (low <= newton) & (newton <= high) & (slope != 0.0)
+        moved: FloatArray = np.where(inside, newton, (low + high) / 2.0)
         if not np.any(np.abs(moved - u) > np.finfo(np.float64).eps):
             return moved
         u = moved

@@ -84,6 +84,10 @@ def _check_arguments(
             f"sample_rate_hz = {sample_rate_hz:g} must exceed twice the frequency "
             f"of {set_point.frequency_hz:g} Hz"
         )
+    for field in ("strut_phase_rad", "carriage_speed_m_s"):
+        value = getattr(set_point, field)
+        if not math.isfinite(value):
+            faults.append(f"{field} = {value} of the set-point must be a finite number")
     if seed < 0:
         faults.append(f"seed = {seed} must not be negative")
     if faults:
