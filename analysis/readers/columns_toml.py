@@ -1,0 +1,161 @@
+"""Column maps from TOML, with all errors of a file in one message."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from analysis.readers.columns import (
+    ChannelColumn,
+    ColumnMap,
+    Edge,
+    PhotocellColumn,
+    TextLayout,
+    TimeColumn,
+)
+from analysis.readers.columns_options import parse_source
+from analysis.readers.toml_table import TomlTable, is_number
+from hardware.description.errors import ConfigurationError
+
+
+def read_column_map(path: Path) -> ColumnMap:
+    """Read a column map from a TOML file; see :meth:`ColumnMap.from_toml`."""
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ConfigurationError(f"{path}: no such column map") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
+    return parse_column_map(table, path.name)
+
+
+def parse_column_map(table: Mapping[str, object], origin: str) -> ColumnMap:
+    """Build a column map from a table already read; see :meth:`ColumnMap.from_table`."""
+    faults: list[str] = []
+    top = TomlTable(table, "", faults)
+    column_map = ColumnMap(
+        channels=tuple(_channels(top)),
+        time=_time(top),
+        sample_rate_hz=top.number("sample_rate_hz", positive=True),
+        photocell=_photocell(top),
+        layout=TextLayout(
+            separator=top.text("separator"),
+            decimal=top.one_of("decimal", (".", ",")),
+            skip_rows=top.whole("skip_rows") or 0,
+            missing=_texts(top, "missing"),
+        ),
+        keep_others=bool(top.flag("keep_others")),
+        origin=origin,
+    )
+    top.finish()
+    if faults:
+        raise ConfigurationError(f"{origin}: " + "; ".join(faults))
+    return column_map
+
+
+def _time(top: TomlTable) -> TimeColumn | None:
+    source = _source(top, "time", "time")
+    if source is None:
+        return None
+    if isinstance(source, ChannelColumn):
+        if source.sign < 0:
+            top.fault("time", "has a sign, which means nothing here; leave out '-'")
+        return TimeColumn(source.column, source.unit)
+    column, unit_name = source.text("column"), source.unit("unit")
+    source.finish()
+    if not column:
+        _needs_column(top, "time")
+        return None
+    return TimeColumn(column, unit_name)
+
+
+def _channels(top: TomlTable) -> Iterator[ChannelColumn]:
+    table = _subtable(top, "channels") or TomlTable({}, "channels.", top.faults)
+    for name in table.table:
+        source = _source(table, name, name)
+        if isinstance(source, ChannelColumn):
+            yield source
+        elif source is not None:
+            channel = _long_channel(table, name, source)
+            if channel:
+                yield channel
+
+
+def _long_channel(table: TomlTable, name: str, source: TomlTable) -> ChannelColumn | None:
+    column, unit_name = source.text("column"), source.unit("unit")
+    sign, scale = source.number("sign"), source.number("scale")
+    full_scale = source.number("full_scale", positive=True)
+    if sign not in (None, 1.0, -1.0):
+        source.fault("sign", f"= {sign:g} should be 1 or -1; a factor goes to scale")
+    if scale == 0.0:
+        source.fault("scale", "= 0 would leave nothing of the channel")
+    source.finish()
+    if not column:
+        _needs_column(table, name)
+        return None
+    return ChannelColumn(
+        name, column, unit_name, -1 if sign == -1.0 else 1, scale or 1.0, full_scale
+    )
+
+
+def _needs_column(table: TomlTable, key: str) -> None:
+    if not any(fault.startswith(f"{table.where}{key}.column") for fault in table.faults):
+        table.fault(key, "needs the key column")
+
+
+def _photocell(top: TomlTable) -> PhotocellColumn | None:
+    table = _subtable(top, "photocell")
+    if table is None:
+        return None
+    found = PhotocellColumn(
+        column=table.text("column"),
+        threshold=table.number("threshold"),
+        edge=Edge(table.one_of("edge", tuple(Edge)) or Edge.RISING),
+        edges_s=_times(table, "edges_s"),
+        edges_file=table.text("edges_file"),
+    )
+    table.finish()
+    given = [key for key in ("column", "edges_s", "edges_file") if key in table.table]
+    if len(given) != 1:
+        top.fault("photocell", f"needs one of column, edges_s, edges_file; it has {len(given)}")
+    return found
+
+
+def _source(table: TomlTable, key: str, name: str) -> ChannelColumn | TomlTable | None:
+    """Return a column's short form parsed, its long form as a table, or ``None``."""
+    value = table.get(key)
+    if isinstance(value, str):
+        try:
+            return parse_source(name, value)
+        except ConfigurationError as error:
+            table.fault(key, f"= {value!r}: {error}")
+    elif isinstance(value, Mapping):
+        return TomlTable(value, f"{table.where}{key}.", table.faults)
+    elif value is not None:
+        table.fault(key, f"= {value!r} should be a column's header or a table with the key column")
+    return None
+
+
+def _subtable(top: TomlTable, key: str) -> TomlTable | None:
+    value = top.get(key)
+    if value is None or isinstance(value, Mapping):
+        return TomlTable(value, f"{key}.", top.faults) if value else None
+    top.fault(key, f"= {value!r} should be a table")
+    return None
+
+
+def _texts(table: TomlTable, key: str) -> tuple[str, ...]:
+    value = table.get(key)
+    if isinstance(value, list) and all(isinstance(item, str) for item in value):
+        return tuple(value)
+    if value is not None:
+        table.fault(key, f"= {value!r} should be a list of texts")
+    return ()
+
+
+def _times(table: TomlTable, key: str) -> tuple[float, ...] | None:
+    value = table.get(key)
+    if isinstance(value, list) and all(is_number(item) for item in value):
+        return tuple(float(item) for item in value)
+    if value is not None:
+        table.fault(key, f"= {value!r} should be a list of times in seconds")
+    return None

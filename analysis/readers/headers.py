@@ -1,0 +1,80 @@
+"""What a column's header says: its name and its unit."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from hardware.description.errors import DataError
+from hardware.description.units import is_unit
+
+TIME_NAMES = ("time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd")
+
+_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
+# "WP_1" and "x_-" are names, not dimensionless columns.
+_NO_SUFFIX = ("1", "-")
+
+
+@dataclass(frozen=True)
+class Header:
+    """A column's header: ``number`` counts from 1, ``unit`` is ``None`` where it says none."""
+
+    number: int
+    text: str
+    name: str
+    unit: str | None
+    unit_is_suffix: bool = False
+
+    @property
+    def generic(self) -> str:
+        """The name by which any column can be asked for: ``column_3`` is the third."""
+        return f"column_{self.number}"
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the name is one that time stamps go by."""
+        return self.name.casefold() in TIME_NAMES
+
+
+def parse_header(number: int, text: str) -> Header:
+    """Split ``Name [unit]``, ``Name (unit)``, or ``Name_unit`` where the unit is a known one."""
+    text = text.strip()
+    match = _BRACKETS.match(text)
+    if match:
+        name, unit = match["name"].strip(), match["unit"].strip()
+        return Header(number, text, name or f"column_{number}", unit or None)
+    name, _, suffix = text.rpartition("_")
+    if name and suffix not in _NO_SUFFIX and is_unit(suffix):
+        return Header(number, text, name, suffix, unit_is_suffix=True)
+    return Header(number, text, text or f"column_{number}", None)
+
+
+def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
+    """Return the column that ``selector`` names.
+
+    It may be the whole header, the name without the unit, the name with the unit where the header
+    has none, or ``column_3``.
+
+    Raises
+    ------
+    DataError
+        If no column is called so (the message suggests the nearest), or several are.
+    """
+    wanted = parse_header(0, selector)
+    rules: tuple[Callable[[Header], bool], ...] = (
+        lambda h: h.text == selector,
+        lambda h: h.generic == selector,
+        lambda h: h.name == selector,
+        lambda h: h.name == wanted.name and h.unit in (None, wanted.unit),
+    )
+    for rule in rules:
+        found = [header for header in headers if rule(header)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            numbers = " or ".join(header.generic for header in found)
+            raise DataError(f"{where}: {len(found)} columns are {selector!r}; ask for {numbers}")
+    texts = [header.text or header.generic for header in headers]
+    near = get_close_matches(selector, texts, n=3, cutoff=0.4)
+    hint = f"; did you mean {', '.join(map(repr, near))}?" if near else ""
+    raise DataError(f"{where}: no column {selector!r}{hint} (columns: {', '.join(texts)})")

@@ -1,0 +1,76 @@
+"""One call that reads a recording of any kind."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+from analysis.readers.columns import ColumnMap
+from analysis.readers.netcdf import read_netcdf
+from analysis.readers.text_recording import read_text_recording
+from analysis.recording import Recording
+from hardware.description.errors import ConfigurationError, DataError
+
+TEXT_SUFFIXES = (".csv", ".txt", ".dat", ".asc", ".tsv")
+NETCDF_SUFFIX = ".nc"
+
+
+def read_recording(
+    path: str | Path, columns: ColumnMap | None = None, *, sample_rate_hz: float | None = None
+) -> Recording:
+    """Read a recording: ``.nc`` as this project writes it, or text, plain or gzip.
+
+    Samples come in SI units on an even grid. What was noticed or repaired is in ``flags``; their
+    codes are in ``docs/formats.md``. Samples of a NetCDF file stay on disk until they are sliced.
+
+    Parameters
+    ----------
+    columns
+        Which column of a text file is what; ``None`` believes its headers.
+    sample_rate_hz
+        Rate of a text file's samples, in place of its time column, if it has one.
+
+    Raises
+    ------
+    DataError
+        If the file is missing, empty, cut short, of an unknown kind, or its content cannot be taken
+        for a recording; the message names the file and the line, row or column.
+    ConfigurationError
+        If a column map or a sample rate is given that cannot be.
+    """
+    path = Path(path)
+    kind, name = _kind(path)
+    _check_there(path)
+    if kind == NETCDF_SUFFIX:
+        if columns is not None or sample_rate_hz is not None:
+            raise ConfigurationError(
+                f"{path}: a NetCDF recording says its own channels and rate; "
+                "leave out the column map and the sample rate"
+            )
+        return read_netcdf(path)
+    columns = columns or ColumnMap(origin="headers")
+    if sample_rate_hz is not None:
+        columns = replace(columns, sample_rate_hz=sample_rate_hz)
+    rate = columns.sample_rate_hz
+    if rate is not None and not (math.isfinite(rate) and rate > 0.0):
+        raise ConfigurationError(f"{path}: a sample rate of {rate:g} Hz; it should be above 0")
+    return read_text_recording(path, columns, name)
+
+
+def _kind(path: Path) -> tuple[str, str]:
+    """Return the kind of a file, told from its name, and its name without endings."""
+    plain = path.with_suffix("") if path.suffix.lower() == ".gz" else path
+    kind = plain.suffix.lower()
+    known = (*TEXT_SUFFIXES, NETCDF_SUFFIX) if plain is path else TEXT_SUFFIXES
+    if kind not in known:
+        endings = ", ".join((*TEXT_SUFFIXES, ".csv.gz", NETCDF_SUFFIX))
+        raise DataError(f"{path}: the kind of file is not known; its name should end in {endings}")
+    return kind, plain.stem
+
+
+def _check_there(path: Path) -> None:
+    if path.is_dir():
+        raise DataError(f"{path}: a folder, not a recording")
+    if not path.exists():
+        raise DataError(f"{path}: no such file")
+    if not path.stat().st_size:
+        raise DataError(f"{path}: the file is empty")

@@ -1,0 +1,165 @@
+"""How a text file is laid out: where the header is, what separates cells, where data begin."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+
+from analysis.readers.columns import TextLayout
+from analysis.readers.headers import Header, parse_header
+from hardware.description.errors import DataError
+from hardware.description.units import is_unit
+
+MISSING = ("", "NaN", "nan", "NAN", "-nan", "NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
+
+_SAMPLE_LINES = 20
+_SEPARATORS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
+
+
+@dataclass(frozen=True)
+class FoundLayout:
+    """A file's layout as found.
+
+    Attributes
+    ----------
+    separator
+        Between cells; a space stands for any run of blanks.
+    first_line
+        Lines of the file before the data.
+    missing
+        Cells that stand for a missing value.
+    """
+
+    headers: tuple[Header, ...]
+    separator: str
+    decimal: str
+    first_line: int
+    missing: tuple[str, ...]
+
+    def cells(self, line: str) -> list[str]:
+        """Split a line into cells, without the blanks around them."""
+        return split_line(line, self.separator)
+
+    def number(self, cell: str) -> float:
+        """Read a cell as a number, NaN where it stands for a missing value.
+
+        Raises
+        ------
+        ValueError
+            If it is neither.
+        """
+        if cell in self.missing:
+            return float("nan")
+        if "_" in cell or (self.decimal != "." and "." in cell):
+            raise ValueError(cell)
+        return float(cell.replace(self.decimal, "."))
+
+
+def split_line(line: str, separator: str) -> list[str]:
+    """Split a line into cells; quoted cells may contain the separator."""
+    if separator == " ":
+        return line.split()
+    row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    return [cell.strip() for cell in row]
+
+
+def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
+    """Find the header and the data of a text file.
+
+    Lines that are blank or begin with ``#`` or ``%`` before the header are passed over; where
+    numbers follow at once, the last such line is the header (as ``numpy.savetxt`` writes), and
+    without any the columns are called ``column_1``, ``column_2`` ...  A line of units under the
+    header is taken as the columns' units.
+
+    Raises
+    ------
+    DataError
+        If there is no data at all, or none after ``skip_rows``.
+    """
+    numbered = list(islice(enumerate(io.StringIO(text), 1), layout.skip_rows + 3 * _SAMPLE_LINES))
+    lines = [(n, line.strip("\n")) for n, line in numbered[layout.skip_rows :] if line.strip()]
+    comments = [(n, line.lstrip()[1:]) for n, line in lines if line.lstrip()[0] in "#%"]
+    body = [(n, line) for n, line in lines if line.lstrip()[0] not in "#%"]
+    if not body:
+        after = f" after the {layout.skip_rows} skipped lines" if layout.skip_rows else ""
+        raise DataError(f"{where}: there is no data in the file{after}")
+    missing = (*MISSING, *layout.missing)
+    separator, decimal = _separator([line for _, line in body], layout, missing)
+    bare = FoundLayout((), separator, decimal, 0, missing)
+    first = bare.cells(body[0][1])
+    if _is_data(bare, first):
+        return _headless(bare, first, comments, body[0][0] - 1)
+    return _with_header(bare, body)
+
+
+def _headless(
+    bare: FoundLayout, first: list[str], comments: list[tuple[int, str]], first_line: int
+) -> FoundLayout:
+    names = _header_cells(comments[-1][1], bare.separator) if comments else []
+    if len(names) != len(first):
+        names = [""] * len(first)
+    return _headed(bare, names, first_line)
+
+
+def _with_header(bare: FoundLayout, body: list[tuple[int, str]]) -> FoundLayout:
+    names = _header_cells(body[0][1], bare.separator)
+    following = [bare.cells(line) for _, line in body[1:3]]
+    if following and _is_units(following[0], names):
+        names = [f"{name} [{unit}]" for name, unit in zip(names, following[0], strict=True)]
+        following, line_number = following[1:], body[1][0]
+    else:
+        line_number = body[0][0]
+    if following and len(following[0]) == len(names) + 1 and not following[0][-1]:
+        names.append("")  # every row ends with a separator
+    return _headed(bare, names, line_number)
+
+
+def _headed(bare: FoundLayout, names: Sequence[str], first_line: int) -> FoundLayout:
+    headers = tuple(parse_header(number, name) for number, name in enumerate(names, 1))
+    return FoundLayout(headers, bare.separator, bare.decimal, first_line, bare.missing)
+
+
+def _header_cells(line: str, separator: str) -> list[str]:
+    if separator != " ":
+        return split_line(line, separator)
+    # "Time [s]  F (N)" is two columns: a blank before a bracket separates nothing.
+    cells: list[str] = []
+    for word in line.split():
+        if word[0] in "[(" and cells:
+            cells[-1] += f" {word}"
+        else:
+            cells.append(word)
+    return cells
+
+
+def _is_units(cells: list[str], names: list[str]) -> bool:
+    given = [cell for cell in cells if cell]
+    words = [cell for cell in given if not cell.replace("-", "1").isdigit()]
+    return len(cells) == len(names) and bool(words) and all(map(is_unit, given))
+
+
+def _is_data(layout: FoundLayout, cells: list[str]) -> bool:
+    try:
+        numbers = [layout.number(cell) for cell in cells]
+    except ValueError:
+        return False
+    return any(number == number for number in numbers)
+
+
+def _separator(lines: list[str], layout: TextLayout, missing: tuple[str, ...]) -> tuple[str, str]:
+    """Return the separator and decimal sign with which most of the first lines are numbers."""
+    choices = [
+        (separator, decimal)
+        for separator, decimal in _SEPARATORS
+        if layout.decimal in (None, decimal) and layout.separator is None
+    ] or [(layout.separator or ",", decimal) for decimal in (layout.decimal or ".,")]
+    best, best_score = choices[0], (-1, -1)
+    for separator, decimal in choices:
+        trial = FoundLayout((), separator, decimal, 0, missing)
+        rows = [trial.cells(line) for line in lines[:_SAMPLE_LINES]]
+        numeric = sum(_is_data(trial, row) for row in rows)
+        score = (numeric, len(rows[-1]))
+        if score > best_score:
+            best, best_score = (separator, decimal), score
+    return best

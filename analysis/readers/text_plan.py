@@ -1,0 +1,183 @@
+"""Which columns of a text file are read, and as what."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.readers.columns import ChannelColumn, ColumnMap
+from analysis.readers.headers import Header, find_header
+from analysis.recording import FloatArray
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag, Severity
+from hardware.description.units import Unit, is_unit, unit
+
+
+@dataclass(frozen=True)
+class ChannelPlan:
+    """A channel and its column; ``mapped`` where a column map names it."""
+
+    spec: ChannelColumn
+    header: Header
+    mapped: bool
+
+    def resolve(self) -> tuple[Channel, float, tuple[Flag, ...]]:
+        """Return the channel in SI units, the factor to them, and what is to be said of it."""
+        found, flags = self._unit()
+        factor = self.spec.sign * self.spec.scale * found.factor
+        full_scale = self.spec.full_scale
+        full_scale_si = None if full_scale is None else full_scale * found.factor
+        return Channel(self.spec.name, found.si, full_scale_si), factor, flags
+
+    def _unit(self) -> tuple[Unit, tuple[Flag, ...]]:
+        name, own, stated = self.spec.name, self.spec.unit, self.header.unit
+        chosen = own or stated
+        if chosen is None:
+            text = f"{name}: no unit is stated; values are kept as they are"
+            return Unit("", 1.0), (Flag("unit_missing", Severity.WARNING, text, name),)
+        if not is_unit(chosen):
+            text = f"{name}: the unit {chosen!r} is not known; values are kept as they are, no unit"
+            return Unit("", 1.0), (Flag("unit_unknown", Severity.WARNING, text, name),)
+        if own and stated and own.strip() != stated:
+            text = f"{name}: the column map says {own!r}, the header {stated!r}; the map is used"
+            return unit(own), (Flag("unit_overridden", Severity.WARNING, text, name),)
+        if not own and self.header.unit_is_suffix:
+            text = f"{name}: the unit {stated!r} was told from the header {self.header.text!r}"
+            return unit(chosen), (Flag("unit_from_suffix", Severity.NOTE, text, name),)
+        return unit(chosen), ()
+
+
+@dataclass(frozen=True)
+class ColumnPlan:
+    """The columns of one file by their part; ``time`` is ``None`` where a rate is given."""
+
+    time: Header | None
+    photocell: Header | None
+    channels: tuple[ChannelPlan, ...]
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def wanted(self) -> tuple[Header, ...]:
+        """Every column that is read, each once, in the file's order."""
+        headers = {plan.header for plan in self.channels} | {self.time, self.photocell}
+        return tuple(sorted((h for h in headers if h), key=lambda header: header.number))
+
+
+def plan_columns(headers: tuple[Header, ...], columns: ColumnMap, where: str) -> ColumnPlan:
+    """Find the columns that a map asks for, or give each its part by its header.
+
+    Raises
+    ------
+    DataError
+        If a mapped column is not there, no time column is found and no sample rate given, or two
+        channels would have the same name.
+    """
+    time, found_time = _time(headers, columns, where)
+    photocell = columns.photocell.column if columns.photocell else None
+    level = find_header(headers, photocell, where) if photocell else None
+    channels = [
+        ChannelPlan(spec, find_header(headers, spec.column, where), mapped=True)
+        for spec in columns.channels
+    ]
+    if columns.keep_others or not channels:
+        used = {plan.header for plan in channels} | {time, found_time, level}
+        channels += [
+            ChannelPlan(ChannelColumn(header.name, header.text), header, mapped=False)
+            for header in headers
+            if header not in used
+        ]
+    flags: tuple[Flag, ...] = ()
+    if found_time and not time:
+        text = f"the column {found_time.text!r} is not used: the sample rate was given"
+        flags = (Flag("time_not_used", Severity.NOTE, text),)
+    return ColumnPlan(time, level, tuple(channels), flags)
+
+
+def _time(
+    headers: tuple[Header, ...], columns: ColumnMap, where: str
+) -> tuple[Header | None, Header | None]:
+    """Return the time column to read and the one that is there."""
+    if columns.time:
+        found = find_header(headers, columns.time.column, where)
+        return found, found
+    named = next((header for header in headers if header.is_time), None)
+    if columns.sample_rate_hz is not None:
+        return None, named
+    if named is None:
+        names = ", ".join(header.text or header.generic for header in headers)
+        raise DataError(
+            f"{where}: no column is named as time (columns: {names}); name it in the column map, "
+            "or give the sample rate"
+        )
+    return named, named
+
+
+def without_idle(plan: ColumnPlan, table: Mapping[Header, FloatArray], where: str) -> ColumnPlan:
+    """Leave out unnamed columns that carry nothing: a leading index, or no values at all.
+
+    Raises
+    ------
+    DataError
+        If no channel is left, or two have the same name.
+    """
+    kept, flags = [], list(plan.flags)
+    for channel in plan.channels:
+        flag = None if channel.mapped else _idle(channel.header, table[channel.header])
+        if flag:
+            flags.append(flag)
+        else:
+            kept.append(channel)
+    if not kept:
+        raise DataError(f"{where}: no column is left to be a channel, beside time and index")
+    _check_unique(kept, where)
+    return replace(plan, channels=tuple(kept), flags=tuple(flags))
+
+
+def _idle(header: Header, values: FloatArray) -> Flag | None:
+    if header.text not in ("", "Unnamed: 0"):
+        return None
+    if np.isnan(values).all():
+        text = f"{header.generic} has neither a name nor values and is left out"
+        return Flag("empty_column", Severity.NOTE, text)
+    counts = values[0] in (0.0, 1.0) and bool((np.diff(values) >= 1.0).all())
+    if header.number == 1 and counts and bool((values == np.rint(values)).all()):
+        text = "the first column has no name and counts the rows; it is left out"
+        return Flag("index_column", Severity.NOTE, text)
+    return None
+
+
+def _check_unique(channels: Iterable[ChannelPlan], where: str) -> None:
+    seen: dict[str, Header] = {}
+    for channel in channels:
+        name, header = channel.spec.name, channel.header
+        if name in seen:
+            raise DataError(
+                f"{where}: {seen[name].generic} and {header.generic} would both be called "
+                f"{name!r}; give them names in the column map"
+            )
+        seen[name] = header
+
+
+def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float, tuple[Flag, ...]]:
+    """Return what turns time stamps into seconds.
+
+    Raises
+    ------
+    DataError
+        If the column's unit is not one of time.
+    """
+    name = own_unit or header.unit
+    if name is None:
+        text = f"the time column {header.text!r} has no unit; seconds are assumed"
+        return 1.0, (Flag("time_unit_assumed", Severity.NOTE, text),)
+    try:
+        found = unit(name)
+    except ConfigurationError as error:
+        raise DataError(f"{where}: time column {header.text!r}: {error}") from None
+    if found.si != "s":
+        raise DataError(
+            f"{where}: time column {header.text!r} is in {name!r}, which is no unit of time; "
+            "name the right column or its unit in the column map"
+        )
+    return found.factor, ()

@@ -1,0 +1,117 @@
+"""A recording from text: columns to channels in SI units on an even grid."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from analysis.readers.columns import ColumnMap, PhotocellColumn
+from analysis.readers.conditioning import repair_missing, saturation_flags
+from analysis.readers.headers import Header
+from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
+from analysis.readers.text_layout import find_layout
+from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, without_idle
+from analysis.readers.text_table import read_numbers, unpack
+from analysis.readers.time_base import TimeBase, fit_time_base
+from analysis.recording import FloatArray, Recording
+from hardware.description.flags import Flag
+
+READER = "csv"
+
+Table = Mapping[Header, FloatArray]
+
+
+def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
+    """Read a recording from a text file; see :func:`analysis.readers.read_recording`."""
+    data, where = path.read_bytes(), str(path)
+    text = unpack(data, path)
+    layout = find_layout(text, columns.layout, where)
+    plan = plan_columns(layout.headers, columns, where)
+    values, text_flags = read_numbers(text, layout, plan.wanted, where)
+    table = dict(zip(plan.wanted, values, strict=True))
+    plan = without_idle(plan, table, where)
+    base = _time_base(plan, table, columns, where)
+    resolved = [channel.resolve() for channel in plan.channels]
+    channels = tuple(channel for channel, _, _ in resolved)
+    samples = np.empty((len(channels), base.sample_count))
+    for row, part, (_, factor, _) in zip(samples, plan.channels, resolved, strict=True):
+        row[:] = _on_grid(table[part.header], base) * factor
+    edges, edges_flags = _edges(columns.photocell, plan, table, base, path, name)
+    repair_flags = repair_missing(samples, channels, where)
+    return Recording(
+        name=name,
+        channels=channels,
+        samples=samples,
+        sample_rate_hz=base.sample_rate_hz,
+        start_s=base.start_s,
+        photocell_edges_s=edges,
+        provenance=_provenance(path, data, columns),
+        flags=(
+            *text_flags,
+            *plan.flags,
+            *base.flags,
+            *(flag for _, _, flags in resolved for flag in flags),
+            *edges_flags,
+            *repair_flags,
+            *saturation_flags(samples, channels),
+        ),
+    )
+
+
+def _time_base(plan: ColumnPlan, table: Table, columns: ColumnMap, where: str) -> TimeBase:
+    """Return the grid of the time stamps, or of the given rate where there is one."""
+    flags: tuple[Flag, ...] = ()
+    time_s = np.zeros(1)
+    if plan.time is not None:
+        own_unit = columns.time.unit if columns.time else None
+        factor, flags = time_factor(plan.time, own_unit, where)
+        time_s = table[plan.time] * factor
+    if columns.sample_rate_hz is None:
+        base = fit_time_base(time_s, where)
+        return replace(base, flags=flags + base.flags)
+    start = float(time_s[0]) if np.isfinite(time_s[0]) else 0.0
+    rows = next(iter(table.values())).size
+    return TimeBase(start, columns.sample_rate_hz, rows, None, flags)
+
+
+def _on_grid(values: FloatArray, base: TimeBase) -> FloatArray:
+    """Put rows at their places; missing rows become NaN."""
+    if base.places is None:
+        return values
+    row = np.full(base.sample_count, np.nan)
+    row[base.places] = values
+    return row
+
+
+def _edges(
+    photocell: PhotocellColumn | None,
+    plan: ColumnPlan,
+    table: Table,
+    base: TimeBase,
+    path: Path,
+    name: str,
+) -> tuple[FloatArray | None, tuple[Flag, ...]]:
+    """Return the photocell's edges in seconds, and what is to be said of them."""
+    if photocell is None:
+        return None, ()
+    if plan.photocell is not None:
+        level = _on_grid(table[plan.photocell], base)
+        places = edges_of_level(level, photocell.threshold, photocell.edge)
+        edges: FloatArray = base.start_s + places / base.sample_rate_hz
+        return edges, edge_flags(edges, 1.0 / base.sample_rate_hz)
+    if photocell.edges_file is not None:
+        edges = read_edges(path.parent / photocell.edges_file.replace("{stem}", name))
+    else:
+        edges = check_edges(np.array(photocell.edges_s or (), dtype=np.float64), str(path))
+    return edges, edge_flags(edges, None)
+
+
+def _provenance(path: Path, data: bytes, columns: ColumnMap) -> dict[str, str]:
+    return {
+        "reader": READER,
+        "source_file": path.name,
+        "sha256": hashlib.sha256(data).hexdigest(),
+        "column_map": columns.origin,
+    }

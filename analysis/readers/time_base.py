@@ -1,0 +1,169 @@
+"""From time stamps to an even grid, or to a clear word that there is none."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import FloatArray
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+# Deviations from the even grid, in sample intervals.
+SILENT_DEVIATION = 1e-6  # the last printed digit
+NOTED_DEVIATION = 1e-2  # rounding; more is called jitter
+LARGEST_DEVIATION = 0.2  # more is no even sampling
+# A gap must be a whole number of intervals to this, or to the jitter's own size.
+GAP_TOLERANCE = 0.05
+
+
+@dataclass(frozen=True)
+class TimeBase:
+    """An even grid and where each row of the file lies on it.
+
+    Attributes
+    ----------
+    places
+        Sample number of each row, shape ``(rows,)``; ``None`` where row and sample are the same.
+    sample_count
+        Number of samples of the grid, the missing ones included.
+    """
+
+    start_s: float
+    sample_rate_hz: float
+    sample_count: int
+    places: NDArray[np.int64] | None = None
+    flags: tuple[Flag, ...] = ()
+
+
+def fit_time_base(time_s: FloatArray, where: str) -> TimeBase:
+    """Fit an even grid to time stamps by least squares.
+
+    Parameters
+    ----------
+    time_s
+        Time stamps in seconds, one per row.
+    where
+        The file's name, for messages.
+
+    Raises
+    ------
+    DataError
+        For fewer than two rows, missing stamps, time that repeats or runs backwards, gaps that are
+        not a whole number of intervals, more missing than present rows, and stamps further than
+        0.2 intervals from any even grid.
+    """
+    _check_increasing(time_s, where)
+    steps = np.diff(time_s)
+    places, interval = _places(steps)
+    centre = places.mean()
+    slope, middle = _line(places - centre, time_s)
+    start = middle - slope * centre
+    deviation = np.abs(time_s - (start + slope * places)) / slope
+    if deviation[0] <= SILENT_DEVIATION:
+        start = float(time_s[0])
+    _check_even(time_s, steps / interval, deviation, where)
+    rate = _without_rounding_noise(1.0 / slope)
+    flags = _deviation_flags(deviation, rate)
+    count = int(places[-1]) + 1
+    if count == time_s.size:
+        return TimeBase(start, rate, count, None, flags)
+    return TimeBase(start, rate, count, places, (*flags, _gap_flag(time_s, places, rate, where)))
+
+
+def _check_increasing(time_s: FloatArray, where: str) -> None:
+    if time_s.size < 2:
+        raise DataError(
+            f"{where}: {time_s.size} row(s) of data; a time base needs at least 2 "
+            "(or give the sample rate)"
+        )
+    bad = np.flatnonzero(~np.isfinite(time_s))
+    if bad.size:
+        raise DataError(
+            f"{where}: {bad.size} time stamp(s) are missing, the first in data row {bad[0] + 1}; "
+            "remove these rows, or give the sample rate in place of the time column"
+        )
+    bad = np.flatnonzero(np.diff(time_s) <= 0.0)
+    if bad.size:
+        row = int(bad[0])
+        before, after = time_s[row], time_s[row + 1]
+        what = "repeats" if after == before else "runs backwards"
+        raise DataError(
+            f"{where}: time {what} at data row {row + 2}: {after:.9g} s after {before:.9g} s "
+            f"({bad.size} such row(s)); remove or sort these rows, or, if only the stamps are "
+            "wrong, give the sample rate in place of the time column"
+        )
+
+
+def _places(steps: FloatArray) -> tuple[NDArray[np.int64], float]:
+    """Return each row's sample number and the interval between samples.
+
+    The median step may be rounded (1 ms stamps of 300 Hz); the mean of the single steps is not.
+    """
+    single = steps[steps < 1.5 * np.median(steps)]
+    interval = float(single.mean())
+    # Steps up to 1.5 intervals count as one, so that jitter does not open gaps.
+    whole = np.maximum(np.rint(steps / interval), 1.0)
+    return np.concatenate(([0], np.cumsum(whole))).astype(np.int64), interval
+
+
+def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    middle = float(y.mean())
+    return float(x @ (y - middle) / (x @ x)), middle
+
+
+def _without_rounding_noise(rate_hz: float) -> float:
+    """Return 200.0 for 199.99999999999997: the fit's own rounding, not the clock's."""
+    short = float(f"{rate_hz:.10g}")
+    return short if abs(short - rate_hz) <= 1e-12 * rate_hz else rate_hz
+
+
+def _check_even(time_s: FloatArray, steps: FloatArray, deviation: FloatArray, where: str) -> None:
+    """Refuse uneven stamps; ``steps`` and ``deviation`` are in intervals."""
+    odd = np.abs(steps - np.maximum(np.rint(steps), 1.0))
+    gaps = steps >= 1.5
+    jitter = float(odd[~gaps].max(initial=0.0))
+    bad_gap = gaps & (odd > max(GAP_TOLERANCE, jitter))
+    if deviation.max() <= LARGEST_DEVIATION and not bad_gap.any():
+        return
+    worst = int(np.argmax(np.where(bad_gap, 1.0 + odd, odd)))
+    raise DataError(
+        f"{where}: time is not evenly sampled: {steps[worst]:.3g} sample intervals between data "
+        f"rows {worst + 1} and {worst + 2} (t = {time_s[worst]:.6g} s); stamps lie up to "
+        f"{deviation.max():.2g} intervals from an even grid, the limit is {LARGEST_DEVIATION:g}; "
+        "resample the record evenly, or, if only the stamps are wrong, give the sample rate in "
+        "place of the time column"
+    )
+
+
+def _deviation_flags(deviation: FloatArray, rate_hz: float) -> tuple[Flag, ...]:
+    worst = float(deviation.max())
+    if worst <= SILENT_DEVIATION:
+        return ()
+    rounded = worst <= NOTED_DEVIATION
+    return (
+        Flag(
+            "time_rounded" if rounded else "time_jitter",
+            Severity.NOTE if rounded else Severity.WARNING,
+            f"time stamps lie up to {worst / rate_hz:.2g} s ({worst:.2g} sample intervals, "
+            f"limit {LARGEST_DEVIATION:g}) from the even grid of {rate_hz:.9g} Hz fitted "
+            "to them, which is used instead",
+        ),
+    )
+
+
+def _gap_flag(time_s: FloatArray, places: NDArray[np.int64], rate_hz: float, where: str) -> Flag:
+    lost = np.diff(places) - 1
+    missing, worst = int(lost.sum()), int(np.argmax(lost))
+    longest = f"{lost[worst]} after t = {time_s[worst]:.6g} s"
+    if missing > time_s.size:
+        raise DataError(
+            f"{where}: {missing} samples are missing and only {time_s.size} present (the most: "
+            f"{longest}); split the record into runs"
+        )
+    return Flag(
+        "gap",
+        Severity.WARNING,
+        f"{missing} sample(s) are missing in {np.count_nonzero(lost)} gap(s), the most {longest} "
+        f"({lost[worst] / rate_hz:.3g} s); they count as missing values",
+    )
