@@ -1,0 +1,199 @@
+"""From the sums of some periods to harmonics with honest uncertainties.
+
+The gate's harmonics solve the joint normal equations of its periods, so that they are exact for
+any frequency, sampling and gate. A drift would leak ``-d / (n pi)`` per period into the in-phase
+parts. A trend column in the same equations would cost: where harmonics beyond N are left out, they
+leak through it. The drift is found instead from the periods' own means, in which harmonics
+of every order cancel, and taken out before.
+
+The uncertainty comes from the scatter between periods (Student's t), which sees noise of any
+colour; the residual's figure, white only by assumption, is never used.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
+from analysis.resolver.sums import PeriodSums
+from hardware.description.errors import DataError
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PeriodValues:
+    """Each period solved alone.
+
+    Attributes
+    ----------
+    coefficients
+        Shape ``(periods, channels, K)``.
+    ramp
+        Coefficients of the time itself, shape ``(periods, K)``: what a drift of 1 per second does.
+    """
+
+    coefficients: FloatArray
+    ramp: FloatArray
+
+
+@dataclass(frozen=True)
+class _Drift:
+    """Slope of each channel and its variance, shapes ``(channels,)``."""
+
+    slope: FloatArray
+    variance: FloatArray
+    source: DriftSource
+
+
+def solve_periods(sums: PeriodSums) -> PeriodValues:
+    """Solve each period's normal equations alone; a void period gives NaN."""
+    right = np.concatenate((sums.moment, sums.ramp[:, None, :]), axis=1)
+    solved = np.asarray(np.linalg.solve(sums.gram, right.transpose(0, 2, 1)), dtype=np.float64)
+    solved = solved.transpose(0, 2, 1)
+    return PeriodValues(solved[:, :-1], solved[:, -1])
+
+
+def usable(sums: PeriodSums) -> PeriodSums:
+    """Return the periods without missing samples.
+
+    Raises
+    ------
+    DataError
+        If none is left.
+    """
+    good = np.asarray(np.isfinite(sums.moment).all(axis=(1, 2)))
+    if not good.any():
+        raise DataError(
+            f"all {sums.period_count} periods from {sums.opened_s[0]:.3f} s to "
+            f"{sums.closed_s[-1]:.3f} s have missing samples; take other channels or another window"
+        )
+    return sums[good]
+
+
+def resolve(
+    recording: Recording,
+    gate: PeriodSums,
+    *,
+    around: PeriodSums | None = None,
+    take_out_drift: bool = True,
+) -> Harmonics:
+    """Return the harmonics of one gate.
+
+    Parameters
+    ----------
+    recording
+        Where the sums come from: names and units.
+    gate
+        The m periods of the gate.
+    around
+        The steady stretch in which the gate lies. Its periods give the scatter, and to a gate of
+        one period the drift; by default the gate's own periods do.
+    take_out_drift
+        Whether a linear drift is taken out.
+
+    Raises
+    ------
+    DataError
+        If every period has missing samples.
+    """
+    opened_s, closed_s, count = gate.opened_s[0], gate.closed_s[-1], gate.period_count
+    gate = usable(gate)
+    stretch = gate if around is None else usable(around)
+    drift = _drift(gate, stretch) if take_out_drift else _no_drift(gate)
+    coefficients, ramp = _solve_gate(gate, drift.slope)
+    covariance, freedom = _scatter(stretch, drift.source is not DriftSource.NONE)
+    covariance = covariance / gate.period_count + _drift_covariance(drift, ramp)
+    return Harmonics(
+        run=recording.name,
+        channel_names=gate.channel_names,
+        units=tuple(recording.channels[recording.index(name)].unit for name in gate.channel_names),
+        opened_s=float(opened_s),
+        closed_s=float(closed_s),
+        periods=count,
+        coefficients=coefficients,
+        covariance=covariance,
+        degrees_of_freedom=freedom,
+        drift_per_s=drift.slope,
+        drift_source=drift.source,
+        interval_source=_interval_source(gate, stretch),
+    )
+
+
+def _interval_source(gate: PeriodSums, stretch: PeriodSums) -> IntervalSource:
+    if stretch.period_count < 2:
+        return IntervalSource.NONE
+    own = stretch.period_count == gate.period_count
+    return IntervalSource.PERIODS if own else IntervalSource.NEIGHBOURS
+
+
+def _solve_gate(gate: PeriodSums, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Solve all periods together; return coefficients and those of the time from mid-gate."""
+    gram, ramp = gate.gram.sum(axis=0), gate.ramp.sum(axis=0)
+    time = np.linalg.solve(gram, ramp)
+    ramp = ramp - time[0] * gram[:, 0]
+    moment = gate.moment.sum(axis=0) - np.outer(slope, ramp)
+    time[0] = 0.0
+    return np.linalg.solve(gram, moment.T).T, time
+
+
+def _no_drift(gate: PeriodSums) -> _Drift:
+    zero = np.zeros(len(gate.channel_names))
+    return _Drift(zero, zero, DriftSource.NONE)
+
+
+def _drift(gate: PeriodSums, stretch: PeriodSums) -> _Drift:
+    """Fit a line through the means of the gate's periods; of its neighbours if it is but one."""
+    source, chosen = DriftSource.GATE, gate
+    if gate.period_count < 2:
+        reach = 1.5 * (gate.closed_s[0] - gate.opened_s[0])  # the next period, not the next but one
+        near = np.abs(stretch.opened_s - gate.opened_s[0]) < reach
+        source, chosen = DriftSource.NEIGHBOURS, stretch[near]
+    if chosen.period_count < 2:
+        return _no_drift(gate)
+    values = solve_periods(chosen)
+    slope, spread = _line(values)
+    return _Drift(slope, _mean_variance(_about_line(values, slope)) / spread, source)
+
+
+def _line(values: PeriodValues) -> tuple[FloatArray, float]:
+    """Slope of the means over time, and the sum of squares of the times."""
+    time = values.ramp[:, 0] - values.ramp[:, 0].mean()
+    spread = float(time @ time)
+    return time @ values.coefficients[:, :, 0] / spread, spread
+
+
+def _about_line(values: PeriodValues, slope: FloatArray) -> FloatArray:
+    """What is left of each period's coefficients without drift and their own mean."""
+    left = values.coefficients - slope[:, None] * values.ramp[:, None, :]
+    return np.asarray(left - left.mean(axis=0))
+
+
+def _mean_variance(left: FloatArray) -> FloatArray:
+    """Variance of one period's mean about the line, shape ``(channels,)``."""
+    if len(left) > 2:
+        return np.asarray((left[:, :, 0] ** 2).sum(axis=0) / (len(left) - 2))
+    # Two means always lie on a line; noise puts half a harmonic part's variance on a mean.
+    return np.asarray((left[:, :, 1:] ** 2).sum(axis=0).mean(axis=1) / 2.0)
+
+
+def _scatter(stretch: PeriodSums, drifting: bool) -> tuple[FloatArray, FloatArray]:
+    """Covariance of a single period's coefficients, and their degrees of freedom."""
+    values = solve_periods(stretch)
+    count, channels, size = values.coefficients.shape
+    freedom = np.full(size, max(count - 1.0, 0.0))
+    if count < 2:
+        return np.full((channels, size, size), np.nan), freedom
+    slope = _line(values)[0] if drifting else np.zeros(channels)
+    left = _about_line(values, slope)
+    if drifting:
+        freedom[0] = count - 2.0
+    scaled = left / np.sqrt(np.where(freedom > 0.0, freedom, np.nan))
+    return np.einsum("pci,pcj->cij", scaled, scaled), freedom
+
+
+def _drift_covariance(drift: _Drift, ramp: FloatArray) -> FloatArray:
+    """What the drift's own uncertainty adds, shape ``(channels, K, K)``."""
+    return np.asarray(drift.variance[:, None, None] * np.outer(ramp, ramp))

@@ -1,0 +1,106 @@
+"""The photocell's pulses as a phase reference: one a revolution, some missed, some too many."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.resolver.reference import PhaseReference, ReferenceSource
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+FloatArray = NDArray[np.float64]
+
+_NEIGHBOURS = 7  # intervals whose median is the local period
+_SHORT = 0.7  # of the local period: a pulse too many
+_LONG = 1.5  # of the local period: a pulse missed
+
+
+def from_photocell(
+    edges_s: FloatArray, *, latency_s: float = 0.0, angle_offset_rad: float = 0.0
+) -> PhaseReference:
+    """Build a reference from photocell pulses, straight within each revolution.
+
+    Parameters
+    ----------
+    edges_s
+        Times of the pulses, increasing, shape ``(pulses,)``.
+    latency_s
+        How much later than the mark's passage a pulse is stamped; taken off.
+    angle_offset_rad
+        Shaft angle at the mark.
+
+    Returns
+    -------
+    PhaseReference
+        Knots at the pulses. A missed pulse is bridged, one too many is dropped; both are
+        flagged.
+
+    Raises
+    ------
+    DataError
+        With fewer than two pulses, or times that do not increase.
+    """
+    edges = np.asarray(edges_s, dtype=np.float64) - latency_s
+    if len(edges) < 2:
+        raise DataError(f"{len(edges)} photocell pulses; a whole period needs at least two")
+    if not np.all(np.diff(edges) > 0.0):
+        at = int(np.argmax(np.diff(edges) <= 0.0))
+        raise DataError(
+            f"photocell pulse {at + 1} at {edges[at + 1]:.6f} s does not come after {at}"
+        )
+    edges, extra = _without_extra(edges)
+    turns = _turns(edges)
+    cycles = np.concatenate(([0.0], np.cumsum(turns))) + angle_offset_rad / (2.0 * np.pi)
+    flags = _pulse_flags(edges, turns, extra)
+    return PhaseReference(ReferenceSource.PHOTOCELL, edges, cycles, flags)
+
+
+def _local_period(intervals: FloatArray) -> FloatArray:
+    """Median of the intervals around each one, whole neighbourhoods even at the ends."""
+    width = min(_NEIGHBOURS, len(intervals))
+    windows = np.lib.stride_tricks.sliding_window_view(intervals, width)
+    at = np.clip(np.arange(len(intervals)) - width // 2, 0, len(windows) - 1)
+    return np.asarray(np.median(windows, axis=1)[at])
+
+
+def _without_extra(edges: FloatArray) -> tuple[FloatArray, list[float]]:
+    """Drop pulses that cut a revolution in two; the two parts together make a period."""
+    dropped: list[float] = []
+    k = 1
+    while k < len(edges) - 1:
+        intervals = np.diff(edges)
+        period = _local_period(intervals)[k - 1]
+        parts = intervals[k - 1] + intervals[k]
+        if min(intervals[k - 1], intervals[k]) < _SHORT * period and parts < _LONG * period:
+            dropped.append(float(edges[k]))
+            edges = np.delete(edges, k)
+        else:
+            k += 1
+    return edges, dropped
+
+
+def _turns(edges: FloatArray) -> FloatArray:
+    """Revolutions from each pulse to the next: more than one where pulses were missed."""
+    intervals = np.diff(edges)
+    ratio = intervals / _local_period(intervals)
+    return np.where(ratio < _LONG, 1.0, np.rint(ratio))
+
+
+def _pulse_flags(edges: FloatArray, turns: FloatArray, extra: list[float]) -> tuple[Flag, ...]:
+    flags = []
+    missed = np.flatnonzero(turns > 1.0)
+    if missed.size:
+        where = ", ".join(f"{edges[k]:.3f} s" for k in missed[:5])
+        flags.append(
+            Flag(
+                "missed_pulse",
+                Severity.WARNING,
+                f"{int((turns - 1.0).sum())} photocell pulses missed after {where}; "
+                "the phase is straight across the gap",
+            )
+        )
+    if extra:
+        where = ", ".join(f"{time:.3f} s" for time in extra[:5])
+        flags.append(
+            Flag("extra_pulse", Severity.WARNING, f"{len(extra)} pulses too many dropped: {where}")
+        )
+    return tuple(flags)

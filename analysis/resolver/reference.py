@@ -1,0 +1,133 @@
+"""Where the shaft stands at any moment, from whatever the rig has to tell it.
+
+A reference is the number of revolutions as a function of time, straight between knots. Its phase
+``theta = 2 pi cycles`` is that of the aft strut's motion ``sin(theta)``: the harmonics' in-phase
+part goes with ``sin(n theta)``, the quadrature part with ``cos(n theta)``.
+
+Use the photocell where there is one; a shaft encoder where the speed ripples within a revolution;
+a given frequency for synthetic records; and a reference signal (stroke, displacement) for
+recordings of other systems (:mod:`analysis.resolver.signal_reference`).
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+FloatArray = NDArray[np.float64]
+
+KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep
+
+
+class ReferenceSource(StrEnum):
+    """What told the phase."""
+
+    PHOTOCELL = "photocell"
+    ENCODER = "encoder"
+    FREQUENCY = "frequency"
+    SIGNAL = "signal"
+
+
+@dataclass(frozen=True)
+class PhaseReference:
+    """Revolutions over time.
+
+    Attributes
+    ----------
+    times_s, cycles
+        Knots, both increasing, shape ``(knots,)``; the phase is straight between them. Whole
+        numbers of ``cycles`` are where the reference motion passes zero upwards.
+    """
+
+    source: ReferenceSource
+    times_s: FloatArray
+    cycles: FloatArray
+    flags: tuple[Flag, ...] = ()
+
+    def cycles_at(self, times_s: FloatArray) -> FloatArray:
+        """Return the revolutions at some times; beyond the knots the end lines go on."""
+        return _interpolate(times_s, self.times_s, self.cycles)
+
+    def times_at(self, cycles: FloatArray) -> FloatArray:
+        """Return the times at which some revolutions are reached."""
+        return _interpolate(cycles, self.cycles, self.times_s)
+
+    @property
+    def frequency_hz(self) -> float:
+        """Mean frequency from the first knot to the last."""
+        return float(np.ptp(self.cycles) / np.ptp(self.times_s))
+
+
+def _interpolate(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
+    inside = np.interp(x, knots, values)
+    first = (values[1] - values[0]) / (knots[1] - knots[0])
+    last = (values[-1] - values[-2]) / (knots[-1] - knots[-2])
+    inside += np.minimum(x - knots[0], 0.0) * first
+    inside += np.maximum(x - knots[-1], 0.0) * last
+    return np.asarray(inside)
+
+
+def from_frequency(
+    frequency_hz: float, start_s: float, end_s: float, phase_rad: float = 0.0
+) -> PhaseReference:
+    """Build a reference of a known constant frequency, with ``phase_rad`` at ``start_s``.
+
+    Raises
+    ------
+    DataError
+        If the frequency is not positive or less than one period fits.
+    """
+    if not frequency_hz > 0.0:
+        raise DataError(
+            f"a frequency of {frequency_hz:g} Hz gives no reference; it must be above 0"
+        )
+    revolutions = frequency_hz * (end_s - start_s)
+    if revolutions < 1.0:
+        raise DataError(
+            f"the record of {end_s - start_s:.3g} s holds {revolutions:.2f} periods of "
+            f"{frequency_hz:g} Hz; at least one whole period is needed"
+        )
+    cycles = phase_rad / (2.0 * np.pi) + np.array([0.0, revolutions])
+    return PhaseReference(ReferenceSource.FREQUENCY, np.array([start_s, end_s]), cycles)
+
+
+def from_encoder(
+    times_s: FloatArray, angle_rad: FloatArray, angle_offset_rad: float = 0.0
+) -> PhaseReference:
+    """Build a reference from a shaft encoder.
+
+    Parameters
+    ----------
+    times_s, angle_rad
+        Shape ``(samples,)``. The angle may be wrapped at one turn and may run backwards: a shaft
+        that turns the other way is counted positive and flagged.
+    angle_offset_rad
+        Shaft angle where the encoder reads zero.
+
+    Raises
+    ------
+    DataError
+        If an angle is missing or the shaft makes less than one turn.
+    """
+    if not np.all(np.isfinite(angle_rad)):
+        raise DataError("the shaft angle has missing samples; give another reference")
+    turns = np.unwrap(angle_rad) / (2.0 * np.pi)
+    flags: tuple[Flag, ...] = ()
+    if turns[-1] < turns[0]:
+        turns = -turns
+        flags = (Flag("reverse_rotation", Severity.NOTE, "the shaft turns backwards"),)
+    turns = turns + angle_offset_rad / (2.0 * np.pi)
+    revolutions = turns[-1] - turns[0]
+    if revolutions < 1.0:
+        raise DataError(
+            f"the shaft makes {revolutions:.2f} turns; at least one whole one is needed"
+        )
+    step = max(1, int(len(turns) / revolutions / KNOTS_PER_REVOLUTION))
+    kept = np.append(np.arange(0, len(turns) - 1, step), len(turns) - 1)
+    rising = np.maximum.accumulate(turns[kept])
+    moving = np.append(True, np.diff(rising) > 0.0)
+    return PhaseReference(ReferenceSource.ENCODER, times_s[kept][moving], rising[moving], flags)

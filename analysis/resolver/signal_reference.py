@@ -1,0 +1,100 @@
+"""The phase from a measured signal: a stroke, a strut's displacement, a wave maker's position."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.estimate import solve_periods
+from analysis.resolver.reference import PhaseReference, ReferenceSource, from_frequency
+from analysis.resolver.sums import period_sums
+from hardware.description.errors import DataError
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_COARSE_SAMPLES = 1 << 20  # enough for the first look at the frequency of a record of any length
+_MOVING = 0.5  # of the usual amplitude: below it the signal is starting, stopping or at rest
+_JUMP_CYCLES = 0.1  # from one period to the next: noise, not a motion
+
+
+def from_signal(recording: Recording, name: str) -> PhaseReference:
+    """Build a reference from the fundamental of one channel.
+
+    The frequency is found in the spectrum, then the phase period by period, so that a change of
+    speed is followed; whole cycles are where the fundamental passes zero upwards. The reference
+    covers the longest stretch in which the signal moves.
+
+    Raises
+    ------
+    DataError
+        If the channel has missing samples, or no motion of steady frequency is found in it.
+    """
+    signal = recording.select([name])
+    values = signal.values(name)
+    if not np.isfinite(values).all():
+        raise DataError(
+            f"{recording.name}: channel {name!r} has missing samples and cannot be the reference"
+        )
+    frequency_hz = _coarse_frequency_hz(values, recording.sample_rate_hz)
+    if frequency_hz * (recording.end_s - recording.start_s) < 1.0:
+        raise _no_reference(recording, name, "not one whole period")
+    middle_s, cycles = _follow(signal, frequency_hz)
+    refined = _slope(middle_s, cycles) if len(cycles) > 2 else frequency_hz
+    middle_s, cycles = _follow(signal, refined)
+    if len(cycles) < 2 or np.any(np.diff(cycles) <= 0.0):
+        raise _no_reference(recording, name, f"nothing that keeps time near {frequency_hz:.3g} Hz")
+    # The phase is known at the middle of each period; knots at whole cycles make them straight.
+    followed = PhaseReference(ReferenceSource.SIGNAL, middle_s, cycles)
+    whole = np.arange(np.ceil(cycles[0] - 0.5), np.floor(cycles[-1] + 0.5) + 1.0)
+    return PhaseReference(ReferenceSource.SIGNAL, followed.times_at(whole), whole)
+
+
+def _no_reference(recording: Recording, name: str, found: str) -> DataError:
+    return DataError(
+        f"{recording.name}: no reference found in channel {name!r}: {found}; name another channel, "
+        "or give the frequency"
+    )
+
+
+def _coarse_frequency_hz(values: FloatArray, sample_rate_hz: float) -> float:
+    """Strongest line of the spectrum, between bins by a parabola."""
+    step = -(-len(values) // _COARSE_SAMPLES)
+    kept = len(values) // step * step
+    coarse = values[:kept].reshape(-1, step).mean(axis=1)
+    power = np.abs(np.fft.rfft((coarse - coarse.mean()) * np.hanning(len(coarse))))
+    power[:2] = 0.0  # offset and drift
+    peak = int(np.argmax(power))
+    if power[peak] == 0.0 or peak + 1 >= len(power):
+        return 0.0
+    left, top, right = np.log(np.maximum(power[peak - 1 : peak + 2], 1e-300))
+    between = 0.5 * (left - right) / (left - 2.0 * top + right)
+    return float((peak + np.clip(between, -0.5, 0.5)) * sample_rate_hz / step / len(coarse))
+
+
+def _follow(signal: Recording, frequency_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Times and cycles at mid-period over the longest stretch in which the signal moves."""
+    samples = signal.sample_rate_hz / frequency_hz
+    harmonics = max(1, min(3, int((samples - 1.0) // 2)))
+    steady = from_frequency(frequency_hz, signal.start_s, signal.end_s)
+    sums = period_sums(signal, steady, harmonics)
+    coefficients = solve_periods(sums).coefficients[:, 0]
+    phasor = coefficients[:, 1] + 1j * coefficients[:, 2]
+    longest = _longest_motion(phasor)
+    middle_s = (sums.opened_s + sums.closed_s)[longest] / 2.0
+    turned = np.unwrap(np.angle(phasor[longest])) / (2.0 * np.pi)
+    return middle_s, steady.cycles_at(middle_s) + turned
+
+
+def _longest_motion(phasor: ComplexArray) -> slice:
+    """The longest run of periods that move and keep time with each other."""
+    amplitude = np.abs(phasor)
+    moving = amplitude > _MOVING * np.quantile(amplitude, 0.9)
+    turn = np.angle(phasor[1:] * phasor[:-1].conj()) / (2.0 * np.pi)
+    joined = moving[1:] & moving[:-1] & (np.abs(turn) < _JUMP_CYCLES)
+    breaks = np.flatnonzero(np.concatenate(([True], ~joined, [True])))
+    longest = int(np.argmax(np.diff(breaks)))
+    return slice(int(breaks[longest]), int(breaks[longest + 1]))
+
+
+def _slope(times_s: FloatArray, cycles: FloatArray) -> float:
+    return float(np.polyfit(times_s - times_s.mean(), cycles, 1)[0])

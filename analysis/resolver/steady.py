@@ -1,0 +1,125 @@
+"""Where a run is steady: the longest stretch of periods whose first harmonics stay put."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.resolver.estimate import PeriodValues
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_PRESENT = 0.2  # of the usual amplitude: below it nothing moves yet, or no longer
+_NOISE = 4.0  # standard deviations of a period's own noise that are no change
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Periods ``start`` to ``stop`` (exclusive), and how far the worst channel strays in it.
+
+    ``spread`` is the largest distance of a period's first harmonic from the stretch's mean,
+    relative to the channel's usual amplitude; ``channel`` is the row of the channel that strays so.
+    """
+
+    start: int
+    stop: int
+    spread: float
+    channel: int
+
+    @property
+    def period_count(self) -> int:
+        """Number of periods."""
+        return self.stop - self.start
+
+
+def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
+    """Find the longest stretch in which every channel's first harmonic keeps within a tolerance.
+
+    Parameters
+    ----------
+    tolerance
+        Largest distance, relative to the channel's usual amplitude, by which in-phase and
+        quadrature may stray to either side. Where a channel's own noise is larger, four standard
+        deviations of it are allowed, so that a channel of mere noise does not stand in the way.
+
+    Returns
+    -------
+    Stretch
+        May be as short as one period; it is for the caller to say how many are enough.
+    """
+    phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
+    size = np.array([_usual(column) for column in np.abs(phasors).T])
+    noise = np.array([_noise(column) for column in phasors.T])
+    allowed = np.maximum(tolerance * size, _NOISE * noise)
+    # A channel of noise alone says nothing about where the motion is.
+    telling = size > 2.0 * _NOISE * noise
+    present = (np.abs(phasors) > _PRESENT * size) | ~telling
+    usable = np.asarray(np.isfinite(phasors).all(axis=1) & present.all(axis=1))
+    parts = np.concatenate((phasors.real, phasors.imag), axis=1)
+    start, stop = _longest_within(parts, 2.0 * np.tile(allowed, 2), usable)
+    return _describe(phasors, start, stop, size)
+
+
+def _usual(amplitude: FloatArray) -> float:
+    finite = amplitude[np.isfinite(amplitude)]
+    return float(np.quantile(finite, 0.9)) if finite.size else 0.0
+
+
+def _noise(phasor: ComplexArray) -> float:
+    """Standard deviation of one part between periods, blind to slow change and outliers."""
+    second = np.diff(phasor[np.isfinite(phasor)], n=2)
+    if second.size < 3:
+        return 0.0
+    parts = np.concatenate((second.real, second.imag))
+    return float(1.4826 * np.median(np.abs(parts)) / np.sqrt(6.0))
+
+
+def _longest_within(
+    parts: FloatArray, allowed: FloatArray, usable: NDArray[np.bool_]
+) -> tuple[int, int]:
+    """Longest run of usable rows in which no column's range exceeds what is allowed."""
+    highs: list[deque[int]] = [deque() for _ in allowed]
+    lows: list[deque[int]] = [deque() for _ in allowed]
+    best, start = (0, 1), 0
+    for row in range(len(parts)):
+        if not usable[row]:
+            start = row + 1
+            continue
+        for column, limit in enumerate(allowed):
+            _keep(highs[column], parts[:, column], row, 1.0)
+            _keep(lows[column], parts[:, column], row, -1.0)
+            start = _first_within(highs[column], lows[column], parts[:, column], start, limit)
+        if row + 1 - start > best[1] - best[0]:
+            best = (start, row + 1)
+    return best
+
+
+def _keep(extremes: deque[int], column: FloatArray, row: int, sign: float) -> None:
+    """Add a row to the candidates for the largest (or, with sign -1, the smallest) value."""
+    while extremes and sign * column[extremes[-1]] <= sign * column[row]:
+        extremes.pop()
+    extremes.append(row)
+
+
+def _first_within(
+    highs: deque[int], lows: deque[int], column: FloatArray, start: int, limit: float
+) -> int:
+    """Earliest start from which the range up to the newest row is within the limit."""
+    while True:
+        while highs[0] < start:
+            highs.popleft()
+        while lows[0] < start:
+            lows.popleft()
+        if column[highs[0]] - column[lows[0]] <= limit:
+            return start
+        start = min(highs[0], lows[0]) + 1
+
+
+def _describe(phasors: ComplexArray, start: int, stop: int, size: FloatArray) -> Stretch:
+    inside = phasors[start:stop]
+    away = np.abs(inside - inside.mean(axis=0)).max(axis=0) / np.maximum(size, 1e-300)
+    away = np.where(np.isfinite(away), away, np.inf)
+    channel = int(np.argmax(away))
+    return Stretch(start, stop, float(away[channel]), channel)
