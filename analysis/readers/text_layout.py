@@ -134,9 +134,9 @@ def _header_cells(line: str, separator: str) -> list[str]:
 
 
 def _is_units(cells: list[str], names: list[str]) -> bool:
-    given = [cell for cell in cells if cell]
-    words = [cell for cell in given if not cell.replace("-", "1").isdigit()]
-    return len(cells) == len(names) and bool(words) and all(map(is_unit, given))
+    """Tell a line of units: as many cells as names, no number among them, a known unit."""
+    numbers = [cell for cell in cells if cell[-1:].isdigit()]
+    return len(cells) == len(names) and not numbers and any(map(is_unit, cells))
 
 
 def _is_data(layout: FoundLayout, cells: list[str]) -> bool:

@@ -139,7 +139,7 @@ def _check_even(time_s: FloatArray, steps: FloatArray, deviation: FloatArray, wh
 def _deviation_flags(deviation: FloatArray, rate_hz: float) -> tuple[Flag, ...]:
     worst = float(deviation.max())
     if worst <= SILENT_DEVIATION:
-        return ()
+        return _single_precision_flag(rate_hz)
     rounded = worst <= NOTED_DEVIATION
     return (
         Flag(
@@ -150,6 +150,19 @@ def _deviation_flags(deviation: FloatArray, rate_hz: float) -> tuple[Flag, ...]:
             "to them, which is used instead",
         ),
     )
+
+
+def _single_precision_flag(rate_hz: float) -> tuple[Flag, ...]:
+    """Say where an even rate is a round one but for single precision (0.0050000002 s stamps)."""
+    round_hz = float(f"{rate_hz:.6g}")
+    off = abs(rate_hz / round_hz - 1.0)
+    if not 1e-11 < off <= np.finfo(np.float32).eps:
+        return ()
+    message = (
+        f"time stamps are even at {rate_hz:.10g} Hz, which is {round_hz:g} Hz but for {off:.1g} of "
+        "it: rounding to single precision, it seems; they are used as they are"
+    )
+    return (Flag("time_single_precision", Severity.NOTE, message),)
 
 
 def _gap_flag(time_s: FloatArray, places: NDArray[np.int64], rate_hz: float, where: str) -> Flag:
