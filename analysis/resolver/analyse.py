@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from analysis.recording import Recording
 from analysis.resolver.checks import gate_flags
 from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
+from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import PhaseReference, from_encoder, from_frequency
@@ -62,6 +63,8 @@ class Settings:
         Number of periods from ``opens_s`` on; all that follow if ``None``.
     steady_tolerance
         See :func:`analysis.resolver.steady.find_steady`.
+    hann
+        Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
     """
 
     channels: tuple[str, ...] = ()
@@ -71,6 +74,7 @@ class Settings:
     periods: int | None = None
     steady_tolerance: float = 0.05
     take_out_drift: bool = True
+    hann: bool = False
 
 
 @dataclass(frozen=True)
@@ -172,7 +176,7 @@ def analyse(
             f"{steady.period_count} ({steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s)"
         )
     gates = [steady[k : k + size] for k in range(0, steady.period_count - size + 1, size)]
-    readings = tuple(_reading(chosen, gate, steady, settings) for gate in gates)
+    readings = tuple(_reading(chosen, reference, gate, steady, settings) for gate in gates)
     return Analysis(
         chosen,
         reference,
@@ -234,8 +238,19 @@ def _stretch(
 
 
 def _reading(
-    recording: Recording, gate: PeriodSums, steady: PeriodSums, settings: Settings
+    recording: Recording,
+    reference: PhaseReference,
+    gate: PeriodSums,
+    steady: PeriodSums,
+    settings: Settings,
 ) -> Harmonics:
-    around = steady if steady.period_count > gate.period_count else None
-    result = resolve(recording, gate, around=around, take_out_drift=settings.take_out_drift)
+    drifting = settings.take_out_drift
+    if settings.hann:
+        edges = np.append(gate.opened_cycle, gate.opened_cycle[-1] + 1.0)
+        result = resolve_hann(
+            recording, reference, edges, settings.harmonics, take_out_drift=drifting
+        )
+    else:
+        around = steady if steady.period_count > gate.period_count else None
+        result = resolve(recording, gate, around=around, take_out_drift=drifting)
     return replace(result, flags=gate_flags(gate, result))

@@ -40,8 +40,8 @@ class PeriodValues:
 
 
 @dataclass(frozen=True)
-class _Drift:
-    """Slope of each channel and its variance, shapes ``(channels,)``."""
+class Drift:
+    """Slope of each channel per second and its variance, shapes ``(channels,)``."""
 
     slope: FloatArray
     variance: FloatArray
@@ -102,7 +102,7 @@ def resolve(
     opened_s, closed_s, count = gate.opened_s[0], gate.closed_s[-1], gate.period_count
     gate = usable(gate)
     stretch = gate if around is None else usable(around)
-    drift = _drift(gate, stretch) if take_out_drift else _no_drift(gate)
+    drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
     coefficients, ramp = _solve_gate(gate, drift.slope)
     covariance, freedom = _scatter(stretch, drift.source is not DriftSource.NONE)
     covariance = covariance / gate.period_count + _drift_covariance(drift, ramp)
@@ -139,23 +139,30 @@ def _solve_gate(gate: PeriodSums, slope: FloatArray) -> tuple[FloatArray, FloatA
     return np.linalg.solve(gram, moment.T).T, time
 
 
-def _no_drift(gate: PeriodSums) -> _Drift:
+def no_drift(gate: PeriodSums) -> Drift:
+    """A drift that is not taken out."""
     zero = np.zeros(len(gate.channel_names))
-    return _Drift(zero, zero, DriftSource.NONE)
+    return Drift(zero, zero, DriftSource.NONE)
 
 
-def _drift(gate: PeriodSums, stretch: PeriodSums) -> _Drift:
-    """Fit a line through the means of the gate's periods; of its neighbours if it is but one."""
+def fit_drift(gate: PeriodSums, stretch: PeriodSums) -> Drift:
+    """Fit a line through the means of the gate's periods; of its neighbours if it is but one.
+
+    Parameters
+    ----------
+    stretch
+        The periods around the gate, the gate's own among them.
+    """
     source, chosen = DriftSource.GATE, gate
     if gate.period_count < 2:
         reach = 1.5 * (gate.closed_s[0] - gate.opened_s[0])  # the next period, not the next but one
         near = np.abs(stretch.opened_s - gate.opened_s[0]) < reach
         source, chosen = DriftSource.NEIGHBOURS, stretch[near]
     if chosen.period_count < 2:
-        return _no_drift(gate)
+        return no_drift(gate)
     values = solve_periods(chosen)
     slope, spread = _line(values)
-    return _Drift(slope, _mean_variance(_about_line(values, slope)) / spread, source)
+    return Drift(slope, _mean_variance(_about_line(values, slope)) / spread, source)
 
 
 def _line(values: PeriodValues) -> tuple[FloatArray, float]:
@@ -194,6 +201,6 @@ def _scatter(stretch: PeriodSums, drifting: bool) -> tuple[FloatArray, FloatArra
     return np.einsum("pci,pcj->cij", scaled, scaled), freedom
 
 
-def _drift_covariance(drift: _Drift, ramp: FloatArray) -> FloatArray:
+def _drift_covariance(drift: Drift, ramp: FloatArray) -> FloatArray:
     """What the drift's own uncertainty adds, shape ``(channels, K, K)``."""
     return np.asarray(drift.variance[:, None, None] * np.outer(ramp, ramp))

@@ -1,0 +1,111 @@
+"""Harmonics of a long gate under a Hann taper, for records with interference between harmonics.
+
+A plain gate lets interference at x times the fundamental through as ``1 / (m |x - n|)``; a Hann
+taper over its m periods as the inverse cube, for 1.5 times the variance in white noise. The
+uncertainty comes from the lines beside each harmonic, two and more bins away, where the taper lets
+nothing of the harmonics through: noise of any colour that is level across them is seen as it is.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.estimate import fit_drift, no_drift
+from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.resolver.reference import PhaseReference
+from analysis.resolver.sums import period_sums
+from hardware.description.errors import DataError
+
+FloatArray = NDArray[np.float64]
+
+MIN_PERIODS = 5
+_FARTHEST_BIN = 8
+
+
+def resolve_hann(
+    recording: Recording,
+    reference: PhaseReference,
+    edges_cycles: FloatArray,
+    harmonics: int,
+    *,
+    take_out_drift: bool = True,
+) -> Harmonics:
+    """Return the harmonics of the gate between the first edge and the last, under a Hann taper.
+
+    Raises
+    ------
+    DataError
+        With fewer than five periods, or with missing samples in the gate.
+    """
+    periods = len(edges_cycles) - 1
+    if periods < MIN_PERIODS:
+        raise DataError(
+            f"{recording.name}: a Hann taper needs {MIN_PERIODS} periods or more, not {periods}"
+        )
+    own = np.arange(1.0, harmonics + 1.0)
+    bins = noise_bins(periods)
+    beside = (own[:, None] + bins / periods).reshape(-1)
+    low = bins[bins > 0] / periods
+    orders = np.concatenate((own, beside, low))
+
+    def taper(numbers: FloatArray) -> FloatArray:
+        times = recording.start_s + numbers / recording.sample_rate_hz
+        turned = (reference.cycles_at(times) - edges_cycles[0]) / periods
+        return np.asarray(1.0 - np.cos(2.0 * np.pi * turned))
+
+    plain = period_sums(recording, reference, harmonics, edges_cycles=edges_cycles)
+    sums = period_sums(recording, reference, orders, edges_cycles=edges_cycles, taper=taper)
+    moment, gram, ramp = (part.sum(axis=0) for part in (sums.moment, sums.gram, sums.ramp))
+    if not np.isfinite(moment).all():
+        raise DataError(f"{recording.name}: the gate has missing samples; a taper needs them all")
+    drift = fit_drift(plain, plain) if take_out_drift else no_drift(plain)
+    middle = ramp[0] / gram[0, 0]
+    moment = moment - np.outer(drift.slope, ramp - middle * gram[:, 0])
+    size = 2 * harmonics + 1
+    coefficients = np.linalg.solve(gram[:size, :size], moment[:, :size].T).T
+    left = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
+    covariance, freedom = _from_bins(left[:, size:], harmonics, len(bins), len(low))
+    return Harmonics(
+        run=recording.name,
+        channel_names=recording.channel_names,
+        units=tuple(channel.unit for channel in recording.channels),
+        opened_s=float(plain.opened_s[0]),
+        closed_s=float(plain.closed_s[-1]),
+        periods=periods,
+        coefficients=coefficients,
+        covariance=covariance,
+        degrees_of_freedom=freedom,
+        drift_per_s=drift.slope,
+        drift_source=drift.source,
+        interval_source=IntervalSource.BINS,
+        estimator="Hann taper",
+    )
+
+
+def noise_bins(periods: int) -> FloatArray:
+    """Bins, counted from a harmonic, whose lines measure the noise beside it.
+
+    Every other one, for neighbours under a Hann taper are correlated (2/3; next but one 1/6), and
+    no farther than half-way to the next harmonic.
+    """
+    reach = min(periods // 2, _FARTHEST_BIN)
+    positive = np.arange(2.0, reach + 1.0, 2.0)
+    return np.concatenate((-positive[::-1], positive))
+
+
+def _from_bins(
+    lines: FloatArray, harmonics: int, bins: int, low: int
+) -> tuple[FloatArray, FloatArray]:
+    """Covariance and degrees of freedom from the sine and cosine parts of the noise lines."""
+    power = (lines**2).reshape(len(lines), -1, 2).mean(axis=2)
+    beside = power[:, : harmonics * bins].reshape(len(lines), harmonics, bins).mean(axis=2)
+    variance = np.empty((len(lines), 2 * harmonics + 1))
+    # A mean takes half the variance of a sine or cosine part.
+    variance[:, 0] = power[:, harmonics * bins :].mean(axis=1) / 2.0
+    variance[:, 1::2] = variance[:, 2::2] = beside
+    freedom = np.full(2 * harmonics + 1, 2.0 * bins)
+    freedom[0] = 2.0 * low
+    covariance = np.zeros((*variance.shape, variance.shape[1]))
+    diagonal = np.arange(variance.shape[1])
+    covariance[:, diagonal, diagonal] = variance
+    return covariance, freedom

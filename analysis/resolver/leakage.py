@@ -1,0 +1,74 @@
+"""What an estimator lets through of a vibration that is no harmonic."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.harmonics import Harmonics
+from hardware.description.channels import Channel
+
+FloatArray = NDArray[np.float64]
+
+_AT_ONCE = 16  # frequencies tried together
+
+
+def boxcar_leakage(orders: FloatArray, periods: int, harmonics: int) -> FloatArray:
+    """Worst leakage of a plain gate, in closed form: shape ``(orders, harmonics)``.
+
+    ``|sinc(m (x - n))| + |sinc(m (x + n))|`` per unit of interference at x times the fundamental,
+    for densely sampled signals; zero where ``x m`` is whole and x is not n.
+    """
+    n = np.arange(1, harmonics + 1)
+    x = np.asarray(orders)[:, None]
+    return np.asarray(np.abs(np.sinc(periods * (x - n))) + np.abs(np.sinc(periods * (x + n))))
+
+
+def measured_leakage(
+    recording: Recording,
+    estimator: Callable[[Recording], Harmonics],
+    frequencies_hz: FloatArray,
+) -> FloatArray:
+    """Worst leakage of an estimator as it is, by feeding it the interference.
+
+    Parameters
+    ----------
+    recording
+        Gives length and sampling; its samples are not used.
+    estimator
+        Resolves any recording of that length in the gate in question.
+    frequencies_hz
+        Of the interference, shape ``(frequencies,)``.
+
+    Returns
+    -------
+    numpy.ndarray
+        Amplitude that appears in each harmonic per unit of interference at its worst phase, shape
+        ``(frequencies, harmonics)``.
+    """
+    parts = [
+        _respond(recording, estimator, frequencies_hz[k : k + _AT_ONCE])
+        for k in range(0, len(frequencies_hz), _AT_ONCE)
+    ]
+    return np.concatenate(parts)
+
+
+def _respond(
+    recording: Recording, estimator: Callable[[Recording], Harmonics], frequencies_hz: FloatArray
+) -> FloatArray:
+    phase = 2.0 * np.pi * np.outer(frequencies_hz, recording.time_s())
+    values = np.concatenate((np.sin(phase), np.cos(phase)))
+    channels = tuple(Channel(f"interference_{k}") for k in range(len(values)))
+    probe = Recording("interference", channels, values, recording.sample_rate_hz, recording.start_s)
+    result = estimator(probe)
+    # Rows: in phase and quadrature; columns: a sine's and a cosine's.
+    count = len(frequencies_hz)
+    response = np.stack(
+        (
+            np.stack((result.in_phase[:count], result.in_phase[count:]), axis=-1),
+            np.stack((result.quadrature[:count], result.quadrature[count:]), axis=-1),
+        ),
+        axis=-2,
+    )
+    return np.asarray(np.linalg.svd(response, compute_uv=False)[..., 0])
