@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from analysis.readers.columns import (
@@ -25,7 +26,8 @@ def read_column_map(path: Path) -> ColumnMap:
         raise ConfigurationError(f"{path}: no such column map") from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
-    return parse_column_map(table, path.name)
+    # Messages name the whole path; provenance keeps the name, which means the same elsewhere.
+    return replace(parse_column_map(table, str(path)), origin=path.name)
 
 
 def parse_column_map(table: Mapping[str, object], origin: str) -> ColumnMap:

@@ -74,7 +74,8 @@ def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
         if found:
             numbers = " or ".join(header.generic for header in found)
             raise DataError(f"{where}: {len(found)} columns are {selector!r}; ask for {numbers}")
-    texts = [header.text or header.generic for header in headers]
-    near = get_close_matches(selector, texts, n=3, cutoff=0.4)
-    hint = f"; did you mean {', '.join(map(repr, near))}?" if near else ""
-    raise DataError(f"{where}: no column {selector!r}{hint} (columns: {', '.join(texts)})")
+    texts = {header.name: header.text or header.generic for header in headers}
+    near = [texts[name] for name in get_close_matches(wanted.name, texts, n=3, cutoff=0.5)]
+    hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
+    known = ", ".join(texts.values())
+    raise DataError(f"{where}: no column {selector!r}{hint} (columns: {known})")

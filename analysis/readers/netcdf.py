@@ -25,7 +25,7 @@ from hardware.description.errors import DataError
 # Half a megabyte of one channel: small beside any memory, large beside a disk's seek.
 CHUNK_SAMPLES = 65536
 # Samples that are copied or checked at a time.
-BLOCK_SAMPLES = 8 * CHUNK_SAMPLES
+BLOCK_SAMPLES = 2 * CHUNK_SAMPLES
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def read_netcdf(path: Path) -> Recording:
     import h5netcdf
 
     where = str(path)
-    with _reading(path), h5netcdf.File(path, "r") as file:
+    with _reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
         variables = dict(file.variables)
         dimensions = {name: tuple(variable.dimensions) for name, variable in variables.items()}
         names = channel_names(dimensions, where)

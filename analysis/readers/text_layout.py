@@ -14,6 +14,7 @@ from hardware.description.units import is_unit
 MISSING = ("", "NaN", "nan", "NAN", "-nan", "NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 _SAMPLE_LINES = 20
+_LARGEST_PREAMBLE = 1000
 _SEPARATORS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
 
 
@@ -77,7 +78,7 @@ def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
     DataError
         If there is no data at all, or none after ``skip_rows``.
     """
-    numbered = list(islice(enumerate(io.StringIO(text), 1), layout.skip_rows + 3 * _SAMPLE_LINES))
+    numbered = list(islice(enumerate(io.StringIO(text), 1), layout.skip_rows + _LARGEST_PREAMBLE))
     lines = [(n, line.strip("\n")) for n, line in numbered[layout.skip_rows :] if line.strip()]
     comments = [(n, line.lstrip()[1:]) for n, line in lines if line.lstrip()[0] in "#%"]
     body = [(n, line) for n, line in lines if line.lstrip()[0] not in "#%"]
@@ -90,7 +91,15 @@ def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
     first = bare.cells(body[0][1])
     if _is_data(bare, first):
         return _headless(bare, first, comments, body[0][0] - 1)
-    return _with_header(bare, body)
+    return _with_header(bare, body, where)
+
+
+def too_many_cells(where: str, line: int, cells: int, columns: int) -> DataError:
+    """Return the error of a line that has more cells than the header."""
+    return DataError(
+        f"{where}: line {line} has {cells} cells, the header has {columns}; correct the line, or "
+        "say separator, decimal or skip_rows (lines before the header) in the column map"
+    )
 
 
 def _headless(
@@ -102,17 +111,21 @@ def _headless(
     return _headed(bare, names, first_line)
 
 
-def _with_header(bare: FoundLayout, body: list[tuple[int, str]]) -> FoundLayout:
-    names = _header_cells(body[0][1], bare.separator)
-    following = [bare.cells(line) for _, line in body[1:3]]
-    if following and _is_units(following[0], names):
-        names = [f"{name} [{unit}]" for name, unit in zip(names, following[0], strict=True)]
-        following, line_number = following[1:], body[1][0]
-    else:
-        line_number = body[0][0]
-    if following and len(following[0]) == len(names) + 1 and not following[0][-1]:
+def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
+    (last_line, header), *rows = body
+    names = _header_cells(header, bare.separator)
+    if rows and _is_units(bare.cells(rows[0][1]), names):
+        (last_line, units), *rows = rows
+        names = [f"{a} [{b}]" for a, b in zip(names, bare.cells(units), strict=True)]
+    if not rows:
+        raise DataError(f"{where}: there are no rows of data under the header")
+    first_number, first = rows[0]
+    cells = bare.cells(first)
+    if len(cells) == len(names) + 1 and not cells[-1]:
         names.append("")  # every row ends with a separator
-    return _headed(bare, names, line_number)
+    if len(cells) > len(names):
+        raise too_many_cells(where, first_number, len(cells), len(names))
+    return _headed(bare, names, last_line)
 
 
 def _headed(bare: FoundLayout, names: Sequence[str], first_line: int) -> FoundLayout:

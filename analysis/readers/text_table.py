@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.headers import Header
-from analysis.readers.text_layout import FoundLayout
+from analysis.readers.text_layout import FoundLayout, too_many_cells
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -138,11 +138,7 @@ def _read_carefully(
             continue
         cells = layout.cells(line)
         if len(cells) > len(layout.headers):
-            raise DataError(
-                f"{where}: line {number} has {len(cells)} cells, the header has "
-                f"{len(layout.headers)}; correct the line, or say separator, decimal or "
-                "skip_rows in the column map"
-            )
+            raise too_many_cells(where, number, len(cells), len(layout.headers))
         cells += [""] * (len(layout.headers) - len(cells))
         rows.append(
             [_number(cells, header, layout, f"{where}: line {number}") for header in wanted]

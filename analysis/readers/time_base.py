@@ -100,7 +100,8 @@ def _places(steps: FloatArray) -> tuple[NDArray[np.int64], float]:
 
     The median step may be rounded (1 ms stamps of 300 Hz); the mean of the single steps is not.
     """
-    single = steps[steps < 1.5 * np.median(steps)]
+    usual = np.quantile(steps, 0.5, method="lower")
+    single = steps[steps < 1.5 * usual]
     interval = float(single.mean())
     # Steps up to 1.5 intervals count as one, so that jitter does not open gaps.
     whole = np.maximum(np.rint(steps / interval), 1.0)
