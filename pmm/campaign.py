@@ -1,0 +1,151 @@
+"""A campaign: the rig, what the simulation believes of it, and the runs with their set-points.
+
+``docs/campaigns.md`` describes the file for people; :func:`pmm.campaign_file.read_campaign` reads it.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from analysis.readers import ColumnMap
+from analysis.resolver.analyse import ReferenceChoice, Settings
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import Medium, SetPoint
+from sim.acquisition import Acquisition
+from sim.drive import DriveSettings
+from sim.dynamometer import Dynamometers
+from sim.hull import HullCoefficients
+from sim.photocell import Photocell
+from sim.rig import SimulatedRig
+
+CAMPAIGN_FILE = "campaign.toml"
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: its set-point, how long it is, and where its recording lies.
+
+    Attributes
+    ----------
+    name
+        Unique within the campaign; its recording is called so.
+    frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium
+        As in :class:`hardware.description.setpoint.SetPoint`.
+    periods
+        Whole periods wanted.
+    file
+        Recording of another system, beside the campaign file; ``None`` for ``<name>.nc``.
+    """
+
+    name: str
+    frequency_hz: float
+    eccentricity_m: float
+    strut_phase_rad: float = 0.0
+    carriage_speed_m_s: float = 0.0
+    medium: Medium = Medium.WATER
+    periods: int = 10
+    file: str | None = None
+
+    @property
+    def set_point(self) -> SetPoint:
+        """What the run was told to do."""
+        return SetPoint(
+            self.frequency_hz,
+            self.eccentricity_m,
+            self.strut_phase_rad,
+            self.carriage_speed_m_s,
+            self.medium,
+        )
+
+    def recording_path(self, folder: Path) -> Path:
+        """Return where the run's recording lies: ``<name>.nc`` if it is there, else ``file``."""
+        own = folder / f"{self.name}.nc"
+        return own if self.file is None or own.exists() else folder / self.file
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """How the runs are simulated; see :func:`sim.run.simulate`."""
+
+    sample_rate_hz: float = 200.0
+    settling_periods: int = 3
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign file, read and checked.
+
+    Attributes
+    ----------
+    name
+        What the campaign is called.
+    oscillator, model
+        ``None`` where the file does not say; a simulation needs them, an analysis does not.
+    hull, drive, dynamometers, acquisition, photocell, simulation
+        What the simulation believes.
+    reference, analysis
+        How the recordings are analysed, unless the command line says otherwise.
+    columns
+        Which column of the text recordings is what.
+    """
+
+    name: str = "campaign"
+    oscillator: Oscillator | None = None
+    model: Body | None = None
+    hull: HullCoefficients = HullCoefficients()
+    drive: DriveSettings = DriveSettings()
+    dynamometers: Dynamometers = Dynamometers()
+    acquisition: Acquisition = Acquisition()
+    photocell: Photocell | None = Photocell()
+    simulation: Simulation = Simulation()
+    reference: ReferenceChoice = ReferenceChoice()
+    analysis: Settings = Settings()
+    columns: ColumnMap | None = None
+    runs: tuple[Run, ...] = ()
+
+    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+    def rig(self) -> SimulatedRig:
+        """Return the rig as the simulation believes it to be.
+
+        Raises
+        ------
+        ConfigurationError
+            If the oscillator or the model is not described.
+        """
+        if self.oscillator is None or self.model is None:
+            missing = [key for key in ("oscillator", "model") if getattr(self, key) is None]
+            tables = " and ".join(f"[{key}]" for key in missing)
+            raise ConfigurationError(
+                f"campaign {self.name!r}: no table {tables}; the simulation needs it"
+            )
+        return SimulatedRig(
+            oscillator=self.oscillator,
+            body=self.model,
+            water=self.hull,
+            drive=self.drive,
+            dynamometers=self.dynamometers,
+            acquisition=self.acquisition,
+            photocell=self.photocell,
+        )
+
+    def run(self, name: str) -> Run:
+        """Return the run of that name.
+
+        Raises
+        ------
+        ConfigurationError
+            If there is none; the message names the nearest.
+        """
+        from difflib import get_close_matches
+
+        names = [run.name for run in self.runs]
+        if name in names:
+            return self.runs[names.index(name)]
+        near = get_close_matches(name, names, n=1, cutoff=0.4)
+        hint = f"did you mean {near[0]!r}?" if near else f"runs: {', '.join(names)}"
+        raise ConfigurationError(f"campaign {self.name!r}: no run {name!r}; {hint}")

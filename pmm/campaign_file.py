@@ -1,0 +1,125 @@
+"""Reading ``campaign.toml``: presets, units for people, and every error of the file at once."""
+
+import math
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from analysis.readers import ColumnMap
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
+from hardware.description.setpoint import check_within
+from pmm.campaign import Campaign
+from pmm.configuration import Fault, limit_faults, read_toml, refuse, validate
+
+PRESETS = {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
+
+# Key for people -> key in SI, and the factor between.
+_UNITS = {
+    "eccentricity_mm": ("eccentricity_m", 1e-3),
+    "strut_phase_deg": ("strut_phase_rad", math.pi / 180.0),
+}
+_EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS)}
+# Tables and keys for which ``false`` says that the rig has no such thing.
+_MAY_BE_FALSE = ("photocell", "acquisition")
+
+
+def read_campaign(path: str | Path) -> Campaign:
+    """Read a campaign file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, or for unknown keys (with a suggestion), wrong types, values
+        beyond their limits or those of the oscillator, and runs of the same name: all errors of
+        the file in one message, each with its path in the file.
+    """
+    path = Path(path)
+    original = read_toml(path)
+    table, faults = deepcopy(original), list(limit_faults(original))
+    columns = _take_columns(table, path, faults)
+    _expand_preset(table, faults)
+    _expand_units(table, faults)
+    _none_for_false(table)
+    campaign = validate(Campaign, table, faults, _EXTRA_KEYS)
+    if campaign is not None:
+        faults += _run_faults(campaign)
+    refuse(path, faults, original)
+    assert campaign is not None  # noqa: S101 - what is not valid has been refused
+    name = campaign.name if "name" in original else path.resolve().parent.name
+    return replace(campaign, name=name, columns=columns)
+
+
+def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> ColumnMap | None:
+    columns = table.pop("columns", None)
+    if columns is None:
+        return None
+    if not isinstance(columns, dict):
+        faults.append(Fault(("columns",), "should be a table"))
+        return None
+    try:
+        return ColumnMap.from_table(columns, f"{path.name} [columns]")
+    except ConfigurationError as error:
+        faults.append(Fault((), str(error)))
+        return None
+
+
+def _expand_preset(table: dict[str, Any], faults: list[Fault]) -> None:
+    """Fill in the oscillator that a preset stands for; the keys beside it win."""
+    oscillator = table.get("oscillator")
+    if not isinstance(oscillator, dict) or "preset" not in oscillator:
+        return
+    preset = oscillator.pop("preset")
+    if preset not in PRESETS:
+        names = " or ".join(PRESETS)
+        faults.append(Fault(("oscillator", "preset"), f"= {preset!r} should be {names}"))
+        preset = next(iter(PRESETS))
+    table["oscillator"] = asdict(PRESETS[preset]) | oscillator
+
+
+def _expand_units(table: dict[str, Any], faults: list[Fault]) -> None:
+    """Turn millimetres and degrees of the runs into metres and radians."""
+    runs = table.get("runs")
+    for number, run in enumerate(runs if isinstance(runs, list) else []):
+        if not isinstance(run, dict):
+            continue
+        for key in [key for key in _UNITS if key in run]:
+            value, (si_key, factor) = run.pop(key), _UNITS[key]
+            place = ("runs", number, key)
+            if si_key in run:
+                faults.append(Fault(place, f"and {si_key} are both given; one is enough"))
+            elif isinstance(value, bool) or not isinstance(value, int | float):
+                faults.append(Fault(place, f"= {value!r} should be a number"))
+                run[si_key] = 0.0  # so that it is not reported as missing too
+            else:
+                run[si_key] = value * factor
+
+
+def _none_for_false(table: dict[str, Any]) -> None:
+    for key in _MAY_BE_FALSE:
+        value = table.get(key)
+        if value is False:
+            table[key] = None
+        elif isinstance(value, dict):
+            table[key] = {part: None if one is False else one for part, one in value.items()}
+
+
+def _run_faults(campaign: Campaign) -> Iterator[Fault]:
+    seen: dict[str, int] = {}
+    for number, run in enumerate(campaign.runs):
+        first = seen.setdefault(run.name.casefold(), number)
+        if first != number:
+            yield Fault(("runs", number, "name"), "is taken already; a recording is named by it")
+        if not run.name or run.name.startswith(".") or set(run.name) & set('/\\:*?"<>|\0'):
+            yield Fault(("runs", number, "name"), f"= {run.name!r} cannot be a file's name")
+        if campaign.oscillator is not None:
+            yield from _beyond(campaign.oscillator, campaign, number)
+
+
+def _beyond(oscillator: Oscillator, campaign: Campaign, number: int) -> Iterator[Fault]:
+    try:
+        check_within(oscillator, campaign.runs[number].set_point)
+    except ConfigurationError as error:
+        yield Fault(("runs", number), str(error))

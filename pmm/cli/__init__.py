@@ -1,0 +1,107 @@
+"""The command line: ``pmm COMMAND``, each command imported when it is asked for."""
+
+import sys
+from importlib import import_module
+from typing import Any
+
+import click
+
+from hardware.description.errors import PmmError
+
+# Command -> module with a click command of the same name. These modules import nothing heavy at
+# their top, so that ``pmm --help`` can read their help at once.
+_COMMANDS = {
+    "analyse": "pmm.cli.analyse",
+    "demo": "pmm.cli.demo",
+    "simulate": "pmm.cli.simulate",
+}
+_INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
+
+
+class Refusal(click.ClickException):
+    """An error raised on purpose, as the command line shows it: its message, and no traceback."""
+
+    def __init__(self, error: Exception, exit_status: int, *, debug: bool) -> None:
+        super().__init__(str(error))
+        self.error, self.exit_code, self.debug = error, exit_status, debug
+
+    def show(self, file: Any = None) -> None:  # noqa: ARG002
+        """Print the message, after the traceback if that is wanted, on the error stream."""
+        import traceback
+
+        from pmm.cli.screen import error_line
+
+        if self.debug:
+            traceback.print_exception(self.error)
+        error_line(self.message)
+
+
+class Commands(click.Group):
+    """The group of all commands, which turns our errors into messages and exit statuses."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        """Return the commands' names."""
+        return sorted(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
+        """Import a command."""
+        if name not in _COMMANDS:
+            return None
+        command = getattr(import_module(_COMMANDS[name]), name)
+        return command if isinstance(command, click.Command) else None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command that is meant, or say which one may be."""
+        if args[0] not in _COMMANDS and not args[0].startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(args[0], _COMMANDS, n=1, cutoff=0.4)
+            hint = f"did you mean {near[0]!r}?" if near else f"commands: {', '.join(_COMMANDS)}"
+            ctx.fail(f"no command {args[0]!r}; {hint}")
+        return super().resolve_command(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; what it refuses becomes one clear line and an exit status."""
+        try:
+            return super().invoke(ctx)
+        except PmmError as error:
+            raise Refusal(error, error.exit_status, debug=ctx.params["debug"]) from error
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise Refusal(error, PmmError.exit_status, debug=ctx.params["debug"]) from error
+        except KeyboardInterrupt:
+            click.echo("stopped", err=True)
+            ctx.exit(_INTERRUPTED)
+
+
+def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:  # noqa: ARG001, FBT001
+    if wanted and not ctx.resilient_parsing:
+        from pmm.cli.version import version_line
+
+        click.echo(version_line())
+        ctx.exit()
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_print_version,
+    help="Show the version, and what it runs on.",
+)
+def cli(debug: bool) -> None:  # noqa: ARG001, FBT001
+    """Planar motion mechanism: simulate runs and resolve recordings into harmonics.
+
+    Exit status: 0 done, 1 the data say no, 2 the request was wrong.
+    """
+
+
+def main() -> None:
+    """Run the command line of this process."""
+    cli.main(args=sys.argv[1:], prog_name="pmm")

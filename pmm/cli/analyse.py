@@ -1,0 +1,95 @@
+"""``pmm analyse``: recordings in, harmonics with their intervals out."""
+
+import math
+from typing import Any
+
+import click
+
+DEFAULT_LEVEL = 0.95  # of the intervals; as in pmm.tables, which is too heavy to import here
+
+
+class FiniteFloat(click.FloatRange):
+    """A number within a range; neither NaN nor infinite."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Turn text into the number, or fail."""
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return number
+
+
+_ANY = FiniteFloat()
+_POSITIVE = FiniteFloat(min=0.0, min_open=True)
+_COUNT = click.IntRange(min=1)
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--reference", metavar="CHANNEL", help="Take the phase from this channel.")
+@click.option("--frequency", type=_POSITIVE, metavar="HZ", help="Take a known frequency.")
+@click.option("--edges", metavar="FILE", help="Times of the photocell's edges, a column of text.")
+@click.option("--latency", type=_ANY, metavar="S", help="Delay of the photocell's pulses.")
+@click.option(
+    "--angle-offset", type=_ANY, metavar="DEG", help="Shaft angle at the photocell's mark."
+)
+@click.option(
+    "--channel",
+    "channels",
+    multiple=True,
+    metavar="NAME",
+    help="Resolve this channel; repeatable.  [default: all but the reference and the shaft angle]",
+)
+@click.option("--harmonics", type=_COUNT, metavar="N", help="Highest harmonic.  [default: 3]")
+@click.option(
+    "--gate", type=_COUNT, metavar="M", help="Periods per gate.  [default: the steady stretch]"
+)
+@click.option(
+    "--opens-at",
+    type=_ANY,
+    metavar="S",
+    help="Open the first gate at this time.  [default: where the run is steady]",
+)
+@click.option("--periods", type=_COUNT, metavar="M", help="Periods to use after --opens-at.")
+@click.option(
+    "--steady-tolerance",
+    type=_POSITIVE,
+    metavar="X",
+    help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
+)
+@click.option("--no-drift", is_flag=True, help="Leave a linear drift in.")
+@click.option("--map", "column_map", metavar="TOML", help="Which column of a text file is what.")
+@click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    metavar='"NAME=SOURCE[:UNIT]"',
+    help="The same, one column at a time; repeatable.",
+)
+@click.option("--sample-rate", type=_POSITIVE, metavar="HZ", help="In place of a time column.")
+@click.option(
+    "--level",
+    type=FiniteFloat(min=0.0, max=1.0, min_open=True, max_open=True),
+    default=DEFAULT_LEVEL,
+    show_default=True,
+    help="Probability of the intervals.",
+)
+@click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG.")
+@click.option("--save", metavar="FOLDER", help="Write the recordings there, as NetCDF.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of tables.")
+def analyse(**options: Any) -> None:
+    r"""Resolve recordings into mean and harmonics, with uncertainty.
+
+    Each FILE is a recording (.csv, .txt, .dat, plain or .gz, or .nc) or a campaign: a folder with
+    a campaign.toml and a recording per run. The phase comes from the photocell, else the encoder
+    (shaft_angle), else displacement_aft, else the set-point's frequency, unless you say otherwise.
+
+    \b
+    pmm analyse run.csv --reference stroke --channel Fy
+    pmm analyse campaign/ --plot plots
+    """
+    from pmm.cli.analysing import Request, run
+
+    run(Request(**options))

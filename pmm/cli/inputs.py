@@ -1,0 +1,120 @@
+"""From the files named on the command line to recordings."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.setpoint import SetPoint
+from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign_file import read_campaign
+
+if TYPE_CHECKING:
+    from analysis.readers import ColumnMap
+    from analysis.recording import Recording
+
+
+@dataclass(frozen=True)
+class Source:
+    """One recording to be read, with what its campaign says of it.
+
+    Attributes
+    ----------
+    campaign
+        ``None`` for a file of its own.
+    set_point
+        Of the campaign's run; a recording that knows its own keeps that.
+    """
+
+    path: Path
+    campaign: Campaign | None = None
+    set_point: SetPoint | None = None
+
+    @property
+    def stem(self) -> str:
+        """The file's name without its endings."""
+        return Path(self.path.name.removesuffix(".gz")).stem
+
+
+def find_sources(paths: Sequence[str]) -> tuple[Source, ...]:
+    """Return the recordings that are meant; a campaign stands for those of all its runs.
+
+    Raises
+    ------
+    DataError
+        For a folder without a campaign.
+    ConfigurationError
+        If a campaign file is wrong.
+    """
+    return tuple(source for path in paths for source in _sources(Path(path)))
+
+
+def _sources(path: Path) -> tuple[Source, ...]:
+    if path.is_dir():
+        if not (path / CAMPAIGN_FILE).exists():
+            raise DataError(
+                f"{path}: a folder without a {CAMPAIGN_FILE}; name the recordings in it, "
+                "or write one (docs/campaigns.md)"
+            )
+        path = path / CAMPAIGN_FILE
+    if path.suffix != ".toml":
+        return (Source(path),)
+    campaign = read_campaign(path)
+    if not campaign.runs:
+        raise DataError(f"{path}: the campaign has no runs; add one table [[runs]] for each")
+    return tuple(
+        Source(run.recording_path(path.parent), campaign, run.set_point) for run in campaign.runs
+    )
+
+
+def chosen_columns(column_map: str | None, columns: Sequence[str]) -> "ColumnMap | None":
+    """Return the column map that the options give, if any.
+
+    Raises
+    ------
+    ConfigurationError
+        If both kinds are given, or one is wrong.
+    """
+    from analysis.readers import ColumnMap
+
+    if column_map and columns:
+        raise ConfigurationError("give --map or --column, not both")
+    if column_map:
+        return ColumnMap.from_toml(column_map)
+    return ColumnMap.from_options(columns) if columns else None
+
+
+def read_source(
+    source: Source,
+    columns: "ColumnMap | None" = None,
+    *,
+    sample_rate_hz: float | None = None,
+    edges: str | None = None,
+) -> "Recording":
+    """Read one recording.
+
+    Parameters
+    ----------
+    columns
+        In place of the campaign's own column map.
+    edges
+        File of the photocell's edge times; ``{stem}`` in it stands for the recording's name.
+
+    Raises
+    ------
+    DataError, ConfigurationError
+        As :func:`analysis.readers.read_recording` does.
+    """
+    from analysis.readers import read_recording
+    from analysis.readers.photocell import read_edges
+
+    if columns is None and source.campaign and source.path.suffix != ".nc":
+        columns = source.campaign.columns
+    recording = read_recording(source.path, columns, sample_rate_hz=sample_rate_hz)
+    if recording.set_point is None and source.set_point is not None:
+        recording = replace(recording, set_point=source.set_point)
+    if edges is None:
+        return recording
+    times = read_edges(Path(edges.replace("{stem}", source.stem)))
+    return replace(recording, photocell_edges_s=times)

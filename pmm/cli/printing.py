@@ -1,0 +1,79 @@
+"""Tables for people."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from pmm.cli.screen import print_flags
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from pmm.tables import ChannelRows, GateRows, HarmonicRow, RunRows
+
+_WIDTH = 17  # of a column of values: "-12.345 ± 0.012" and room for a longer one
+
+
+def print_run(console: "Console", rows: "RunRows", level: float) -> None:
+    """Print everything about one recording."""
+    from rich.rule import Rule
+
+    console.print(Rule(f"{rows.file}", align="left", characters="─"), style="bold")
+    channel = f" {rows.reference_channel}" if rows.reference_channel else ""
+    console.print(f"reference  {rows.reference}{channel}, {rows.reference_frequency_hz:.6g} Hz")
+    console.print(
+        f"window     {rows.window}, {rows.window_periods} periods from "
+        f"{rows.window_opened_s:.3f} s to {rows.window_closed_s:.3f} s"
+    )
+    for number, gate in enumerate(rows.gates, 1):
+        _print_gate(console, gate, f"gate {number} of {len(rows.gates)}", level)
+    print_flags(console, rows.flags)
+    console.print()
+
+
+def _print_gate(console: "Console", gate: "GateRows", name: str, level: float) -> None:
+    console.print(
+        f"{name:10s} {gate.periods} periods from {gate.opened_s:.3f} s to {gate.closed_s:.3f} s, "
+        f"{gate.frequency_hz:.6g} Hz, {gate.estimator}"
+    )
+    for channel in gate.channels:
+        _print_channel(console, channel)
+    console.print()
+    console.print(f"± {100.0 * level:g} % interval from the {gate.interval_source}", style="dim")
+    console.print(f"drift {_taken_from(gate.drift_source)}", style="dim")
+    print_flags(console, gate.flags)
+
+
+def _taken_from(drift_source: str) -> str:
+    return drift_source if drift_source.startswith("not") else f"taken out by {drift_source}"
+
+
+def _print_channel(console: "Console", channel: "ChannelRows") -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    console.print()
+    console.print(
+        Text.assemble((channel.label, "bold"), f"  mean {channel.mean}", _drift(channel)),
+    )
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    table.add_column("n", justify="right")
+    for heading in ("in phase", "quadrature", "amplitude", "phase [deg]"):
+        table.add_column(heading, justify="right", min_width=_WIDTH)
+    for row in channel.harmonics:
+        table.add_row(str(row.order), *harmonic_cells(row), style=_style(row))
+    console.print(table)
+
+
+def _drift(channel: "ChannelRows") -> str:
+    if not channel.drift_per_s:
+        return ""
+    return f"  drift {channel.drift_per_s:.3g} {channel.unit or '1'}/s"
+
+
+def _style(row: "HarmonicRow") -> str:
+    return "" if row.is_significant else "dim"
+
+
+def harmonic_cells(row: "HarmonicRow") -> Sequence[str]:
+    """Return in phase, quadrature, amplitude and phase of a harmonic as text."""
+    return [str(value) for value in (row.in_phase, row.quadrature, row.amplitude, row.phase_deg)]

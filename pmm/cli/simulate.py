@@ -1,0 +1,25 @@
+"""``pmm simulate``: a campaign file in, a campaign folder with a recording per run out."""
+
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.argument("campaign", metavar="CAMPAIGN.toml")
+@click.option("--output", metavar="FOLDER", help="Where to write.  [default: the campaign's name]")
+@click.option("--seed", type=click.IntRange(min=0), help="Of all noise, in place of the file's.")
+@click.option(
+    "--run", "runs", multiple=True, metavar="NAME", help="Simulate this run only; repeatable."
+)
+@click.option("--overwrite", is_flag=True, help="Replace recordings that are there.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
+def simulate(**options: Any) -> None:
+    """Simulate the runs of a campaign and write its recordings.
+
+    The folder gets the campaign file and a NetCDF recording per run; "pmm analyse FOLDER" then
+    analyses them. No recording is overwritten unless you say so.
+    """
+    from pmm.cli.simulating import Request, run
+
+    run(Request(**options))

@@ -1,0 +1,195 @@
+"""What ``pmm simulate`` does: simulate each run and write its recording."""
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+from analysis.readers import from_dataset, write_recording
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag
+from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
+from pmm.campaign_file import read_campaign
+from pmm.cli.screen import output, print_flags, show_progress
+from sim.rig import SimulatedRig
+from sim.run import simulate
+
+if TYPE_CHECKING:
+    from analysis.recording import Recording
+
+JSON_SCHEMA = "pmm-simulation-1"
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of ``pmm simulate``, by their names there."""
+
+    campaign: str
+    output: str | None
+    seed: int | None
+    runs: tuple[str, ...]
+    overwrite: bool
+    as_json: bool
+
+
+@dataclass(frozen=True)
+class Written:
+    """A run that was simulated, and its recording."""
+
+    run: Run
+    file: str
+    seed: int
+    sample_rate_hz: float
+    samples: int
+    flags: tuple[Flag, ...]
+
+
+def run(request: Request) -> None:
+    """Simulate the runs that were asked for.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign is wrong or a run is beyond the rig's limits.
+    DataError
+        If a recording is there already.
+    """
+    path = Path(request.campaign)
+    path = path / CAMPAIGN_FILE if path.is_dir() else path
+    campaign = read_campaign(path)
+    folder = Path(campaign.name) if request.output is None else Path(request.output)
+    chosen = [campaign.run(name) for name in request.runs] or list(campaign.runs)
+    seed = campaign.simulation.seed if request.seed is None else request.seed
+    check_output(path, campaign, chosen, folder, overwrite=request.overwrite)
+    written = list(simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite))
+    copy_campaign(path, folder)
+    if request.as_json:
+        click.echo(json.dumps(_document(folder, written), indent=1))
+    else:
+        _print(campaign, written, folder)
+
+
+def check_output(
+    path: Path, campaign: Campaign, runs: Sequence[Run], folder: Path, *, overwrite: bool
+) -> None:
+    """Refuse a folder in which something would be lost or confused, before any work is done.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign has no runs, or is one of measured recordings and lies in that very folder.
+    DataError
+        If a recording, or another campaign file, is there and may not be overwritten.
+    """
+    if not runs:
+        raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
+    target = folder / CAMPAIGN_FILE
+    own = target.exists() and target.samefile(path)
+    if own and any(run.file for run in campaign.runs):
+        raise ConfigurationError(
+            f"{path}: its runs name recordings of another system; simulate into another folder "
+            "with --output, so that measured and simulated runs are not taken for each other"
+        )
+    if overwrite:
+        return
+    there = [one for one in (folder / f"{run.name}.nc" for run in runs) if one.exists()]
+    if target.exists() and not own and target.read_bytes() != path.read_bytes():
+        there.append(target)
+    if there:
+        names = ", ".join(str(one) for one in there)
+        raise DataError(f"{names}: there already; choose another --output, or --overwrite")
+
+
+def simulate_runs(
+    campaign: Campaign, runs: Sequence[Run], folder: Path, seed: int, *, overwrite: bool
+) -> Iterator[Written]:
+    """Simulate runs one by one and write their recordings.
+
+    Each run has noise of its own, which depends on the seed and the run's name alone.
+    """
+    rig = campaign.rig()
+    folder.mkdir(parents=True, exist_ok=True)
+    for one in show_progress(runs, "simulating"):
+        run_seed = seed_of(seed, one.name)
+        recording = simulate_recording(rig, campaign, one, run_seed)
+        file = write_recording(recording, folder / f"{one.name}.nc", overwrite=overwrite)
+        rate, count = recording.sample_rate_hz, recording.sample_count
+        yield Written(one, str(file), run_seed, rate, count, recording.flags)
+
+
+def simulate_recording(
+    rig: SimulatedRig, campaign: Campaign, run: Run, run_seed: int
+) -> "Recording":
+    """Simulate one run.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`sim.run.simulate` does; the message begins with the run's name.
+    """
+    try:
+        dataset = simulate(
+            rig,
+            run.set_point,
+            periods=run.periods,
+            settling_periods=campaign.simulation.settling_periods,
+            sample_rate_hz=campaign.simulation.sample_rate_hz,
+            seed=run_seed,
+            name=run.name,
+        )
+    except ConfigurationError as error:
+        raise ConfigurationError(f"run {run.name!r}: {error}") from None
+    return from_dataset(dataset)
+
+
+def seed_of(seed: int, name: str) -> int:
+    """Return a run's own seed, whatever other runs there are."""
+    sequence = np.random.SeedSequence([seed, *name.encode()])
+    return int(sequence.generate_state(1)[0])
+
+
+def copy_campaign(path: Path, folder: Path) -> None:
+    """Put the campaign file beside its recordings, unless it is there."""
+    target = folder / CAMPAIGN_FILE
+    if not (target.exists() and target.samefile(path)):
+        target.write_bytes(path.read_bytes())
+
+
+def _document(folder: Path, written: Sequence[Written]) -> dict[str, Any]:
+    return {
+        "schema": JSON_SCHEMA,
+        "folder": str(folder),
+        "runs": [asdict(one) for one in written],
+    }
+
+
+def _print(campaign: Campaign, written: Sequence[Written], folder: Path) -> None:
+    from rich.table import Table
+
+    console = output()
+    table = Table(title=f"{campaign.name}: {len(written)} runs", title_justify="left")
+    table.add_column("run", overflow="fold")
+    for heading in ("f [Hz]", "e [mm]", "phase [deg]", "U [m/s]", "periods", "samples"):
+        table.add_column(heading, justify="right")
+    table.add_column("recording", overflow="fold")
+    for one in written:
+        run = one.run
+        table.add_row(
+            run.name,
+            f"{run.frequency_hz:g}",
+            f"{1e3 * run.eccentricity_m:g}",
+            f"{math.degrees(run.strut_phase_rad):g}",
+            f"{run.carriage_speed_m_s:g}",
+            f"{run.periods}",
+            f"{one.samples}",
+            one.file,
+        )
+    console.print(table)
+    for one in written:
+        print_flags(console, one.flags)
+    console.print(f"pmm analyse {folder}", soft_wrap=True)

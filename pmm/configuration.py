@@ -1,0 +1,176 @@
+"""Configuration files: read, checked against a dataclass, and every error of a file at once."""
+
+import json
+import tomllib
+import types
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from hardware.description.errors import ConfigurationError
+
+T = TypeVar("T")
+
+Place = tuple[str | int, ...]
+
+
+class Fault(NamedTuple):
+    """One error of a file: where, and what."""
+
+    place: Place
+    message: str
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot be read; the message gives the line.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ConfigurationError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
+
+
+def validate(
+    kind: type[T],
+    table: Mapping[str, Any],
+    faults: list[Fault],
+    extra_keys: Mapping[str, Sequence[str]],
+) -> T | None:
+    """Build a dataclass from a table; on errors note all of them and return ``None``.
+
+    Numbers have to be numbers: text and booleans are not taken for any.
+
+    Parameters
+    ----------
+    extra_keys
+        Keys that the caller has taken out of the tables already, by the table's name: known ones,
+        for suggestions.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    try:
+        # By way of JSON, because pydantic is strict about numbers and takes arrays for tuples there.
+        return TypeAdapter(kind).validate_json(json.dumps(table, default=str), strict=True)
+    except ValidationError as error:
+        for one in error.errors(include_url=False):
+            place = one["loc"]
+            if one["type"] == "unexpected_keyword_argument":
+                table_name = next((key for key in place if isinstance(key, str)), "")
+                extra = extra_keys.get(table_name, ()) if len(place) > 1 else ()
+                faults.append(Fault(place, _unknown(kind, place, extra)))
+            elif one["type"] == "missing":
+                faults.append(Fault(place, "is missing"))
+            else:
+                problem = one["msg"].removeprefix("Input ")
+                faults.append(Fault(place, f"= {_short(one['input'])} {problem}"))
+        return None
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _unknown(kind: type, place: Place, extra: Sequence[str]) -> str:
+    known = [*keys_at(kind, place[:-1]), *extra]
+    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+    return f"is not a known key; {hint}"
+
+
+def keys_at(kind: Any, place: Place) -> tuple[str, ...]:
+    """Return the keys of the dataclass that lies at a place within another."""
+    for key in place:
+        kind = _without_none(kind)
+        if isinstance(key, int):
+            kind = get_args(kind)[0]
+        else:
+            kind = get_type_hints(kind)[key]
+    kind = _without_none(kind)
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
+
+
+def _without_none(kind: Any) -> Any:
+    if get_origin(kind) not in (Union, types.UnionType):
+        return kind
+    return next(part for part in get_args(kind) if part is not type(None))
+
+
+# What a number of that name may be, in whichever table it stands.
+_POSITIVE = {
+    "eccentricity_mm": False,
+    "eccentricity_m": False,
+    "frequency_hz": True,
+    "force_per_strut_n": True,
+    "full_scale": True,
+    "full_scale_n": True,
+    "half_spacing_m": True,
+    "inertia_kg_m2": True,
+    "jitter_rms_s": False,
+    "mass_kg": True,
+    "noise_rms": False,
+    "periods": True,
+    "resolution": False,
+    "rod_length_m": True,
+    "sample_rate_hz": True,
+    "seed": False,
+    "settling_periods": False,
+    "start_ramp_s": False,
+    "steady_tolerance": True,
+}
+
+
+def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
+    """Yield what is below zero and should not be, at any depth of a table."""
+    parts = table.items() if isinstance(table, dict) else enumerate(table)
+    for key, value in parts:
+        here: Place = (*place, key)
+        if isinstance(value, dict | list):
+            yield from limit_faults(value, here)
+        elif key in _POSITIVE and isinstance(value, int | float):
+            if value < 0 or (value == 0 and _POSITIVE[key]):
+                limit = "above 0" if _POSITIVE[key] else "0 or more"
+                yield Fault(here, f"= {value:g} should be {limit}")
+
+
+def refuse(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> None:
+    """Raise all faults of a file as one error, if there are any.
+
+    Raises
+    ------
+    ConfigurationError
+        With one line for each fault: its path in the file and the message.
+    """
+    lines = list(dict.fromkeys(f"{_path(fault.place, table)}{fault.message}" for fault in faults))
+    if len(lines) == 1:
+        raise ConfigurationError(f"{path}: {lines[0]}")
+    if lines:
+        raise ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))
+
+
+def _path(place: Place, table: Any) -> str:
+    """Return ``runs["heave"].frequency_hz``: entries by name, or else counted from 1."""
+    text = ""
+    for key in place:
+        table = table[key] if _holds(table, key) else None
+        if isinstance(key, str):
+            text += f".{key}" if text else key
+        else:
+            name = table.get("name") if isinstance(table, dict) else None
+            text += f'["{name}"]' if isinstance(name, str) and name else f"[{key + 1}]"
+    return f"{text} " if text else ""
+
+
+def _holds(table: Any, key: str | int) -> bool:
+    if isinstance(table, dict):
+        return key in table
+    return isinstance(table, list) and isinstance(key, int) and key < len(table)

@@ -1,0 +1,207 @@
+"""An analysis as rows of numbers: one set of them for the printed table and for ``--json``."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hardware.description.flags import Flag
+
+if TYPE_CHECKING:
+    from analysis.resolver.analyse import Analysis
+    from analysis.resolver.harmonics import Harmonics
+
+DEFAULT_LEVEL = 0.95
+
+# An amplitude this many times its half-width is no play of the noise.
+_SIGNIFICANT = 2.0
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number and the half-width of its interval; NaN where there is no interval."""
+
+    value: float
+    half_width: float
+
+    def __str__(self) -> str:
+        """Return value and half-width with as many digits as they bear."""
+        return format_value(self.value, self.half_width)
+
+
+@dataclass(frozen=True)
+class HarmonicRow:
+    """One harmonic of one channel: ``amplitude * sin(order * theta + phase)``."""
+
+    order: int
+    in_phase: Value
+    quadrature: Value
+    amplitude: Value
+    phase_deg: Value
+
+    @property
+    def is_significant(self) -> bool:
+        """Whether the amplitude is at least twice its half-width, and so surely not noise."""
+        return self.amplitude.value >= _SIGNIFICANT * self.amplitude.half_width
+
+
+@dataclass(frozen=True)
+class ChannelRows:
+    """Mean, drift taken out, and harmonics of one channel."""
+
+    name: str
+    unit: str
+    mean: Value
+    drift_per_s: float
+    harmonics: tuple[HarmonicRow, ...]
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else f"{self.name} [unit not stated]"
+
+
+@dataclass(frozen=True)
+class GateRows:
+    """One gate: where it lies, what its intervals rest on, and its channels."""
+
+    opened_s: float
+    closed_s: float
+    periods: int
+    frequency_hz: float
+    estimator: str
+    interval_source: str
+    drift_source: str
+    channels: tuple[ChannelRows, ...]
+    flags: tuple[Flag, ...]
+
+
+@dataclass(frozen=True)
+class RunRows:
+    """One recording.
+
+    Attributes
+    ----------
+    reference, reference_channel, reference_frequency_hz
+        What told the phase; the channel is ``None`` for a photocell or a given frequency.
+    window
+        ``"found steady"``, ``"given"`` or ``"not steady"`` (all periods were used).
+    window_opened_s, window_closed_s, window_periods
+        The periods that the gates were taken from.
+    """
+
+    file: str
+    run: str
+    reference: str
+    reference_channel: str | None
+    reference_frequency_hz: float
+    window: str
+    window_opened_s: float
+    window_closed_s: float
+    window_periods: int
+    gates: tuple[GateRows, ...]
+    flags: tuple[Flag, ...]
+
+
+def run_rows(
+    analysis: "Analysis",
+    *,
+    file: str,
+    reference_channel: str | None = None,
+    level: float = DEFAULT_LEVEL,
+) -> RunRows:
+    """Turn an analysis into rows.
+
+    Parameters
+    ----------
+    file
+        Where the recording came from.
+    reference_channel
+        The channel that told the phase, if one did.
+    level
+        Probability of the two-sided intervals.
+    """
+    steady = analysis.steady_sums
+    return RunRows(
+        file=file,
+        run=analysis.recording.name,
+        reference=str(analysis.reference.source),
+        reference_channel=reference_channel,
+        reference_frequency_hz=analysis.reference.frequency_hz,
+        window=_window(analysis),
+        window_opened_s=float(steady.opened_s[0]),
+        window_closed_s=float(steady.closed_s[-1]),
+        window_periods=steady.period_count,
+        gates=tuple(gate_rows(reading, level) for reading in analysis.readings),
+        flags=analysis.flags,
+    )
+
+
+def _window(analysis: "Analysis") -> str:
+    if analysis.settings.opens_s is not None:
+        return "given"
+    steady = all(flag.code != "not_steady" for flag in analysis.flags)
+    return "found steady" if steady else "not steady"
+
+
+def gate_rows(reading: "Harmonics", level: float = DEFAULT_LEVEL) -> GateRows:
+    """Turn one gate's harmonics into rows with intervals of some probability."""
+    half_width = reading.half_width(level)
+    factor = reading.coverage_factor(level)[1::2]
+    along, across = reading.polar_uncertainty()
+    polar = (factor * along, np.minimum(factor * across, math.pi))
+
+    def harmonic(row: int, n: int) -> HarmonicRow:
+        s, c = 1 + 2 * n, 2 + 2 * n
+        coefficient = reading.coefficients[row]
+        return HarmonicRow(
+            order=n + 1,
+            in_phase=Value(float(coefficient[s]), float(half_width[row, s])),
+            quadrature=Value(float(coefficient[c]), float(half_width[row, c])),
+            amplitude=Value(float(reading.amplitude[row, n]), float(polar[0][row, n])),
+            phase_deg=Value(
+                math.degrees(reading.phase_rad[row, n]), math.degrees(polar[1][row, n])
+            ),
+        )
+
+    return GateRows(
+        opened_s=reading.opened_s,
+        closed_s=reading.closed_s,
+        periods=reading.periods,
+        frequency_hz=reading.frequency_hz,
+        estimator=reading.estimator,
+        interval_source=str(reading.interval_source),
+        drift_source=str(reading.drift_source),
+        channels=tuple(
+            ChannelRows(
+                name=name,
+                unit=reading.units[row],
+                mean=Value(float(reading.mean[row]), float(half_width[row, 0])),
+                drift_per_s=float(reading.drift_per_s[row]),
+                harmonics=tuple(harmonic(row, n) for n in range(reading.order)),
+            )
+            for row, name in enumerate(reading.channel_names)
+        ),
+        flags=reading.flags,
+    )
+
+
+def format_value(value: float, half_width: float) -> str:
+    """Return ``value ± half_width``: two significant digits of the latter, as many of the former.
+
+    Without an interval the value is given six digits and the half-width as ``?``.
+    """
+    if not (math.isfinite(value) and math.isfinite(half_width)):
+        return f"{value:.6g} ± ?"
+    if half_width <= 1e-12 * abs(value):
+        return f"{value:.12g} ± {half_width:.1g}"
+    last = math.floor(math.log10(float(f"{half_width:.1e}"))) - 1
+    top = math.floor(math.log10(max(abs(value), half_width)))
+    if -5 <= top <= 5 and last <= 1:
+        places = max(-last, 0)
+        return f"{value:.{places}f} ± {half_width:.{places}f}"
+    exponent = 3 * (top // 3)
+    digits = max(exponent - last, 0)
+    scale = 10.0**exponent
+    return f"({value / scale:.{digits}f} ± {half_width / scale:.{digits}f})e{exponent}"
