@@ -42,10 +42,7 @@ def mode_for(frequency_hz: float) -> ClassicMode:
     ConfigurationError
         If the frequency is not a positive number.
     """
-    if not (frequency_hz > 0.0 and np.isfinite(frequency_hz)):
-        raise ConfigurationError(
-            f"frequency_hz = {frequency_hz:g}: must be above 0; give the oscillator's frequency"
-        )
+    check_frequency(frequency_hz)
     if frequency_hz < SWITCH_HZ:
         return ClassicMode.GATED_INTEGRATION
     return ClassicMode.RUNNING_AVERAGE
@@ -69,6 +66,20 @@ def products(values: FloatArray, cycles: FloatArray, harmonics: int) -> FloatArr
     """
     basis = template(cycles, np.arange(1.0, harmonics + 1.0))[1:]
     return 2.0 * values[:, None, :] * basis
+
+
+def check_frequency(frequency_hz: float) -> None:
+    """Refuse what is no frequency.
+
+    Raises
+    ------
+    ConfigurationError
+        With the value.
+    """
+    if not (frequency_hz > 0.0 and np.isfinite(frequency_hz)):
+        raise ConfigurationError(
+            f"frequency_hz = {frequency_hz:g}: must be above 0; give the oscillator's frequency"
+        )
 
 
 def check_harmonics(harmonics: int) -> None:

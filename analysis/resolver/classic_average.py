@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.resolver.classic import check_harmonics, check_values, products
+from analysis.resolver.classic import check_frequency, check_harmonics, check_values, products
 from hardware.description.errors import ConfigurationError, DataError
 
 FloatArray = NDArray[np.float64]
@@ -98,7 +98,8 @@ class RunningAverage:
     Raises
     ------
     ConfigurationError
-        If the time constant is below 1.5 periods, or the sample rate too low for the harmonics.
+        If the time constant is below 1.5 periods, the sample rate too low for the harmonics, or the
+        frequency not above 0.
     """
 
     channel_names: tuple[str, ...]
@@ -109,6 +110,7 @@ class RunningAverage:
 
     def __post_init__(self) -> None:
         check_harmonics(self.harmonics)
+        check_frequency(self.frequency_hz)
         least = LEAST_TIME_CONSTANT_PERIODS / self.frequency_hz
         if not self.time_constant_s >= least * (1.0 - 1e-12):
             raise ConfigurationError(

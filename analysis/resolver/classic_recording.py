@@ -45,8 +45,10 @@ def running_average(
     ConfigurationError
         As :class:`RunningAverage`.
     DataError
-        If a sample is missing.
+        If a sample is missing, or there is none at all.
     """
+    if recording.sample_count == 0:
+        raise DataError(f"{recording.name}: no samples; give a recording that has some")
     if keep_every < 1:
         raise ConfigurationError(f"keep_every = {keep_every}: at least 1 is needed")
     frequency_hz = reference.frequency_hz

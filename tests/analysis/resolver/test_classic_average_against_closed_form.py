@@ -85,7 +85,7 @@ def test_settled_lights_when_one_percent_of_the_step_is_left() -> None:
     first = int(np.argmax(needles.settled))
     assert needles.times_s[first] == pytest.approx(4.6 * 1.5, abs=1.0 / RATE_HZ)
     left = 1.0 - needles.in_phase[0, 0] / 2.0
-    assert left == pytest.approx(np.exp(-needles.times_s / 1.5), abs=2e-3)
+    assert left == pytest.approx(np.exp(-needles.times_s / 1.5), abs=1e-12)
     assert left[first] == pytest.approx(average_step_left(4.6), rel=0.01)
     assert average_step_left(4.6) == pytest.approx(0.01, rel=0.01)
 
@@ -139,6 +139,17 @@ def test_thinned_needles_are_some_of_all() -> None:
 def test_a_short_time_constant_is_refused_with_its_limit() -> None:
     with pytest.raises(ConfigurationError, match=r"time_constant_s = 2\.9 s is below 3 s"):
         RunningAverage(("c",), 100.0, 0.5, 2.9)
+
+
+def test_a_frequency_that_is_none_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match="frequency_hz = 0: must be above 0"):
+        RunningAverage(("c",), 100.0, 0.0, 1.5)
+
+
+def test_an_empty_recording_is_refused() -> None:
+    recording = Recording("run", (Channel("c", "N"),), np.empty((1, 0)), RATE_HZ)
+    with pytest.raises(DataError, match="run: no samples"):
+        running_average(recording, from_frequency(1.0, 0.0, 2.0))
 
 
 def test_too_slow_sampling_is_refused() -> None:

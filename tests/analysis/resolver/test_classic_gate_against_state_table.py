@@ -23,7 +23,7 @@ REFERENCE = from_frequency(1.0, 0.0, 100.0)
 
 
 def sine(start: int, stop: int) -> FloatArray:
-    return 3.0 * np.sin(2.0 * np.pi * np.arange(start, stop) / RATE_HZ)[None]
+    return np.asarray(3.0 * np.sin(2.0 * np.pi * np.arange(start, stop) / RATE_HZ)[None])
 
 
 def machine(periods: int = 1) -> GatedIntegrator:
