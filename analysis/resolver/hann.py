@@ -48,9 +48,8 @@ def resolve_hann(
     low = bins[bins > 0] / periods
     orders = np.concatenate((own, beside, low))
 
-    def taper(numbers: FloatArray) -> FloatArray:
-        times = recording.start_s + numbers / recording.sample_rate_hz
-        turned = (reference.cycles_at(times) - edges_cycles[0]) / periods
+    def taper(cycles: FloatArray) -> FloatArray:
+        turned = (cycles - edges_cycles[0]) / periods
         return np.asarray(1.0 - np.cos(2.0 * np.pi * turned))
 
     plain = period_sums(recording, reference, harmonics, edges_cycles=edges_cycles)

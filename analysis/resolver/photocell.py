@@ -10,8 +10,8 @@ from hardware.description.flags import Flag, Severity
 FloatArray = NDArray[np.float64]
 
 _NEIGHBOURS = 7  # intervals whose median is the local period
-_SHORT = 0.7  # of the local period: a pulse too many
-_LONG = 1.5  # of the local period: a pulse missed
+EARLY = 0.7  # of the local period: a pulse too many
+LATE = 1.5  # of the local period: a pulse missed
 
 
 def from_photocell(
@@ -70,7 +70,7 @@ def _without_extra(edges: FloatArray) -> tuple[FloatArray, list[float]]:
         intervals = np.diff(edges)
         period = _local_period(intervals)[k - 1]
         parts = intervals[k - 1] + intervals[k]
-        if min(intervals[k - 1], intervals[k]) < _SHORT * period and parts < _LONG * period:
+        if min(intervals[k - 1], intervals[k]) < EARLY * period and parts < LATE * period:
             dropped.append(float(edges[k]))
             edges = np.delete(edges, k)
         else:
@@ -82,7 +82,7 @@ def _turns(edges: FloatArray) -> FloatArray:
     """Revolutions from each pulse to the next: more than one where pulses were missed."""
     intervals = np.diff(edges)
     ratio = intervals / _local_period(intervals)
-    return np.where(ratio < _LONG, 1.0, np.rint(ratio))
+    return np.where(ratio < LATE, 1.0, np.rint(ratio))
 
 
 def _pulse_flags(edges: FloatArray, turns: FloatArray, extra: list[float]) -> tuple[Flag, ...]:

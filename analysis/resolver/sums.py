@@ -9,25 +9,28 @@ For each period and with the weights of :mod:`analysis.resolver.weights`, over t
 
 Everything else follows from these: a gate of m periods is the sum of its periods, the scatter
 between them gives the uncertainty, and a drift shows in their means. Live and batch analysis call
-the same :func:`sum_period` on the same samples, so their final values are the same.
+the same functions on the same samples, so their final values are the same.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.recording import Recording, Samples
-from analysis.resolver.gram import straight_gram
+from analysis.recording import Recording
 from analysis.resolver.reference import PhaseReference
-from analysis.resolver.template import straight_template, template
+from analysis.resolver.straight import Gates, Sums, sum_straight
+from analysis.resolver.template import template
 from analysis.resolver.weights import REACH, gate_weights
 from hardware.description.errors import DataError
 
 FloatArray = NDArray[np.float64]
 
 _READ_SAMPLES = 200_000  # read at a time from a file: large enough to be quick, small in memory
+
+Taper = Callable[[FloatArray], FloatArray]
+"""Extra weight of samples as a function of their cycles."""
 
 
 @dataclass(frozen=True)
@@ -69,81 +72,6 @@ class PeriodSums:
         return replace(self, **{name: getattr(self, name)[periods] for name in per_period})
 
 
-@dataclass(frozen=True)
-class Gate:
-    """One period to sum: from where to where, and the phase in between.
-
-    Attributes
-    ----------
-    opening, closing
-        Fractional sample numbers.
-    opening_cycle, closing_cycle
-        Revolutions there.
-    phase
-        Revolutions at some sample numbers; ``None`` where they run straight from edge to edge.
-    """
-
-    opening: float
-    closing: float
-    opening_cycle: float
-    closing_cycle: float
-    phase: Callable[[FloatArray], FloatArray] | None = None
-
-    @property
-    def step(self) -> float:
-        """Revolutions from one sample to the next where they run straight."""
-        return (self.closing_cycle - self.opening_cycle) / (self.closing - self.opening)
-
-    def cycles(self, numbers: FloatArray) -> FloatArray:
-        """Return the revolutions at some sample numbers."""
-        if self.phase is not None:
-            return self.phase(numbers)
-        return self.opening_cycle + (numbers - self.opening) * self.step
-
-
-Taper = Callable[[FloatArray], FloatArray]
-"""Extra weight of samples as a function of their number."""
-
-Sums = tuple[FloatArray, FloatArray, FloatArray]
-
-
-def sum_period(
-    samples: Samples,
-    gate: Gate,
-    orders: FloatArray,
-    sample_rate_hz: float,
-    taper: Taper | None = None,
-) -> Sums:
-    """Return ``gram``, ``moment`` and ``ramp`` of one period; see :class:`PeriodSums`."""
-    first, weights = gate_weights(gate.opening, gate.closing, samples.shape[1])
-    values = samples[:, first : first + len(weights)]
-    if gate.phase is None and taper is None and _follow_each_other(orders):
-        gram, moment, ramp = _sum_straight(values, gate, first, weights, len(orders))
-    else:
-        numbers = np.arange(first, first + len(weights), dtype=np.float64)
-        basis = template(gate.cycles(numbers), orders)
-        weighted = basis * (weights if taper is None else weights * taper(numbers))
-        gram, moment, ramp = weighted @ basis.T, values @ weighted.T, weighted @ numbers
-    return gram, moment, ramp / sample_rate_hz
-
-
-def _follow_each_other(orders: FloatArray) -> bool:
-    return bool(np.array_equal(orders, np.arange(1.0, len(orders) + 1.0)))
-
-
-def _sum_straight(
-    values: FloatArray, gate: Gate, first: int, weights: FloatArray, harmonics: int
-) -> Sums:
-    """Sum a period of even phase, the usual case, without a sine for each sample."""
-    numbers = np.arange(first, first + len(weights), dtype=np.float64)
-    first_cycle = float(gate.cycles(numbers[:1])[0])
-    weighted = straight_template(first_cycle, gate.step, len(weights), harmonics)
-    for end in (slice(0, 2 * REACH), slice(max(2 * REACH, len(weights) - 2 * REACH), None)):
-        weighted[:, end] *= weights[end]
-    gram = straight_gram(first_cycle, gate.step, weights, harmonics)
-    return gram, values @ weighted.T, weighted @ numbers
-
-
 def whole_periods(
     recording: Recording, reference: PhaseReference, first_cycle: float | None = None
 ) -> FloatArray:
@@ -182,6 +110,7 @@ def period_sums(
     *,
     edges_cycles: FloatArray | None = None,
     taper: Taper | None = None,
+    compiled: bool | None = None,
 ) -> PeriodSums:
     """Sum a recording over its whole periods.
 
@@ -191,6 +120,9 @@ def period_sums(
         Number of harmonics, or the orders themselves (any, not only whole ones).
     edges_cycles
         Where the periods meet; by default all whole periods that the recording holds.
+    compiled
+        Whether to use the compiled sums; by default where numba is installed and the recording
+        large enough.
 
     Raises
     ------
@@ -200,36 +132,41 @@ def period_sums(
     orders = np.arange(1.0, orders + 1.0) if isinstance(orders, int) else orders
     cycles = whole_periods(recording, reference) if edges_cycles is None else edges_cycles
     edges_s = reference.times_at(cycles)
-    gates = _gates(recording, reference, cycles, edges_s)
+    numbers = np.clip(recording.sample_number(edges_s), 0.0, recording.sample_count - 1.0)
+    gates = Gates(numbers[:-1], numbers[1:], cycles[:-1], cycles[1:])
     _check_sampling(recording, gates, orders)
-    samples = _ReadAhead(recording.samples)
-    parts = [sum_period(samples, gate, orders, recording.sample_rate_hz, taper) for gate in gates]
-    gram, moment, ramp = (np.array(part) for part in zip(*parts, strict=True))
+    general = _General(recording, reference, orders, taper)
+    bent = general.needed(gates)
+    parts = []
+    for first, last, chosen in _stretches(recording, gates):
+        near = gates[chosen].counted_from(first)
+        block = recording.samples[:, first:last]
+        straight = ~bent[chosen]
+        sums = general.empty(len(straight))
+        _put(sums, straight, sum_straight(block, near[straight], len(orders), compiled))
+        for k in np.flatnonzero(~straight):
+            _put(sums, k, general.sum(block, first, near[slice(k, k + 1)]))
+        parts.append((sums[0], sums[1], sums[2] + sums[0][:, 0] * first))
+    gram, moment, ramp = (np.concatenate(part) for part in zip(*parts, strict=True))
     return PeriodSums(
-        recording.channel_names, orders, edges_s[:-1], edges_s[1:], cycles[:-1], gram, moment, ramp
+        recording.channel_names,
+        orders,
+        edges_s[:-1],
+        edges_s[1:],
+        cycles[:-1],
+        gram,
+        moment,
+        ramp / recording.sample_rate_hz,
     )
 
 
-def _gates(
-    recording: Recording, reference: PhaseReference, cycles: FloatArray, edges_s: FloatArray
-) -> list[Gate]:
-    numbers = np.clip(recording.sample_number(edges_s), 0.0, recording.sample_count - 1.0)
-    # A period is straight where no knot of the reference lies strictly inside it.
-    inside = 1e-9 * np.diff(cycles)
-    first = np.searchsorted(reference.cycles, cycles[:-1] + inside, side="right")
-    bent = np.searchsorted(reference.cycles, cycles[1:] - inside, side="left") > first
-
-    def phase(numbers: FloatArray) -> FloatArray:
-        return reference.cycles_at(recording.start_s + numbers / recording.sample_rate_hz)
-
-    return [
-        Gate(numbers[k], numbers[k + 1], cycles[k], cycles[k + 1], phase if bent[k] else None)
-        for k in range(len(cycles) - 1)
-    ]
+def _put(into: Sums, where: NDArray[np.bool_] | np.intp, sums: Sums) -> None:
+    for target, part in zip(into, sums, strict=True):
+        target[where] = part
 
 
-def _check_sampling(recording: Recording, gates: list[Gate], orders: FloatArray) -> None:
-    fewest = min(gate.closing - gate.opening for gate in gates)
+def _check_sampling(recording: Recording, gates: Gates, orders: FloatArray) -> None:
+    fewest = float((gates.closing - gates.opening).min())
     if fewest <= 2.0 * orders.max():
         raise DataError(
             f"{recording.name}: {fewest:.1f} samples a period cannot carry harmonic "
@@ -238,24 +175,86 @@ def _check_sampling(recording: Recording, gates: list[Gate], orders: FloatArray)
         )
 
 
-class _ReadAhead:
-    """Samples of a file, read in large stretches; an array in memory is handed through."""
+def _stretches(recording: Recording, gates: Gates) -> Iterator[tuple[int, int, slice]]:
+    """Yield stretches of samples to read at once, and the periods that lie in each.
 
-    def __init__(self, source: Samples) -> None:
-        self._source = source
-        self._start = 0
-        self._held: FloatArray = np.empty((source.shape[0], 0))
+    An array in memory is one stretch; a file is read a good many samples at a time.
+    """
+    if isinstance(recording.samples, np.ndarray):
+        yield 0, recording.sample_count, slice(None)
+        return
+    start = 0
+    while start < len(gates.opening):
+        first = max(0, int(gates.opening[start]) + 1 - REACH)
+        stop = int(np.searchsorted(gates.closing, first + _READ_SAMPLES, side="right"))
+        stop = max(stop, start + 1)
+        yield first, int(gates.closing[stop - 1]) + REACH + 1, slice(start, stop)
+        start = stop
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        return self._source.shape
 
-    def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
-        rows, when = key
-        if isinstance(self._source, np.ndarray):
-            return np.asarray(self._source[key])
-        start, stop, _ = when.indices(self.shape[1])
-        if start < self._start or stop > self._start + self._held.shape[1]:
-            end = min(self.shape[1], max(stop, start + _READ_SAMPLES))
-            self._start, self._held = start, self._source[:, start:end]
-        return self._held[rows, start - self._start : stop - self._start]
+@dataclass(frozen=True)
+class _General:
+    """Sums of any period: bent phase, any orders, a taper, the ends of the record."""
+
+    recording: Recording
+    reference: PhaseReference
+    orders: FloatArray
+    taper: Taper | None
+
+    def needed(self, gates: Gates) -> NDArray[np.bool_]:
+        """Tell which periods the quick sums cannot take."""
+        if self.taper is not None or not np.array_equal(
+            self.orders, np.arange(1.0, len(self.orders) + 1.0)
+        ):
+            return np.ones(len(gates.opening), dtype=np.bool_)
+        inside = 1e-9 * (gates.closing_cycle - gates.opening_cycle)
+        knots = self.reference.cycles
+        after = np.searchsorted(knots, gates.opening_cycle + inside, side="right")
+        bent = np.searchsorted(knots, gates.closing_cycle - inside, side="left") > after
+        starts_early = gates.opening < REACH - 1
+        ends_late = gates.closing >= self.recording.sample_count - REACH
+        return np.asarray(bent | starts_early | ends_late)
+
+    def empty(self, periods: int) -> Sums:
+        """Room for the sums of some periods."""
+        size = 2 * len(self.orders) + 1
+        channels = len(self.recording.channels)
+        return (
+            np.empty((periods, size, size)),
+            np.empty((periods, channels, size)),
+            np.empty((periods, size)),
+        )
+
+    def sum(self, block: FloatArray, first: int, gate: Gates) -> Sums:
+        """Sum one period, given in sample numbers of a block that starts at ``first``."""
+
+        def cycles(numbers: FloatArray) -> FloatArray:
+            since_start_s = (first + numbers) / self.recording.sample_rate_hz
+            return self.reference.cycles_at(self.recording.start_s + since_start_s)
+
+        return sum_any(block, gate, cycles, self.orders, self.taper)
+
+
+def sum_any(
+    samples: FloatArray,
+    gate: Gates,
+    cycles: Callable[[FloatArray], FloatArray],
+    orders: FloatArray,
+    taper: Taper | None = None,
+) -> Sums:
+    """Sum one period of any phase, at the ends of the record too; the ramp counts samples.
+
+    Parameters
+    ----------
+    cycles
+        Revolutions at some sample numbers.
+    """
+    start, weights = gate_weights(gate.opening[0], gate.closing[0], samples.shape[1])
+    numbers = np.arange(start, start + len(weights), dtype=np.float64)
+    turned = cycles(numbers)
+    if taper is not None:
+        weights = weights * taper(turned)
+    basis = template(turned, orders)
+    weighted = basis * weights
+    values = samples[:, start : start + len(weights)]
+    return weighted @ basis.T, values @ weighted.T, weighted @ numbers

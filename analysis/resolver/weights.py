@@ -45,20 +45,22 @@ def _correction_polynomials() -> FloatArray:
     return np.asarray(corrections)
 
 
-def edge_correction(fraction: float) -> FloatArray:
+def edge_corrections(fractions: FloatArray) -> FloatArray:
     """Return what an opening edge at ``fraction`` past sample 0 adds to unit weights from sample 1.
 
     Parameters
     ----------
-    fraction
-        In [0, 1): the edge lies between samples 0 and 1.
+    fractions
+        In [0, 1), shape ``(edges,)``: each edge lies between samples 0 and 1.
 
     Returns
     -------
     numpy.ndarray
-        Corrections to samples -2, -1, 0, 1, 2, 3. A closing edge has the same ones, negative.
+        Corrections to samples -2, -1, 0, 1, 2, 3, shape ``(edges, 6)``. A closing edge has the same
+        ones, negative.
     """
-    return np.asarray(_correction_polynomials() @ fraction ** np.arange(2 * REACH + 1))
+    powers = np.asarray(fractions)[:, None] ** np.arange(2 * REACH + 1)
+    return np.asarray(powers @ _correction_polynomials().T)
 
 
 @cache
@@ -94,8 +96,10 @@ def gate_weights(opening: float, closing: float, count: int) -> tuple[int, Float
     last = int(closing) + REACH
     weights = np.zeros(last - first + 1)
     weights[REACH : int(closing) - first + 1] = 1.0
-    weights[: 2 * REACH] += edge_correction(opening - int(opening))
-    weights[-2 * REACH :] -= edge_correction(closing - int(closing))
+    fractions = np.array([opening - int(opening), closing - int(closing)])
+    at_opening, at_closing = edge_corrections(fractions)
+    weights[: 2 * REACH] += at_opening
+    weights[-2 * REACH :] -= at_closing
     return _fold_into_record(first, weights, count)
 
 

@@ -1,0 +1,238 @@
+"""The resolver at the carriage: blocks of samples and photocell pulses in, readings out.
+
+Between pulses a reading is provisional, from the phase that the last period predicts. When the
+pulse has come, and with it the few samples that the gate's edge needs, the period is summed as a
+batch would sum it, by the same function from the same samples; only such readings are final.
+"""
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.estimate import resolve
+from analysis.resolver.harmonics import Harmonics
+from analysis.resolver.photocell import EARLY, LATE
+from analysis.resolver.straight import Gates, Sums, sum_straight
+from analysis.resolver.sums import PeriodSums, sum_any
+from analysis.resolver.template import straight_template
+from analysis.resolver.weights import REACH
+from hardware.description.channels import Channel
+from hardware.description.errors import DataError
+
+FloatArray = NDArray[np.float64]
+
+_NEIGHBOURS = 7  # periods whose median is the present one
+
+
+@dataclass(frozen=True)
+class Provisional:
+    """Needles between pulses: ``[A0, S1, C1, ...]`` of each channel, shape ``(channels, K)``."""
+
+    coefficients: FloatArray
+
+
+@dataclass(frozen=True)
+class _Period:
+    """A finished period: where it lies, and its sums."""
+
+    opened_s: float
+    closed_s: float
+    opened_cycle: float
+    sums: Sums
+
+
+class LiveResolver:
+    """Resolve a run while it is recorded.
+
+    Parameters
+    ----------
+    channels
+        The sampled channels, in the order of the blocks' rows.
+    harmonics
+        Harmonics 1 to N.
+    periods
+        Periods of the gate; readings are final after each period, over the last so many.
+    start_s
+        Time of the first sample.
+    latency_s, angle_offset_rad
+        Calibration of the photocell, as in :func:`analysis.resolver.photocell.from_photocell`.
+    """
+
+    def __init__(
+        self,
+        channels: Sequence[Channel],
+        sample_rate_hz: float,
+        *,
+        harmonics: int = 3,
+        periods: int = 1,
+        start_s: float = 0.0,
+        latency_s: float = 0.0,
+        angle_offset_rad: float = 0.0,
+    ) -> None:
+        self._run = Recording("live", tuple(channels), np.empty((len(channels), 0)), sample_rate_hz)
+        self._orders = np.arange(1.0, harmonics + 1.0)
+        self._periods = periods
+        self._start_s = start_s
+        self._latency_s = latency_s
+        self._cycle = angle_offset_rad / (2.0 * np.pi)
+        self._buffer = np.empty((len(channels), 1024))
+        self._first = 0  # number of the buffer's first sample
+        self._count = 0  # samples received
+        self._pulses: deque[float] = deque()  # not yet closed: the opening, then those to come
+        self._intervals: deque[float] = deque(maxlen=_NEIGHBOURS)
+        self._done: deque[_Period] = deque(maxlen=periods)
+        self._partial: Sums | None = None
+        self._partial_to = 0
+
+    def push(self, samples: FloatArray) -> list[Harmonics]:
+        """Take a block, shape ``(channels, samples)``; return the readings it made final.
+
+        Raises
+        ------
+        DataError
+            If the block has another number of channels.
+        """
+        if samples.ndim != 2 or samples.shape[0] != len(self._run.channels):
+            raise DataError(
+                f"a block of shape {samples.shape} does not fit {len(self._run.channels)} channels"
+            )
+        self._append(samples)
+        if not self._pulses and self._count - self._first > 2.0 * self._run.sample_rate_hz:
+            self._keep_from(self._count - int(self._run.sample_rate_hz))
+        return self._close_periods()
+
+    def pulse(self, time_s: float) -> list[Harmonics]:
+        """Take a photocell pulse; return the readings it made final.
+
+        A pulse too soon after the last is dropped; one so late that pulses were missed closes as
+        many periods as have passed.
+
+        Raises
+        ------
+        DataError
+            If it does not come after the last pulse.
+        """
+        time_s -= self._latency_s
+        if self._pulses:
+            interval = time_s - self._pulses[-1]
+            if interval <= 0.0:
+                raise DataError(f"pulse at {time_s:.6f} s comes {-interval:.6f} s before the last")
+            for part in self._split(interval):
+                self._pulses.append(part)
+        else:
+            self._pulses.append(time_s)
+        return self._close_periods()
+
+    def finish(self) -> list[Harmonics]:
+        """Return the readings that still waited for samples beyond their edge, at a run's end."""
+        return self._close_periods(reach=0)
+
+    def provisional(self) -> Provisional | None:
+        """Return the needles as they stand: the last gate and what has come of the next period.
+
+        ``None`` before the first whole period.
+        """
+        if not self._done:
+            return None
+        self._sum_partial()
+        parts = [period.sums for period in self._done]
+        if self._partial is not None:
+            parts.append(self._partial)
+        gram = sum(part[0] for part in parts)
+        moment = sum(part[1] for part in parts)
+        return Provisional(np.linalg.solve(gram, np.asarray(moment).T).T)
+
+    def _append(self, samples: FloatArray) -> None:
+        held = self._count - self._first
+        needed = held + samples.shape[1]
+        if needed > self._buffer.shape[1]:
+            grown = np.empty((self._buffer.shape[0], 2 * needed))
+            grown[:, :held] = self._buffer[:, :held]
+            self._buffer = grown
+        self._buffer[:, held:needed] = samples
+        self._count += samples.shape[1]
+
+    def _split(self, interval: float) -> list[float]:
+        """Pulses that an interval stands for: none, one, or as many as were missed and this one."""
+        last = self._pulses[-1]
+        usual = float(np.median(self._intervals)) if self._intervals else interval
+        if interval < EARLY * usual:
+            return []
+        turns = 1 if interval < LATE * usual else round(interval / usual)
+        self._intervals.append(interval / turns)
+        return [last + interval * k / turns for k in range(1, turns + 1)]
+
+    def _close_periods(self, reach: int = REACH) -> list[Harmonics]:
+        readings = []
+        while len(self._pulses) > 1 and self._number(self._pulses[1]) + reach <= self._count - 1:
+            opened_s = self._pulses.popleft()
+            if self._number(opened_s) >= 0.0:
+                self._done.append(self._sum(opened_s, self._pulses[0]))
+                if len(self._done) == self._periods:
+                    readings.append(self._read())
+            self._cycle += 1.0
+            self._forget()
+        return readings
+
+    def _number(self, time_s: float) -> float:
+        """Fractional sample number of a time, from the run's first sample."""
+        return (time_s - self._start_s) * self._run.sample_rate_hz
+
+    def _sum(self, opened_s: float, closed_s: float) -> _Period:
+        rate = self._run.sample_rate_hz
+        edges = [self._number(time) - self._first for time in (opened_s, closed_s)]
+        gate = Gates(*np.array([*edges, self._cycle, self._cycle + 1.0])[:, None])
+        held = self._buffer[:, : self._count - self._first]
+        if edges[0] < REACH - 1 or edges[1] >= held.shape[1] - REACH:  # a run's very ends
+            gram, moment, ramp = sum_any(held, gate, gate.cycles_of_first, self._orders)
+        else:
+            sums = sum_straight(held, gate, len(self._orders), compiled=False)
+            gram, moment, ramp = (part[0] for part in sums)
+        ramp = (ramp + gram[0] * self._first) / rate
+        return _Period(opened_s, closed_s, self._cycle, (gram, moment, ramp))
+
+    def _read(self) -> Harmonics:
+        gram, moment, ramp = (
+            np.array(part) for part in zip(*(p.sums for p in self._done), strict=True)
+        )
+        sums = PeriodSums(
+            self._run.channel_names,
+            self._orders,
+            np.array([period.opened_s for period in self._done]),
+            np.array([period.closed_s for period in self._done]),
+            np.array([period.opened_cycle for period in self._done]),
+            gram,
+            moment,
+            ramp,
+        )
+        return resolve(self._run, sums)
+
+    def _forget(self) -> None:
+        """Drop the samples that no later period needs, and the provisional sums."""
+        self._partial, self._partial_to = None, 0
+        self._keep_from(max(self._first, int(self._number(self._pulses[0])) - 2 * REACH))
+
+    def _keep_from(self, number: int) -> None:
+        held = self._buffer[:, number - self._first : self._count - self._first]
+        self._buffer[:, : held.shape[1]] = held.copy()
+        self._first = number
+
+    def _sum_partial(self) -> None:
+        """Add what has come of the present period, its phase going on as in the last."""
+        last = self._done[-1]
+        opening = self._number(self._pulses[0])
+        start = max(self._partial_to, int(np.ceil(opening)))
+        if start >= self._count:
+            return
+        step = 1.0 / (self._run.sample_rate_hz * (last.closed_s - last.opened_s))
+        first_cycle = self._cycle + (start - opening) * step
+        basis = straight_template(first_cycle, step, self._count - start, len(self._orders))
+        values = self._buffer[:, start - self._first : self._count - self._first]
+        gram, moment = basis @ basis.T, values @ basis.T
+        if self._partial is not None:
+            gram, moment = gram + self._partial[0], moment + self._partial[1]
+        self._partial, self._partial_to = (gram, moment, gram[0]), self._count
