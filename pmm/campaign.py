@@ -1,9 +1,9 @@
 """A campaign: the rig, what the simulation believes of it, and the runs with their set-points.
 
-``docs/campaigns.md`` describes the file for people; :func:`pmm.campaign_file.read_campaign` reads it.
+``docs/campaigns.md`` describes the file for people; :mod:`pmm.campaign_file` reads it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
@@ -95,14 +95,14 @@ class Campaign:
     name: str = "campaign"
     oscillator: Oscillator | None = None
     model: Body | None = None
-    hull: HullCoefficients = HullCoefficients()
-    drive: DriveSettings = DriveSettings()
-    dynamometers: Dynamometers = Dynamometers()
-    acquisition: Acquisition = Acquisition()
-    photocell: Photocell | None = Photocell()
-    simulation: Simulation = Simulation()
-    reference: ReferenceChoice = ReferenceChoice()
-    analysis: Settings = Settings()
+    hull: HullCoefficients = field(default_factory=HullCoefficients)
+    drive: DriveSettings = field(default_factory=DriveSettings)
+    dynamometers: Dynamometers = field(default_factory=Dynamometers)
+    acquisition: Acquisition = field(default_factory=Acquisition)
+    photocell: Photocell | None = field(default_factory=Photocell)
+    simulation: Simulation = field(default_factory=Simulation)
+    reference: ReferenceChoice = field(default_factory=ReferenceChoice)
+    analysis: Settings = field(default_factory=Settings)
     columns: ColumnMap | None = None
     runs: tuple[Run, ...] = ()
 

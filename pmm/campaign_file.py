@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import asdict, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from analysis.readers import ColumnMap
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import check_within
-from pmm.campaign import Campaign
+from pmm.campaign import Campaign, Run
 from pmm.configuration import Fault, limit_faults, read_toml, refuse, validate
 
 PRESETS = {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
@@ -24,6 +25,7 @@ _UNITS = {
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS)}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
+_NOT_IN_FILE_NAMES = set('/\\:*?"<>|\0')
 
 
 def read_campaign(path: str | Path) -> Campaign:
@@ -44,8 +46,7 @@ def read_campaign(path: str | Path) -> Campaign:
     _expand_units(table, faults)
     _none_for_false(table)
     campaign = validate(Campaign, table, faults, _EXTRA_KEYS)
-    if campaign is not None:
-        faults += _run_faults(campaign)
+    faults += _run_faults(table)
     refuse(path, faults, original)
     assert campaign is not None  # noqa: S101 - what is not valid has been refused
     name = campaign.name if "name" in original else path.resolve().parent.name
@@ -59,10 +60,11 @@ def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> Col
     if not isinstance(columns, dict):
         faults.append(Fault(("columns",), "should be a table"))
         return None
+    origin = f"{path.name} [columns]"
     try:
-        return ColumnMap.from_table(columns, f"{path.name} [columns]")
+        return ColumnMap.from_table(columns, origin)
     except ConfigurationError as error:
-        faults.append(Fault((), str(error)))
+        faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
         return None
 
 
@@ -75,7 +77,7 @@ def _expand_preset(table: dict[str, Any], faults: list[Fault]) -> None:
     if preset not in PRESETS:
         names = " or ".join(PRESETS)
         faults.append(Fault(("oscillator", "preset"), f"= {preset!r} should be {names}"))
-        preset = next(iter(PRESETS))
+        preset = get_close_matches(str(preset), PRESETS, n=1, cutoff=0.0)[0]
     table["oscillator"] = asdict(PRESETS[preset]) | oscillator
 
 
@@ -106,20 +108,27 @@ def _none_for_false(table: dict[str, Any]) -> None:
             table[key] = {part: None if one is False else one for part, one in value.items()}
 
 
-def _run_faults(campaign: Campaign) -> Iterator[Fault]:
-    seen: dict[str, int] = {}
-    for number, run in enumerate(campaign.runs):
-        first = seen.setdefault(run.name.casefold(), number)
-        if first != number:
-            yield Fault(("runs", number, "name"), "is taken already; a recording is named by it")
-        if not run.name or run.name.startswith(".") or set(run.name) & set('/\\:*?"<>|\0'):
-            yield Fault(("runs", number, "name"), f"= {run.name!r} cannot be a file's name")
-        if campaign.oscillator is not None:
-            yield from _beyond(campaign.oscillator, campaign, number)
+def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
+    """Yield what is wrong with runs that are right by themselves."""
+    oscillator = validate(Oscillator, table.get("oscillator", {}), [])
+    names: set[str] = set()
+    runs = table.get("runs")
+    for number, one in enumerate(runs if isinstance(runs, list) else []):
+        run = validate(Run, one, [])
+        if run is None:
+            continue
+        place = ("runs", number, "name")
+        if run.name.casefold() in names:
+            yield Fault(place, "is taken already; a recording is named by it")
+        if not run.name or run.name.startswith(".") or set(run.name) & _NOT_IN_FILE_NAMES:
+            yield Fault(place, f"= {run.name!r} cannot be the name of a file")
+        names.add(run.name.casefold())
+        if oscillator is not None:
+            yield from _beyond(oscillator, run, number)
 
 
-def _beyond(oscillator: Oscillator, campaign: Campaign, number: int) -> Iterator[Fault]:
+def _beyond(oscillator: Oscillator, run: Run, number: int) -> Iterator[Fault]:
     try:
-        check_within(oscillator, campaign.runs[number].set_point)
+        check_within(oscillator, run.set_point)
     except ConfigurationError as error:
         yield Fault(("runs", number), str(error))

@@ -3,13 +3,27 @@
 import json
 import tomllib
 import types
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+from types import MappingProxyType
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    NamedTuple,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from hardware.description.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 T = TypeVar("T")
 
@@ -43,7 +57,7 @@ def validate(
     kind: type[T],
     table: Mapping[str, Any],
     faults: list[Fault],
-    extra_keys: Mapping[str, Sequence[str]],
+    extra_keys: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> T | None:
     """Build a dataclass from a table; on errors note all of them and return ``None``.
 
@@ -55,11 +69,11 @@ def validate(
         Keys that the caller has taken out of the tables already, by the table's name: known ones,
         for suggestions.
     """
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import ValidationError
 
     try:
-        # By way of JSON, because pydantic is strict about numbers and takes arrays for tuples there.
-        return TypeAdapter(kind).validate_json(json.dumps(table, default=str), strict=True)
+        # By way of JSON: there pydantic is strict about numbers and yet takes arrays for tuples.
+        found: T = _adapter(kind).validate_json(json.dumps(table, default=str), strict=True)
     except ValidationError as error:
         for one in error.errors(include_url=False):
             place = one["loc"]
@@ -70,9 +84,24 @@ def validate(
             elif one["type"] == "missing":
                 faults.append(Fault(place, "is missing"))
             else:
-                problem = one["msg"].removeprefix("Input ")
-                faults.append(Fault(place, f"= {_short(one['input'])} {problem}"))
+                faults.append(Fault(place, f"= {_short(one['input'])} {_problem(one['msg'])}"))
         return None
+    return found
+
+
+@cache
+def _adapter(kind: Hashable) -> "TypeAdapter[Any]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(kind)
+
+
+def _problem(message: str) -> str:
+    """Say what pydantic says in the words of a TOML file."""
+    message = message.removeprefix("Input ")
+    for word, ours in (("an object", "a table"), ("integer", "whole number"), ("string", "text")):
+        message = message.replace(word, ours)
+    return message
 
 
 def _short(value: object) -> str:
@@ -91,10 +120,7 @@ def keys_at(kind: Any, place: Place) -> tuple[str, ...]:
     """Return the keys of the dataclass that lies at a place within another."""
     for key in place:
         kind = _without_none(kind)
-        if isinstance(key, int):
-            kind = get_args(kind)[0]
-        else:
-            kind = get_type_hints(kind)[key]
+        kind = get_args(kind)[0] if isinstance(key, int) else get_type_hints(kind)[key]
     kind = _without_none(kind)
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
 
@@ -105,28 +131,30 @@ def _without_none(kind: Any) -> Any:
     return next(part for part in get_args(kind) if part is not type(None))
 
 
-# What a number of that name may be, in whichever table it stands.
-_POSITIVE = {
-    "eccentricity_mm": False,
-    "eccentricity_m": False,
-    "frequency_hz": True,
-    "force_per_strut_n": True,
-    "full_scale": True,
-    "full_scale_n": True,
-    "half_spacing_m": True,
-    "inertia_kg_m2": True,
-    "jitter_rms_s": False,
-    "mass_kg": True,
-    "noise_rms": False,
-    "periods": True,
-    "resolution": False,
-    "rod_length_m": True,
-    "sample_rate_hz": True,
-    "seed": False,
-    "settling_periods": False,
-    "start_ramp_s": False,
-    "steady_tolerance": True,
-}
+# What a number of that name must be, in whichever table it stands.
+_ABOVE_0 = (
+    "frequency_hz",
+    "force_per_strut_n",
+    "full_scale",
+    "full_scale_n",
+    "half_spacing_m",
+    "inertia_kg_m2",
+    "mass_kg",
+    "periods",
+    "rod_length_m",
+    "sample_rate_hz",
+    "steady_tolerance",
+)
+_NOT_BELOW_0 = (
+    "eccentricity_m",
+    "eccentricity_mm",
+    "jitter_rms_s",
+    "noise_rms",
+    "resolution",
+    "seed",
+    "settling_periods",
+    "start_ramp_s",
+)
 
 
 def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
@@ -136,10 +164,11 @@ def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
         here: Place = (*place, key)
         if isinstance(value, dict | list):
             yield from limit_faults(value, here)
-        elif key in _POSITIVE and isinstance(value, int | float):
-            if value < 0 or (value == 0 and _POSITIVE[key]):
-                limit = "above 0" if _POSITIVE[key] else "0 or more"
-                yield Fault(here, f"= {value:g} should be {limit}")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            if key in _ABOVE_0 and value <= 0:
+                yield Fault(here, f"= {value:g} should be above 0")
+            elif key in _NOT_BELOW_0 and value < 0:
+                yield Fault(here, f"= {value:g} should be 0 or more")
 
 
 def refuse(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from hardware.description.errors import PmmError
+from hardware.description.errors import DataError, PmmError
 
 # Command -> module with a click command of the same name. These modules import nothing heavy at
 # their top, so that ``pmm --help`` can read their help at once.
@@ -16,24 +16,6 @@ _COMMANDS = {
     "simulate": "pmm.cli.simulate",
 }
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
-
-
-class Refusal(click.ClickException):
-    """An error raised on purpose, as the command line shows it: its message, and no traceback."""
-
-    def __init__(self, error: Exception, exit_status: int, *, debug: bool) -> None:
-        super().__init__(str(error))
-        self.error, self.exit_code, self.debug = error, exit_status, debug
-
-    def show(self, file: Any = None) -> None:  # noqa: ARG002
-        """Print the message, after the traceback if that is wanted, on the error stream."""
-        import traceback
-
-        from pmm.cli.screen import error_line
-
-        if self.debug:
-            traceback.print_exception(self.error)
-        error_line(self.message)
 
 
 class Commands(click.Group):
@@ -67,17 +49,31 @@ class Commands(click.Group):
         try:
             return super().invoke(ctx)
         except PmmError as error:
-            raise Refusal(error, error.exit_status, debug=ctx.params["debug"]) from error
+            _show(error, with_traceback=ctx.params["debug"])
+            ctx.exit(error.exit_status)
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise Refusal(error, PmmError.exit_status, debug=ctx.params["debug"]) from error
+            named = DataError(f"{error.filename}: {error.strerror}" if error.filename else error)
+            _show(named.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
+            ctx.exit(named.exit_status)
         except KeyboardInterrupt:
             click.echo("stopped", err=True)
             ctx.exit(_INTERRUPTED)
 
 
-def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:  # noqa: ARG001, FBT001
+def _show(error: Exception, *, with_traceback: bool) -> None:
+    """Print an error on the error stream."""
+    from pmm.cli.screen import error_line
+
+    if with_traceback:
+        import traceback
+
+        traceback.print_exception(error)
+    error_line(str(error))
+
+
+def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:  # noqa: ARG001
     if wanted and not ctx.resilient_parsing:
         from pmm.cli.version import version_line
 
@@ -95,7 +91,7 @@ def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool)
     callback=_print_version,
     help="Show the version, and what it runs on.",
 )
-def cli(debug: bool) -> None:  # noqa: ARG001, FBT001
+def cli(debug: bool) -> None:
     """Planar motion mechanism: simulate runs and resolve recordings into harmonics.
 
     Exit status: 0 done, 1 the data say no, 2 the request was wrong.

@@ -90,6 +90,7 @@ def analyse(**options: Any) -> None:
     pmm analyse run.csv --reference stroke --channel Fy
     pmm analyse campaign/ --plot plots
     """
-    from pmm.cli.analysing import Request, run
+    from pmm.cli.analysing import run
+    from pmm.cli.request import Request
 
     run(Request(**options))

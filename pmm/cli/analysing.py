@@ -2,78 +2,26 @@
 
 import json
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from analysis.readers import write_recording
-from analysis.resolver.analyse import Analysis, ReferenceChoice, Settings
-from analysis.resolver.analyse import analyse as resolve_recording
-from analysis.resolver.reference import ReferenceSource
-from hardware.description.channels import DISPLACEMENT_AFT, SHAFT_ANGLE
-from hardware.description.errors import ConfigurationError, DataError, PmmError
+from analysis.resolver.analyse import ReferenceChoice, Settings
+from hardware.description.errors import ConfigurationError, PmmError
 from pmm.cli.inputs import Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
+from pmm.cli.request import Request
+from pmm.cli.resolving import analyse_recording, reference_channel
 from pmm.cli.screen import error_line, output, show_progress
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
-    from analysis.recording import Recording
 
 JSON_SCHEMA = "pmm-analysis-1"
-
-
-@dataclass(frozen=True)
-class Request:
-    """The options of ``pmm analyse``, by their names there; ``None`` where one is not given."""
-
-    files: tuple[str, ...]
-    reference: str | None
-    frequency: float | None
-    edges: str | None
-    latency: float | None
-    angle_offset: float | None
-    channels: tuple[str, ...]
-    harmonics: int | None
-    gate: int | None
-    opens_at: float | None
-    periods: int | None
-    steady_tolerance: float | None
-    no_drift: bool
-    column_map: str | None
-    columns: tuple[str, ...]
-    sample_rate: float | None
-    level: float
-    plot: str | None
-    save: str | None
-    as_json: bool
-
-    def choice(self, base: ReferenceChoice) -> ReferenceChoice:
-        """Return the reference wanted, on top of what a campaign says."""
-        given: dict[str, Any] = {}
-        if self.reference is not None or self.frequency is not None or self.edges is not None:
-            given = {"channel": self.reference, "frequency_hz": self.frequency}
-        if self.latency is not None:
-            given["latency_s"] = self.latency
-        if self.angle_offset is not None:
-            given["angle_offset_rad"] = math.radians(self.angle_offset)
-        return replace(base, **given)
-
-    def settings(self, base: Settings) -> Settings:
-        """Return the settings wanted, on top of what a campaign says."""
-        given = {
-            "channels": self.channels or None,
-            "harmonics": self.harmonics,
-            "gate_periods": self.gate,
-            "opens_s": self.opens_at,
-            "periods": self.periods,
-            "steady_tolerance": self.steady_tolerance,
-            "take_out_drift": False if self.no_drift else None,
-        }
-        return replace(base, **{key: value for key, value in given.items() if value is not None})
 
 
 @dataclass(frozen=True)
@@ -145,56 +93,6 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
         reference_channel=reference_channel(recording, choice),
         level=request.level,
     )
-
-
-def analyse_recording(
-    recording: "Recording", choice: ReferenceChoice, settings: Settings
-) -> Analysis:
-    """Analyse the channels chosen, or all but the reference and the shaft angle.
-
-    Raises
-    ------
-    DataError
-        As :func:`analysis.resolver.analyse.analyse` does.
-    ConfigurationError
-        If a photocell's latency or a mark's angle is given for a reference that has none.
-    """
-    if not settings.channels:
-        left_out = (reference_channel(recording, choice), SHAFT_ANGLE.name)
-        names = tuple(name for name in recording.channel_names if name not in left_out)
-        settings = replace(settings, channels=names)
-        if not names:
-            raise DataError(
-                f"{recording.name}: no channel is left beside the reference; name it with --channel"
-            )
-    analysis = resolve_recording(recording, choice, settings)
-    _check_calibration(analysis, choice)
-    return analysis
-
-
-def reference_channel(recording: "Recording", choice: ReferenceChoice) -> str | None:
-    """Return the channel from which :func:`analyse` takes the phase, if it is one."""
-    if choice.channel is not None or choice.frequency_hz is not None:
-        return choice.channel
-    edges = recording.photocell_edges_s
-    if edges is not None and len(edges):
-        return None
-    ways = (SHAFT_ANGLE.name, DISPLACEMENT_AFT.name)
-    return next((name for name in ways if name in recording.channel_names), None)
-
-
-def _check_calibration(analysis: Analysis, choice: ReferenceChoice) -> None:
-    source = analysis.reference.source
-    if choice.latency_s and source is not ReferenceSource.PHOTOCELL:
-        raise ConfigurationError(
-            f"a latency is the photocell's, but the phase of {analysis.recording.name} comes from "
-            f"the {source}; leave it out"
-        )
-    if choice.angle_offset_rad and source in (ReferenceSource.FREQUENCY, ReferenceSource.SIGNAL):
-        raise ConfigurationError(
-            "an angle offset is that of a photocell or an encoder, but the phase of "
-            f"{analysis.recording.name} comes from the {source}; leave it out"
-        )
 
 
 def _report(request: Request, done: list[RunRows], failed: list[Failure]) -> None:

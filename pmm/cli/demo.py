@@ -8,7 +8,7 @@ import click
     "--output", metavar="FOLDER", default="demo", show_default=True, help="Where to write."
 )
 @click.option("--vertical-only", is_flag=True, help="Leave out the horizontal campaign.")
-def demo(output: str, vertical_only: bool) -> None:  # noqa: FBT001
+def demo(output: str, vertical_only: bool) -> None:
     """Simulate a small campaign, analyse it and write a report: see what this program does.
 
     Heave and pitch on the vertical oscillator, sway and yaw on the horizontal one. The folder gets

@@ -5,22 +5,17 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analyse import Analysis, ReferenceChoice, Settings
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from pmm.campaign_file import read_campaign
-from pmm.cli.analysing import analyse_recording
 from pmm.cli.printing import print_compact
+from pmm.cli.resolving import analyse_recording
 from pmm.cli.screen import output, show_progress
 from pmm.cli.simulating import copy_campaign, simulate_runs
 from pmm.tables import RunRows, run_rows
 
 CAMPAIGNS = ("vertical", "horizontal")
 PAGE = "report.html"
-
-
-def campaign_text(name: str) -> str:
-    """Return the text of a demo campaign's file, which comes with the package."""
-    return (files("pmm.cli") / "campaigns" / f"{name}.toml").read_text(encoding="utf-8")
 
 
 def run(folder_name: str, *, with_horizontal: bool = True) -> None:
@@ -51,8 +46,6 @@ def _simulate(name: str, folder: Path) -> list[Path]:
 
 
 def _analyse(path: Path) -> Analysis:
-    from analysis.resolver.analyse import ReferenceChoice, Settings
-
     return analyse_recording(read_recording(path), ReferenceChoice(), Settings())
 
 

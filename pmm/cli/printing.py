@@ -77,3 +77,24 @@ def _style(row: "HarmonicRow") -> str:
 def harmonic_cells(row: "HarmonicRow") -> Sequence[str]:
     """Return in phase, quadrature, amplitude and phase of a harmonic as text."""
     return [str(value) for value in (row.in_phase, row.quadrature, row.amplitude, row.phase_deg)]
+
+
+def print_compact(console: "Console", runs: "Sequence[RunRows]", channels: Sequence[str]) -> None:
+    """Print the first harmonic of some channels of each run, and higher ones that are no noise."""
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    table.add_column("run", overflow="fold")
+    table.add_column("channel", overflow="fold")
+    table.add_column("n", justify="right")
+    for heading in ("in phase", "quadrature", "amplitude", "phase [deg]"):
+        table.add_column(heading, justify="right", min_width=15)
+    for rows in runs:
+        run = rows.run
+        for channel in rows.gates[0].channels:
+            label = channel.label
+            for row in channel.harmonics if channel.name in channels else ():
+                if row.order == 1 or row.is_significant:
+                    table.add_row(run, label, str(row.order), *harmonic_cells(row))
+                    run = label = ""
+    console.print(table)
