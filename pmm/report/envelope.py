@@ -1,0 +1,94 @@
+"""Long traces in few points: the lowest and the highest sample of each stretch."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+
+FloatArray = NDArray[np.float64]
+
+_READ_SAMPLES = 200_000  # of all channels at a time
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Points to draw: ``time_s`` of shape ``(points,)``, ``values`` ``(channels, points)``."""
+
+    time_s: FloatArray
+    values: FloatArray
+
+
+def zigzag(time_s: FloatArray, values: FloatArray, bins: int) -> Trace:
+    """Return a trace in at most ``2 * bins`` points that touches every extreme.
+
+    Parameters
+    ----------
+    time_s, values
+        Shapes ``(samples,)`` and ``(channels, samples)``. Handed through where they are few; NaN
+        only where a whole stretch is missing.
+    """
+    if len(time_s) <= 2 * bins:
+        return Trace(time_s, values)
+    edges = _edges(len(time_s), bins)
+    return Trace(_middles(time_s[0], time_s[-1], edges), _extremes(values, edges[:-1]))
+
+
+def tops(x: FloatArray, values: FloatArray, bins: int) -> tuple[FloatArray, FloatArray]:
+    """Return the highest point of each stretch of one curve, and where it lies.
+
+    Parameters
+    ----------
+    x, values
+        Shape ``(points,)`` each; handed through where they are no more than ``bins``.
+    """
+    if len(x) <= bins:
+        return x, values
+    edges = _edges(len(x), bins)
+    at = np.array([a + int(np.argmax(values[a:b])) for a, b in pairwise(edges)])
+    return x[at], values[at]
+
+
+def overview(recording: Recording, bins: int) -> Trace:
+    """Return a whole recording in at most ``2 * bins`` points, read in blocks."""
+    if recording.sample_count <= 2 * bins:
+        return Trace(recording.time_s(), recording.samples[:, 0 : recording.sample_count])
+    edges = _edges(recording.sample_count, bins)
+    parts = [
+        _extremes(recording.samples[:, some[0] : some[-1]], some[:-1] - some[0])
+        for some in _blocks(edges)
+    ]
+    time_s = _middles(recording.start_s, recording.end_s, edges)
+    return Trace(time_s, np.concatenate(parts, axis=1))
+
+
+def _edges(count: int, bins: int) -> NDArray[np.int64]:
+    return np.asarray(np.linspace(0, count, bins + 1), dtype=np.int64)
+
+
+def _middles(first_s: float, last_s: float, edges: NDArray[np.int64]) -> FloatArray:
+    """Times of the two points of each bin: both at its middle."""
+    middle = (edges[:-1] + edges[1:] - 1) / 2.0
+    return np.repeat(first_s + middle * (last_s - first_s) / (edges[-1] - 1), 2)
+
+
+def _blocks(edges: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+    """Whole bins, as many as are read at a time; consecutive blocks share an edge."""
+    each = max(1, int(_READ_SAMPLES * (len(edges) - 1) / edges[-1]))
+    for first in range(0, len(edges) - 1, each):
+        yield edges[first : first + each + 1]
+
+
+def _extremes(values: FloatArray, starts: NDArray[np.int64]) -> FloatArray:
+    """Lowest and highest value from each start to the next, one after the other."""
+    pairs = np.stack(
+        (
+            np.fmin.reduceat(values, starts, axis=1),
+            np.fmax.reduceat(values, starts, axis=1),
+        ),
+        axis=-1,
+    )
+    return np.asarray(pairs.reshape(len(values), -1), dtype=np.float64)

@@ -1,0 +1,185 @@
+"""The gate in its record: what was recorded, which part was used, how well the fit lies on it."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.resolver.analyse import Analysis
+from analysis.resolver.harmonics import Harmonics
+from pmm.report.envelope import Trace, overview, zigzag
+from pmm.report.gated import caption, fitted, gate_sums, reading_of
+from pmm.report.labels import Display, axis_label, display, loads_first, shown_name
+from pmm.report.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FloatArray = NDArray[np.float64]
+
+_POINTS = 3400  # of one kind of curve, shared by all channels: an SVG stays small
+_FIT_POINTS_PER_PERIOD = 24
+_MOST_TICKS = 400  # of one kind, shared by all channels
+_DENSE = 60  # periods: beyond, the fit is drawn as its outline
+
+
+@dataclass(frozen=True)
+class _Curves:
+    """What is drawn: the record, the fit in the gate, and both again over the last periods."""
+
+    record: Trace
+    fit: Trace
+    zoom: list[tuple[Trace, Trace, Trace]]  # of each channel: trace, fit, residual
+
+
+def gate_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
+    """Draw each channel over the whole record, and over the last two periods of one gate.
+
+    Shaded are the record, the steady stretch and the gate. The fit (mean, harmonics and drift) lies
+    over the trace inside the gate; what it leaves is below the last two periods. Ticks along the
+    bottom are where whole periods meet, those along the top the photocell's pulses.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such reading.
+    """
+    from matplotlib.figure import Figure
+
+    reading = reading_of(analysis, reading_index)
+    order = loads_first(analysis.recording)
+    curves = _curves(analysis, reading, max(60, _POINTS // (2 * len(order))))
+    with drawing():
+        figure = Figure(figsize=(10.5, 1.3 + 1.9 * len(order)), layout="constrained")
+        figure.suptitle(f"{shown_name(reading.run)}: {caption(reading)}")
+        heights = (2.2, 1.0) * len(order)
+        grid = figure.add_gridspec(len(heights), 2, width_ratios=(2.0, 1.0), height_ratios=heights)
+        first: Axes | None = None
+        for place, row in enumerate(order):
+            axes = figure.add_subplot(grid[2 * place : 2 * place + 2, 0], sharex=first)
+            first = first or axes
+            zoom = figure.add_subplot(grid[2 * place, 1])
+            rest = figure.add_subplot(grid[2 * place + 1, 1], sharex=zoom)
+            last = place == len(order) - 1
+            handles = _draw_record(axes, analysis, reading, curves, row)
+            _draw_zoom(zoom, rest, curves, row, display(analysis.recording.channels[row].unit))
+            for each in (axes, rest):
+                each.tick_params(labelbottom=last)
+                each.set_xlabel("time (s)" if last else "")
+            if place == 0:
+                axes.set_title("whole record", loc="left")
+                zoom.set_title("end of the gate, and residual", loc="left")
+        figure.legend(handles=handles, loc="outside lower left", ncols=4)
+    return figure
+
+
+def _curves(analysis: Analysis, reading: Harmonics, bins: int) -> _Curves:
+    density = min(reading.periods * max(_FIT_POINTS_PER_PERIOD, 8 * reading.order), 100_000)
+    inside_s = np.linspace(reading.opened_s, reading.closed_s, density + 1)
+    fit = zigzag(inside_s, fitted(analysis, reading, inside_s), bins)
+    channels = range(len(analysis.recording.channels))
+    return _Curves(
+        overview(analysis.recording, bins),
+        fit,
+        [_zoom(analysis, reading, row, bins // 3) for row in channels],
+    )
+
+
+def _zoom(
+    analysis: Analysis, reading: Harmonics, row: int, bins: int
+) -> tuple[Trace, Trace, Trace]:
+    recording, gate = analysis.recording, gate_sums(analysis, reading)
+    begin_s, end_s = float(gate.opened_s[-2:][0]), float(gate.closed_s[-1])
+    start, stop = recording.sample_number(np.array([begin_s, end_s])).round(9)
+    first, last = int(np.ceil(start)), int(np.floor(stop)) + 1
+    time_s = recording.time_s(first, last)
+    values = recording.samples[row : row + 1, first:last]
+    left = values - fitted(analysis, reading, time_s)[row]
+    smooth_s = np.linspace(begin_s, end_s, 2 * max(_FIT_POINTS_PER_PERIOD, 8 * reading.order) + 1)
+    smooth = Trace(smooth_s, fitted(analysis, reading, smooth_s)[row : row + 1])
+    return zigzag(time_s, values, bins), smooth, zigzag(time_s, left, bins)
+
+
+def _draw_record(
+    axes: "Axes", analysis: Analysis, reading: Harmonics, curves: _Curves, row: int
+) -> list["Artist"]:
+    recording, steady = analysis.recording, analysis.steady_sums
+    shown = display(recording.channels[row].unit)
+    axes.set_ylabel(axis_label(recording.channels[row]))
+    axes.set_xlim(recording.start_s, recording.end_s)
+    shades = [
+        axes.axvspan(
+            float(start_s), float(stop_s), margin, 1.0 - margin, color=color, zorder=0, label=label
+        )
+        # Each lower than the one around it, so that it is seen even where the times are the same.
+        for start_s, stop_s, margin, color, label in (
+            (recording.start_s, recording.end_s, 0.0, RECORD_SHADE, "record"),
+            (steady.opened_s[0], steady.closed_s[-1], 0.0, STEADY_SHADE, "steady stretch"),
+            (reading.opened_s, reading.closed_s, 0.12, GATE_SHADE, "gate"),
+        )
+    ]
+    (trace,) = axes.plot(
+        curves.record.time_s,
+        curves.record.values[row] * shown.factor,
+        color=TRACE,
+        lw=0.7,
+        label="measured",
+    )
+    fit = _draw_fit(axes, reading, curves.fit, row, shown.factor)
+    return [trace, fit, *shades, *_draw_ticks(axes, analysis)]
+
+
+def _draw_fit(axes: "Axes", reading: Harmonics, fit: Trace, row: int, factor: float) -> "Artist":
+    """Draw the fit; of many periods only its two bounds, so that the trace stays in sight."""
+    values = fit.values[row] * factor
+    label = "mean + harmonics + drift"
+    if reading.periods > _DENSE:
+        axes.plot(fit.time_s[::2], values[::2], color=FIT, lw=1.0)
+        values, time_s = values[1::2], fit.time_s[1::2]
+        label += " (bounds)"
+    else:
+        time_s = fit.time_s
+    (line,) = axes.plot(time_s, values, color=FIT, lw=0.9, label=label)
+    return line
+
+
+def _draw_ticks(axes: "Axes", analysis: Analysis) -> list["Artist"]:
+    edges_s = np.append(analysis.sums.opened_s, analysis.sums.closed_s[-1])
+    pulses_s = analysis.recording.photocell_edges_s
+    most = max(40, _MOST_TICKS // len(analysis.recording.channels))
+    ticks: list[Artist] = [_ticks(axes, edges_s, most, (0.0, 0.07), "whole periods meet")]
+    if pulses_s is not None and len(pulses_s):
+        ticks.append(_ticks(axes, pulses_s, most, (0.93, 1.0), "photocell pulses"))
+    return ticks
+
+
+def _ticks(
+    axes: "Axes", times_s: FloatArray, most: int, reach: tuple[float, float], label: str
+) -> "Artist":
+    """Draw ticks along an edge, as one path; where there are very many, every so many-th."""
+    step = -(-len(times_s) // most)
+    kept = times_s[::step]
+    (line,) = axes.plot(
+        np.repeat(kept, 3),
+        np.tile((*reach, np.nan), len(kept)),
+        color=PALETTE[0] if reach[0] == 0.0 else "black",
+        lw=0.9,
+        transform=axes.get_xaxis_transform(),
+        label=label if step == 1 else f"{label} (1 in {step})",
+    )
+    return line
+
+
+def _draw_zoom(zoom: "Axes", rest: "Axes", curves: _Curves, row: int, shown: Display) -> None:
+    trace, fit, left = curves.zoom[row]
+    zoom.plot(trace.time_s, trace.values[0] * shown.factor, color=TRACE, lw=0.8)
+    zoom.plot(fit.time_s, fit.values[0] * shown.factor, color=FIT, lw=1.0)
+    zoom.tick_params(labelbottom=False)
+    zoom.locator_params(axis="x", nbins=5)
+    zoom.set_xlim(fit.time_s[0], fit.time_s[-1])
+    rest.plot(left.time_s, left.values[0] * shown.factor, color=TRACE, lw=0.7)
+    rest.axhline(0.0, color=FIT, lw=0.8)
+    rest.set_ylabel(f"residual\n({shown.label})")

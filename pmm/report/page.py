@@ -1,0 +1,92 @@
+"""One page that holds a report: tables, figures and provenance in a single file, offline."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from analysis.resolver.analyse import Analysis
+from hardware.description.flags import Flag
+from pmm.report.inline import inline_svg
+from pmm.report.plots import FIGURES
+from pmm.report.style import render
+from pmm.report.tabulate import GateTable, gate_table, provenance, versions
+
+_CAPTIONS = {
+    "gate": "The record, the steady stretch and the gate, with the fit over the trace; beside it "
+    "the end of the gate, and the residual of the fit.",
+    "phasors": "Harmonics as phasors with their 95 % regions: in phase to the right, quadrature "
+    "up. Below each, how the gate's single periods spread about it, magnified.",
+    "spectrum": "Amplitude spectrum over the gate, and the part of a vibration that the resolver "
+    "lets through into each harmonic.",
+}
+
+
+@dataclass(frozen=True)
+class _Drawing:
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class _Section:
+    """One analysis on the page."""
+
+    name: str
+    anchor: str
+    flags: tuple[Flag, ...]
+    tables: tuple[GateTable, ...]
+    drawings: tuple[_Drawing, ...]
+    provenance: list[tuple[str, str]]
+
+
+def write_page(analyses: Sequence[Analysis], path: Path, *, title: str, command: str) -> None:
+    """Write a report of some analyses as one HTML page.
+
+    The page needs nothing besides itself: no other file, no network, no script. It reads in light
+    and dark, on a phone and in print. Figures are those of each analysis's first gate, tables of
+    all gates.
+
+    Parameters
+    ----------
+    path
+        The file to write; its folder is made if it is not there.
+    title
+        Heading of the page.
+    command
+        What was run to make it, so that it can be made again.
+    """
+    from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
+
+    # All text is escaped; the drawings alone are markup, and their text was escaped in them.
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["markup"] = Markup
+    template = environment.from_string(
+        files("pmm.report").joinpath("page.html.jinja").read_text(encoding="utf-8")
+    )
+    sections = [_section(analysis, f"run{k}") for k, analysis in enumerate(analyses, start=1)]
+    page = template.render(title=title, command=command, sections=sections, versions=versions())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page, encoding="utf-8", newline="\n")
+
+
+def _section(analysis: Analysis, anchor: str) -> _Section:
+    return _Section(
+        name=analysis.recording.name,
+        anchor=anchor,
+        flags=analysis.flags,
+        tables=tuple(gate_table(analysis, reading) for reading in analysis.readings),
+        drawings=tuple(_drawing(analysis, kind, anchor) for kind in FIGURES),
+        provenance=provenance(analysis),
+    )
+
+
+def _drawing(analysis: Analysis, kind: str, anchor: str) -> _Drawing:
+    prefix = f"{anchor}-{kind}"
+    svg = render(FIGURES[kind](analysis), "svg", prefix)
+    return _Drawing(
+        inline_svg(svg, prefix, f"{kind} of {analysis.recording.name}"), _CAPTIONS[kind]
+    )

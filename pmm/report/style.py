@@ -1,0 +1,107 @@
+"""How every figure looks: colours, fonts, and settings that never leave this module."""
+
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from typing import TYPE_CHECKING, Any, Final
+
+from hardware.description.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's colours, told apart with any colour vision; their yellow is lost on white.
+PALETTE: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+TRACE: Final = "#555555"
+FIT: Final = "#D55E00"
+RECORD_SHADE: Final = "#F2F2F2"
+STEADY_SHADE: Final = "#D3E6F3"
+GATE_SHADE: Final = "#FBE0B5"
+
+_NO_DATES: Final[dict[str, dict[str, str | None]]] = {
+    "svg": {"Date": None},
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None},
+}
+
+_SETTINGS: Final[Any] = {
+    "font.family": ["sans-serif"],
+    # What is measured with; a reader without it sees another sans-serif, none of them wider.
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.labelsize": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#D9D9D9",
+    "grid.linewidth": 0.5,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "figure.titlesize": 11.0,
+    "figure.facecolor": "white",
+    "lines.linewidth": 1.0,
+    "savefig.dpi": 150.0,
+    "svg.fonttype": "none",
+    # Names come from users: a dollar sign in one is a dollar sign.
+    "text.parse_math": False,
+}
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """Draw with this project's settings, whatever the user's own are, and put those back after."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(), warnings.catch_warnings():
+        # A name in a script that the font lacks still reads well where the reader's font has it.
+        warnings.filterwarnings("ignore", message=r"Glyph .* missing from font")
+        mpl.rcdefaults()
+        mpl.rcParams.update(_SETTINGS)
+        yield
+
+
+def render(figure: "Figure", kind: str, salt: str) -> bytes:
+    """Return a figure as a file's bytes, the same each time.
+
+    Parameters
+    ----------
+    kind
+        ``"svg"``, ``"png"`` or ``"pdf"``.
+    salt
+        Goes into the ids of an SVG in place of chance.
+
+    Raises
+    ------
+    ConfigurationError
+        If the format is not one of these.
+    """
+    import matplotlib as mpl
+
+    if kind not in _NO_DATES:
+        raise ConfigurationError(
+            f"figures are not written as {kind!r}; choose from {', '.join(_NO_DATES)}"
+        )
+    written = BytesIO()
+    with drawing():
+        mpl.rcParams["svg.hashsalt"] = salt
+        figure.savefig(written, format=kind, metadata=_NO_DATES[kind])
+    return compact(written.getvalue()) if kind == "svg" else written.getvalue()
+
+
+def compact(svg: bytes) -> bytes:
+    """Return an SVG with its coordinates in hundredths of a point and without indentation."""
+    text = re.sub(r"\s*\n\s*", "\n", svg.decode())
+    text = re.sub(r"\n([LCQ]) (?=[-\d])", r"\1", text)
+    return re.sub(r"<(?:path|use|text) [^>]*>", _round, text).encode()
+
+
+def _round(tag: re.Match[str]) -> str:
+    return re.sub(
+        r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), tag[0]
+    )
