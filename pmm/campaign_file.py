@@ -13,7 +13,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign import Campaign, Run
-from pmm.configuration import Fault, limit_faults, read_toml, refuse, validate
+from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 
 PRESETS = {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
 
@@ -47,8 +47,8 @@ def read_campaign(path: str | Path) -> Campaign:
     _none_for_false(table)
     campaign = validate(Campaign, table, faults, _EXTRA_KEYS)
     faults += _run_faults(table)
-    refuse(path, faults, original)
-    assert campaign is not None  # noqa: S101 - what is not valid has been refused
+    if campaign is None or faults:
+        raise as_error(path, faults, original)
     name = campaign.name if "name" in original else path.resolve().parent.name
     return replace(campaign, name=name, columns=columns)
 

@@ -3,7 +3,7 @@
 import json
 import tomllib
 import types
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -71,9 +71,10 @@ def validate(
     """
     from pydantic import ValidationError
 
+    key: Any = kind
     try:
         # By way of JSON: there pydantic is strict about numbers and yet takes arrays for tuples.
-        found: T = _adapter(kind).validate_json(json.dumps(table, default=str), strict=True)
+        found: T = _adapter(key).validate_json(json.dumps(table, default=str), strict=True)
     except ValidationError as error:
         for one in error.errors(include_url=False):
             place = one["loc"]
@@ -90,7 +91,7 @@ def validate(
 
 
 @cache
-def _adapter(kind: Hashable) -> "TypeAdapter[Any]":
+def _adapter(kind: Any) -> "TypeAdapter[Any]":
     from pydantic import TypeAdapter
 
     return TypeAdapter(kind)
@@ -171,19 +172,12 @@ def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
                 yield Fault(here, f"= {value:g} should be 0 or more")
 
 
-def refuse(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> None:
-    """Raise all faults of a file as one error, if there are any.
-
-    Raises
-    ------
-    ConfigurationError
-        With one line for each fault: its path in the file and the message.
-    """
+def as_error(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> ConfigurationError:
+    """Return all faults of a file as one error: for each its path in the file and the message."""
     lines = list(dict.fromkeys(f"{_path(fault.place, table)}{fault.message}" for fault in faults))
     if len(lines) == 1:
-        raise ConfigurationError(f"{path}: {lines[0]}")
-    if lines:
-        raise ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))
+        return ConfigurationError(f"{path}: {lines[0]}")
+    return ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))
 
 
 def _path(place: Place, table: Any) -> str:

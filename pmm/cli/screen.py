@@ -1,6 +1,7 @@
 """What goes to the screen: results on the output, messages and progress on the error stream."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
@@ -46,6 +47,12 @@ def show_progress(items: Sequence[T], what: str) -> Iterator[T]:
         console=console, transient=True, disable=len(items) < 2 or not console.is_terminal
     ) as progress:
         yield from progress.track(items, description=what)
+
+
+def busy(what: str) -> AbstractContextManager[object]:
+    """Say that something is going on, on a terminal, for as long as the context lasts."""
+    console = messages()
+    return console.status(what) if console.is_terminal else nullcontext()
 
 
 def flag_style(severity: "Severity") -> str:
