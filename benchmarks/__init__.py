@@ -1,0 +1,1 @@
+"""Speed, accuracy and honesty, measured against named rivals: ``python -m benchmarks``."""
