@@ -1,0 +1,164 @@
+"""The water's linear reaction with its memory: infinite-frequency added mass and a state space."""
+
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hardware.description.errors import ConfigurationError
+from sim.signals import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Radiation:
+    """Linear loads of the water on the model, constant added mass and memory together.
+
+    With v the velocity of the model through the water (translation, rotation) in the axes of the
+    plane (heave down and pitch bow up, or sway to starboard and yaw bow to starboard),
+
+        xi' = state_matrix xi + input_matrix v        mu = output_matrix xi
+        loads of the water on the hull = -(added_mass_infinite v' + mu)
+
+    so that the struts exert ``added_mass_infinite v' + mu`` (Cummins' equation, its convolution
+    written as n states). With n = 0 the added mass does not depend on the frequency and there is no
+    damping. The matrices are kept as read-only copies.
+
+    Attributes
+    ----------
+    added_mass_infinite
+        Added mass at infinite frequency, shape ``(2, 2)``: kg and kg m; kg m and kg m^2.
+    state_matrix
+        Shape ``(n, n)``, 1/s; all eigenvalues have a negative real part.
+    input_matrix
+        Shape ``(n, 2)``.
+    output_matrix
+        Shape ``(2, n)``.
+
+    Raises
+    ------
+    ConfigurationError
+        If a shape does not fit, a value is not finite, or the state matrix is not stable.
+    """
+
+    added_mass_infinite: FloatArray
+    state_matrix: FloatArray
+    input_matrix: FloatArray
+    output_matrix: FloatArray
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}
+
+    def __post_init__(self) -> None:
+        n = np.shape(self.state_matrix)[0] if np.ndim(self.state_matrix) else 0
+        shapes = {
+            "added_mass_infinite": (2, 2),
+            "state_matrix": (n, n),
+            "input_matrix": (n, 2),
+            "output_matrix": (2, n),
+        }
+        for name, shape in shapes.items():
+            object.__setattr__(self, name, _checked(name, getattr(self, name), shape))
+        fastest_growth = float(max(np.linalg.eigvals(self.state_matrix).real, default=-1.0))
+        if fastest_growth >= 0.0:
+            raise ConfigurationError(
+                f"state_matrix has an eigenvalue with real part {fastest_growth:.3g} 1/s where all "
+                f"must be negative: the memory would not fade; fit it again with fewer states"
+            )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Radiation):
+            return NotImplemented
+        return self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[bytes, ...]:
+        # Adding 0.0 makes -0.0 the same bytes as 0.0.
+        return tuple((getattr(self, field.name) + 0.0).tobytes() for field in fields(self))
+
+    @property
+    def states(self) -> int:
+        """Number n of states of the memory."""
+        return int(self.state_matrix.shape[0])
+
+    def memory(self, omega_rad_s: ArrayLike) -> NDArray[np.complex128]:
+        """Return K(i w) = B(w) + i w (A(w) - A_inf), shape ``(*omega.shape, 2, 2)``."""
+        omega = np.asarray(omega_rad_s, dtype=np.float64)
+        resolvent = 1j * omega[..., None, None] * np.eye(self.states) - self.state_matrix
+        inputs = np.broadcast_to(self.input_matrix, (*omega.shape, self.states, 2))
+        memory: NDArray[np.complex128] = self.output_matrix @ np.linalg.solve(resolvent, inputs)
+        return memory
+
+    def added_mass(self, omega_rad_s: ArrayLike) -> FloatArray:
+        """Return A(w), shape ``(*omega.shape, 2, 2)``; at w = 0 its limit."""
+        omega = np.asarray(omega_rad_s, dtype=np.float64)
+        # (K(iw) - K(0))/(iw) = -C (iw - A)^-1 (-A)^-1 B, which stays finite at w = 0.
+        resolvent = 1j * omega[..., None, None] * np.eye(self.states) - self.state_matrix
+        at_rest = np.linalg.solve(self.state_matrix, self.input_matrix)
+        inputs = np.broadcast_to(at_rest, (*omega.shape, self.states, 2))
+        memory: FloatArray = (self.output_matrix @ np.linalg.solve(resolvent, inputs)).real
+        return self.added_mass_infinite + memory
+
+    def damping(self, omega_rad_s: ArrayLike) -> FloatArray:
+        """Return B(w), shape ``(*omega.shape, 2, 2)``."""
+        return self.memory(omega_rad_s).real
+
+    def kernel(self, time_s: ArrayLike) -> FloatArray:
+        """Return the retardation function C exp(A t) B, shape ``(*time.shape, 2, 2)``; t >= 0."""
+        from scipy.linalg import expm
+
+        time = np.asarray(time_s, dtype=np.float64)
+        decayed = (
+            expm(time[..., None, None] * self.state_matrix) if self.states else self.state_matrix
+        )
+        kernel: FloatArray = self.output_matrix @ decayed @ self.input_matrix
+        return np.broadcast_to(kernel, (*time.shape, 2, 2))
+
+    def is_passive(self, tolerance: float = 1e-9) -> bool:
+        """Tell whether the memory can never give back more energy than it has taken.
+
+        That is so if the Hermitian part of K(i w) has no negative eigenvalue at any frequency.
+        Adding ``tolerance`` (of the largest value of K) to it makes the frequencies at which its
+        sign can change eigenvalues of a Hamiltonian matrix; the sign is tested between each
+        neighbouring two, so that no violation is too narrow to be seen.
+        """
+        scaled = _unit_size(self)
+        touched = np.abs(np.linalg.eigvals(_hamiltonian(scaled, tolerance)).imag)
+        edges = np.unique(np.concatenate([[0.0], touched]))
+        between = (edges[1:] + edges[:-1]) / 2.0
+        memory = scaled.memory(np.concatenate([edges, between, 2.0 * edges[-1:]]))
+        hermitian = (memory + memory.conj().swapaxes(-1, -2)) / 2.0
+        return bool(np.linalg.eigvalsh(hermitian).min() >= -tolerance * (1.0 + 1e-6))
+
+
+def _unit_size(radiation: Radiation) -> Radiation:
+    """Scale forces and velocities, the same in both, so that the largest |K_ii| is about one."""
+    omega = np.abs(np.linalg.eigvals(radiation.state_matrix))
+    diagonal = np.abs(radiation.memory(omega)[:, (0, 1), (0, 1)]).max(axis=0, initial=0.0)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    return Radiation(
+        radiation.added_mass_infinite,
+        radiation.state_matrix,
+        radiation.input_matrix * scale,
+        radiation.output_matrix * scale[:, None],
+    )
+
+
+def _hamiltonian(radiation: Radiation, tolerance: float) -> FloatArray:
+    """Return the matrix whose eigenvalues i w are where K + K^H + 2 tolerance turns singular."""
+    a, b, c = radiation.state_matrix, radiation.input_matrix, radiation.output_matrix
+    inverse = 1.0 / (2.0 * tolerance)
+    return np.block(
+        [[a - inverse * b @ c, -inverse * b @ b.T], [inverse * c.T @ c, c.T @ b.T * inverse - a.T]]
+    )
+
+
+def _checked(name: str, values: ArrayLike, shape: tuple[int, int]) -> FloatArray:
+    array = np.array(values, dtype=np.float64)
+    if array.shape != shape:
+        raise ConfigurationError(f"{name} has shape {array.shape} where {shape} is needed")
+    if not np.isfinite(array).all():
+        raise ConfigurationError(f"{name} has values that are not finite")
+    array.setflags(write=False)
+    return array
