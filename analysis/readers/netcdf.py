@@ -185,7 +185,7 @@ def _reading(path: Path) -> Iterator[None]:
     """Turn what the libraries say of a bad file into one clear word."""
     try:
         yield
-    except (OSError, KeyError, RuntimeError) as error:
+    except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
         raise DataError(f"{path}: {_what_is_wrong(path, str(error))}") from None
 
 

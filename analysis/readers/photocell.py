@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from analysis.readers.columns import Edge, TextLayout
 from analysis.readers.headers import Header
 from analysis.readers.text_layout import find_layout
-from analysis.readers.text_table import read_numbers, unpack
+from analysis.readers.text_table import read_bytes, read_numbers, unpack
 from analysis.recording import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
@@ -70,10 +70,7 @@ def read_edges(path: Path) -> FloatArray:
     DataError
         If the file is missing, has no such column, or the times do not increase.
     """
-    try:
-        text = unpack(path.read_bytes(), path)
-    except OSError as error:
-        raise DataError(f"{path}: cannot read the photocell's edges: {error.strerror}") from None
+    text = unpack(read_bytes(path), path)
     layout = find_layout(text, TextLayout(), str(path))
     header = _time_header(layout.headers, path)
     values, _ = read_numbers(text, layout, [header], str(path))

@@ -13,7 +13,7 @@ from analysis.readers.headers import Header
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
 from analysis.readers.text_layout import find_layout
 from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, without_idle
-from analysis.readers.text_table import read_numbers, unpack
+from analysis.readers.text_table import read_bytes, read_numbers, unpack
 from analysis.readers.time_base import TimeBase, fit_time_base
 from analysis.recording import FloatArray, Recording
 from hardware.description.flags import Flag
@@ -25,7 +25,7 @@ Table = Mapping[Header, FloatArray]
 
 def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
     """Read a recording from a text file; see :func:`analysis.readers.read_recording`."""
-    data, where = path.read_bytes(), str(path)
+    data, where = read_bytes(path), str(path)
     text = unpack(data, path)
     layout = find_layout(text, columns.layout, where)
     plan = plan_columns(layout.headers, columns, where)

@@ -15,6 +15,20 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 
+def read_bytes(path: Path) -> bytes:
+    """Return a file's content.
+
+    Raises
+    ------
+    DataError
+        If it is not there or may not be read.
+    """
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read: {error.strerror}") from None
+
+
 def unpack(data: bytes, path: Path) -> str:
     """Turn a file's bytes into text: gzip, UTF-8 (with or without mark), UTF-16 or Latin-1.
 

@@ -31,7 +31,8 @@ HEADER = "Time [s],Strut A [mm],F1 [N],F2 [N]"
 def harmonics(time_s: np.ndarray, parts: tuple[tuple[float, float], ...]) -> np.ndarray:
     """Sum harmonics 1, 2 ... of the given amplitudes and phases."""
     angle = 2.0 * np.pi * FREQUENCY_HZ * time_s
-    return np.sum([a * np.sin(n * angle + p) for n, (a, p) in enumerate(parts, 1)], axis=0)
+    waves = [a * np.sin(n * angle + p) for n, (a, p) in enumerate(parts, 1)]
+    return np.asarray(np.sum(waves, axis=0))
 
 
 def columns() -> np.ndarray:

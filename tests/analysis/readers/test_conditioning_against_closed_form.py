@@ -64,7 +64,8 @@ def flags_of(row: np.ndarray, full_scale: float | None = None) -> tuple[Flag, ..
 
 
 def sine(per_period: float, periods: float = 20.3) -> np.ndarray:
-    return np.sin(2.0 * np.pi * np.arange(int(per_period * periods)) / per_period + 0.3)
+    angle = 2.0 * np.pi * np.arange(int(per_period * periods)) / per_period
+    return np.asarray(np.sin(angle + 0.3))
 
 
 def test_samples_at_a_known_full_scale_are_counted() -> None:

@@ -14,7 +14,7 @@ def ramps(period: float, first: float, count: int = 2000, low: float = 0.0) -> n
     phase = (np.arange(count) - first + period / 2.0) % period - period / 2.0
     up = np.clip(0.5 + phase / 8.0, 0.0, 1.0)
     down = np.clip(0.5 - (phase - 28.0) / 8.0, 0.0, 1.0)
-    return low + 5.0 * np.minimum(up, down)
+    return np.asarray(low + 5.0 * np.minimum(up, down))
 
 
 @given(period=st.floats(80.0, 300.0), first=st.floats(10.0, 30.0), low=st.floats(-3.0, 3.0))

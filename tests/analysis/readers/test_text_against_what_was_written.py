@@ -20,7 +20,7 @@ COUNT = 100
 
 def signal(count: int = COUNT) -> np.ndarray:
     n = np.arange(count)
-    return np.round(np.sin(0.1 * n) + 0.001 * n, 6)
+    return np.asarray(np.round(np.sin(0.1 * n) + 0.001 * n, 6))
 
 
 def table(header: str, separator: str = ",", decimal: str = ".", time: str = "{:.2f}") -> str:

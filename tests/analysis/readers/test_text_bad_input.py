@@ -186,7 +186,7 @@ def test_edges_that_do_not_increase(tmp_path: Path) -> None:
 
 def test_missing_edges_file(tmp_path: Path) -> None:
     columns = ColumnMap.from_table({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
-    with pytest.raises(DataError, match=r"run_edges\.csv: cannot read the photocell's edges"):
+    with pytest.raises(DataError, match=r"run_edges\.csv: cannot be read: No such file"):
         read_recording(written(tmp_path, GOOD), columns)
 
 

@@ -39,17 +39,17 @@ def test_rows_find_their_places(
 
 @pytest.mark.parametrize("rate", [100.0, 200.0, 1000.0, 44100.0, 1e6 / 7.0])
 def test_an_even_grid_is_taken_as_it_is(rate: float) -> None:
-    base = fit_time_base(np.arange(10_000) / rate, "run")
+    base = fit_time_base(np.arange(10_000.0) / rate, "run")
     assert base == TimeBase(0.0, base.sample_rate_hz, 10_000)
     assert base.sample_rate_hz == pytest.approx(rate, rel=1e-13)
 
 
 def test_a_round_rate_comes_back_exactly() -> None:
-    assert fit_time_base(np.arange(15_580) * 0.005, "run").sample_rate_hz == 200.0
+    assert fit_time_base(np.arange(15_580.0) * 0.005, "run").sample_rate_hz == 200.0
 
 
 def test_single_precision_interval_is_said_and_kept() -> None:
-    base = fit_time_base(np.arange(15_580) * 0.0050000002374872, "run")
+    base = fit_time_base(np.arange(15_580.0) * 0.0050000002374872, "run")
     assert codes(base) == ["time_single_precision"]
     assert base.sample_rate_hz == pytest.approx(1.0 / 0.0050000002374872, rel=1e-12)
     assert "199.9999905 Hz, which is 200 Hz but for 5e-08" in base.flags[0].message
