@@ -16,10 +16,19 @@ _READ_SAMPLES = 200_000  # of all channels at a time
 
 @dataclass(frozen=True)
 class Trace:
-    """Points to draw: ``time_s`` of shape ``(points,)``, ``values`` ``(channels, points)``."""
+    """Points to draw.
+
+    Attributes
+    ----------
+    time_s, values
+        Shapes ``(points,)`` and ``(channels, points)``.
+    thinned
+        Whether the points are the lowest and the highest of each stretch, in turns.
+    """
 
     time_s: FloatArray
     values: FloatArray
+    thinned: bool = False
 
 
 def zigzag(time_s: FloatArray, values: FloatArray, bins: int) -> Trace:
@@ -34,7 +43,7 @@ def zigzag(time_s: FloatArray, values: FloatArray, bins: int) -> Trace:
     if len(time_s) <= 2 * bins:
         return Trace(time_s, values)
     edges = _edges(len(time_s), bins)
-    return Trace(_middles(time_s[0], time_s[-1], edges), _extremes(values, edges[:-1]))
+    return Trace(_middles(time_s[0], time_s[-1], edges), _extremes(values, edges[:-1]), True)
 
 
 def tops(x: FloatArray, values: FloatArray, bins: int) -> tuple[FloatArray, FloatArray]:
@@ -62,7 +71,7 @@ def overview(recording: Recording, bins: int) -> Trace:
         for some in _blocks(edges)
     ]
     time_s = _middles(recording.start_s, recording.end_s, edges)
-    return Trace(time_s, np.concatenate(parts, axis=1))
+    return Trace(time_s, np.concatenate(parts, axis=1), True)
 
 
 def _edges(count: int, bins: int) -> NDArray[np.int64]:

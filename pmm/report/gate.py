@@ -121,15 +121,21 @@ def _draw_record(
             (reading.opened_s, reading.closed_s, 0.12, GATE_SHADE, "gate"),
         )
     ]
-    (trace,) = axes.plot(
-        curves.record.time_s,
-        curves.record.values[row] * shown.factor,
-        color=TRACE,
-        lw=0.7,
-        label="measured",
-    )
+    trace = _draw_trace(axes, curves.record, row, shown.factor)
     fit = _draw_fit(axes, reading, curves.fit, row, shown.factor)
     return [trace, fit, *shades, *_draw_ticks(axes, analysis)]
+
+
+def _draw_trace(axes: "Axes", trace: Trace, row: int, factor: float) -> "Artist":
+    """Draw what was measured: a line, or the band between the extremes where it was thinned."""
+    values = trace.values[row] * factor
+    if trace.thinned:
+        low, high = values[::2], values[1::2]
+        return axes.fill_between(
+            trace.time_s[::2], low, high, color=TRACE, lw=0.6, label="measured"
+        )
+    (line,) = axes.plot(trace.time_s, values, color=TRACE, lw=0.8, label="measured")
+    return line
 
 
 def _draw_fit(axes: "Axes", reading: Harmonics, fit: Trace, row: int, factor: float) -> "Artist":
@@ -175,11 +181,11 @@ def _ticks(
 
 def _draw_zoom(zoom: "Axes", rest: "Axes", curves: _Curves, row: int, shown: Display) -> None:
     trace, fit, left = curves.zoom[row]
-    zoom.plot(trace.time_s, trace.values[0] * shown.factor, color=TRACE, lw=0.8)
+    _draw_trace(zoom, trace, 0, shown.factor)
     zoom.plot(fit.time_s, fit.values[0] * shown.factor, color=FIT, lw=1.0)
     zoom.tick_params(labelbottom=False)
     zoom.locator_params(axis="x", nbins=5)
     zoom.set_xlim(fit.time_s[0], fit.time_s[-1])
-    rest.plot(left.time_s, left.values[0] * shown.factor, color=TRACE, lw=0.7)
+    _draw_trace(rest, left, 0, shown.factor)
     rest.axhline(0.0, color=FIT, lw=0.8)
     rest.set_ylabel(f"residual\n({shown.label})")

@@ -59,10 +59,14 @@ def single_periods(analysis: Analysis, reading: Harmonics) -> FloatArray:
     return steady[:, :, 1:].reshape(*steady.shape[:2], reading.order, 2)
 
 
+def in_words(periods: int) -> str:
+    """Return a number of periods in words."""
+    return f"{periods} period" if periods == 1 else f"{periods} periods"
+
+
 def caption(reading: Harmonics) -> str:
     """Return where a gate lies, in words."""
-    word = "period" if reading.periods == 1 else "periods"
     return (
-        f"gate of {reading.periods} {word}, {reading.opened_s:.3f} s to {reading.closed_s:.3f} s, "
-        f"{reading.frequency_hz:.5g} Hz"
+        f"gate of {in_words(reading.periods)}, {reading.opened_s:.3f} s to "
+        f"{reading.closed_s:.3f} s, {reading.frequency_hz:.5g} Hz"
     )

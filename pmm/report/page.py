@@ -8,6 +8,7 @@ from pathlib import Path
 from analysis.resolver.analyse import Analysis
 from hardware.description.flags import Flag
 from pmm.report.inline import inline_svg
+from pmm.report.labels import plain
 from pmm.report.plots import FIGURES
 from pmm.report.style import render
 from pmm.report.tabulate import GateTable, gate_table, provenance, versions
@@ -70,7 +71,8 @@ def write_page(analyses: Sequence[Analysis], path: Path, *, title: str, command:
     sections = [_section(analysis, f"run{k}") for k, analysis in enumerate(analyses, start=1)]
     page = template.render(title=title, command=command, sections=sections, versions=versions())
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8", newline="\n")
+    # A file name may hold bytes that are no text; they must not cost the page.
+    path.write_bytes(page.encode("utf-8", errors="replace"))
 
 
 def _section(analysis: Analysis, anchor: str) -> _Section:
@@ -88,5 +90,5 @@ def _drawing(analysis: Analysis, kind: str, anchor: str) -> _Drawing:
     prefix = f"{anchor}-{kind}"
     svg = render(FIGURES[kind](analysis), "svg", prefix)
     return _Drawing(
-        inline_svg(svg, prefix, f"{kind} of {analysis.recording.name}"), _CAPTIONS[kind]
+        inline_svg(svg, prefix, f"{kind} of {plain(analysis.recording.name)}"), _CAPTIONS[kind]
     )

@@ -2,6 +2,7 @@
 
 import math
 
+_NEGLIGIBLE = 1e-8  # of a value: its digits would run on without saying more
 _SIGNIFICANT = 4  # digits where no interval says how many
 
 
@@ -18,9 +19,11 @@ def rounded(value: float, half_width: float) -> str:
     if not -5 <= power <= 5:
         scaled = rounded(value / 10.0**power, half_width / 10.0**power)
         return f"({scaled})·10^{_minus(str(power))}"
+    if half_width < _NEGLIGIBLE * abs(value):
+        return _minus(f"{value:.9g} ± {half_width:.1e}")
     # 0.0996 rounds to 0.10: the exponent after rounding counts.
     places = max(0, 1 - int(f"{half_width:.1e}".partition("e")[2]))
-    return _minus(f"{value:.{places}f} ± {half_width:.{places}f}")
+    return _minus(f"{value:z.{places}f} ± {half_width:.{places}f}")
 
 
 def rounded_phase(phase_deg: float, half_width_deg: float) -> str:

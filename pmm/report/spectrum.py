@@ -11,7 +11,7 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights
 from pmm.report.envelope import tops
-from pmm.report.gated import caption, gate_sums, reading_of
+from pmm.report.gated import caption, gate_sums, in_words, reading_of
 from pmm.report.labels import axis_label, display, loads_first, shown_name
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
@@ -57,7 +57,7 @@ def spectrum_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
             top = top or axes
             handles = _draw_spectrum(axes, analysis, reading, row, (frequency_hz, amplitude[row]))
             if place == 0:
-                axes.set_title(f"amplitude of lines over {periods} periods", loc="left")
+                axes.set_title(f"amplitude of lines over {in_words(periods)}", loc="left")
         below = figure.add_subplot(grid[-1], sharex=top)
         handles += _draw_leakage(below, reading, float(frequency_hz[-1]))
         if top is not None:
@@ -166,7 +166,7 @@ def _draw_spectrum(
     )
     axes.set_ylabel(axis_label(channel))
     axes.tick_params(labelbottom=False)
-    _plain_numbers(axes)
+    _plain_numbers(axes, _range(amplitude * factor))
     return [drawn, marked]
 
 
@@ -198,21 +198,28 @@ def _draw_leakage(axes: "Axes", reading: Harmonics, highest_hz: float) -> list["
     axes.set_xlabel("frequency (Hz)")
     axes.set_ylabel("let through\n(part of amplitude)")
     axes.set_title(title, loc="left")
-    _plain_numbers(axes)
-    axes.set_ylim(_FLOOR, 2.0)
+    _plain_numbers(axes, (_FLOOR, 2.0))
     return drawn
 
 
-def _plain_numbers(axes: "Axes") -> None:
-    """Write 0.001 for 10^-3, over two decades or more and no more than eight.
+def _range(values: FloatArray) -> tuple[float, float]:
+    """Limits for a logarithmic axis: two decades or more, no more than eight.
 
-    Powers would need the mathematics that users' names must not reach. What lies eight decades
-    below the largest is rounding.
+    What lies eight decades below the largest value is rounding.
     """
+    present = values[values > 0.0]
+    if not present.size:
+        return 1e-2, 1.0
+    high = 2.0 * float(present.max())
+    return float(np.clip(present.min() / 2.0, 1e-8 * high, 1e-2 * high)), high
+
+
+def _plain_numbers(axes: "Axes", limits: tuple[float, float]) -> None:
+    """Write 0.001 for 10^-3: powers would need the mathematics that names must not reach."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-    low, high = axes.get_ylim()
-    axes.set_ylim(min(max(low, 1e-8 * high), 1e-2 * high), high)
+    axes.set_autoscaley_on(False)  # it would complain about a channel of zeros
+    axes.set_ylim(*limits)
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_locator(NullLocator())

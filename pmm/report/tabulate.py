@@ -10,7 +10,7 @@ from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.flags import Flag
 from pmm.report.gated import caption
-from pmm.report.labels import display, loads_first
+from pmm.report.labels import display, loads_first, plain
 from pmm.report.rounding import rounded, rounded_phase
 
 _PACKAGES = ("pmm", "numpy", "scipy", "matplotlib")
@@ -52,7 +52,7 @@ def gate_table(analysis: Analysis, reading: Harmonics) -> GateTable:
 
 
 def _channel_rows(reading: Harmonics, channel: int) -> list[Row]:
-    shown, name = display(reading.units[channel]), reading.channel_names[channel]
+    shown, name = display(reading.units[channel]), plain(reading.channel_names[channel])
     values = reading.coefficients[channel] * shown.factor
     half = reading.half_width()[channel] * shown.factor
     factors = reading.coverage_factor()[1::2]
