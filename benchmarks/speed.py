@@ -1,0 +1,198 @@
+"""Time of the period sums over that of a plain sum of the same array, and of rivals."""
+
+import importlib.util
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import Recording
+from analysis.resolver.analyse import analyse
+from analysis.resolver.compiled import available
+from analysis.resolver.estimate import resolve
+from analysis.resolver.photocell import from_photocell
+from analysis.resolver.sums import period_sums
+from benchmarks import speed_rivals
+from benchmarks.outcome import Benchmark, Outcome, Report, Row
+from benchmarks.signals import Truth, draw_coefficients, recorded
+from benchmarks.speed_compile import compile_times
+from benchmarks.timing import Contender, interleave
+
+FloatArray = NDArray[np.float64]
+Rival = Callable[[FloatArray, float, float], FloatArray]
+
+_CHANNELS = 8
+_AMPLITUDES = (10.0, 1.0, 0.3, 0.1)
+_FREQUENCY_HZ = 1.0 + 1.0 / 97.3  # commensurate with neither rate
+_SUM = "plain sum"
+_OURS = "period sums, NumPy"
+_COMPILED = "period sums, compiled"
+_NAIVE = "sine and cosine per channel and harmonic"
+_NAIVE_PIECE = f"{_NAIVE}, in a piece that the cache holds"
+
+
+@dataclass
+class _Field:
+    """A record, and who is timed on it; ``found`` keeps the coefficients of the last call."""
+
+    truth: Truth
+    rate_hz: float
+    recording: Recording
+    samples: FloatArray
+    found: dict[str, FloatArray] = field(default_factory=dict)
+    contenders: list[Contender] = field(default_factory=list)
+
+    def add_rival(self, name: str, rival: Rival, part: int, channels: int = 0, rounds: int = 2) -> None:
+        """Enter a rival that gets the first ``1 / part`` of the samples, of some channels only."""
+        channels = channels or len(self.samples)
+        piece = self.samples[:channels, : self.samples.shape[1] // part]
+        scale = part * len(self.samples) / channels
+
+        def call() -> None:
+            self.found[name] = rival(piece, self.rate_hz, self.truth.frequency_hz)
+
+        self.contenders.append(Contender(name, call, scale, rounds))
+
+    def add_ours(self, name: str, *, compiled: bool) -> None:
+        """Enter the period sums alone, and with what makes harmonics of them."""
+        edges_s = self.recording.photocell_edges_s
+        reference = from_photocell(np.empty(0) if edges_s is None else edges_s)
+
+        def whole() -> None:
+            sums = period_sums(self.recording, reference, compiled=compiled)
+            self.found[name] = resolve(self.recording, sums).coefficients
+
+        def alone() -> None:
+            period_sums(self.recording, reference, compiled=compiled)
+
+        whole()  # warms the compiled code up, and gives the error
+        self.contenders.append(Contender(name, alone))
+        self.contenders.append(Contender(f"{name}, and harmonics with intervals", whole))
+
+    def error(self, name: str) -> float | str:
+        """Return the largest error of an in-phase or quadrature part."""
+        found = self.found.get(name.removesuffix(", and harmonics with intervals"))
+        if found is None:
+            return ""
+        return float(np.abs(found - self.truth.coefficients[: len(found)])[:, 1:].max())
+
+
+def _field(count: int, rate_hz: float) -> _Field:
+    rng = np.random.default_rng(1963)
+    truth = Truth(_FREQUENCY_HZ, 0.0, draw_coefficients(_AMPLITUDES, _CHANNELS, rng))
+    samples = np.empty((_CHANNELS, count))
+    step = 1_000_000
+    for start in range(0, count, step):
+        numbers = np.arange(start, min(start + step, count))
+        samples[:, numbers[0] : numbers[-1] + 1] = truth.values(numbers / rate_hz)
+    recording = recorded(samples, rate_hz, truth.edges_s((count - 1) / rate_hz))
+    return _Field(truth, rate_hz, recording, samples)
+
+
+def run(quick: bool, report: Report) -> Outcome:
+    """Time a long record and runs of a minute."""
+    report("making the record")
+    long, notes = _long(1_000_000 if quick else 10_000_000, quick=quick)
+    interleave(long.contenders, 2 if quick else 7, report)
+    minute = _minute()
+    interleave(minute.contenders, 3 if quick else 20, report)
+    best = {c.name: c.best_s for c in long.contenders}
+    measured = {"numpy_over_sum": best[_OURS] / best[_SUM]}
+    measured["sine_and_cosine_over_numpy"] = best[_NAIVE] / best[_OURS]
+    tables = {
+        f"Eight channels of {long.samples.shape[1]:,} samples, 10 kHz": _rows(long),
+        "Runs of a minute: eight channels at 200 Hz": _run_rows(minute),
+    }
+    if _COMPILED in best:
+        measured["compiled_over_sum"] = best[_COMPILED] / best[_SUM]
+        ratio = best[_NAIVE] / best[_COMPILED]
+        notes += (f"Over the compiled sums, {_NAIVE} takes {ratio:.0f} times as long.",)
+        if not quick:
+            report("compiling in new interpreters")
+            tables["What compiling takes, once"] = compile_times()
+    return Outcome(tables, measured, notes)
+
+
+def _long(count: int, *, quick: bool) -> tuple[_Field, tuple[str, ...]]:
+    long = _field(count, 10_000.0)
+    long.contenders.append(Contender(_SUM, long.samples.sum))
+    notes = [
+        "No noise: the errors are the methods' own. Each rival got the first part of the record "
+        "that its row names, and its time is scaled up in proportion; the best of the rounds counts "
+        "(seven for the sums, two for the rivals).",
+        "The nearest bins and the plain products suffer from a record that is not whole periods; a "
+        "user would cut it first.",
+    ]
+    _enter_ours(long, notes)
+    long.add_rival(_NAIVE, speed_rivals.sine_and_cosine, 1, channels=1)
+    long.add_rival(_NAIVE_PIECE, speed_rivals.sine_and_cosine, 20)
+    long.add_rival("trigonometry reused", speed_rivals.trigonometry_reused, 1)
+    long.add_rival("rfft of the whole run", speed_rivals.nearest_bins, 1, channels=1)
+    _enter_peers(long, 5 if quick else 20, notes)
+    long.add_rival("scipy curve_fit, 8 parameters", speed_rivals.curve_fit, 200, channels=1)
+    return long, tuple(notes)
+
+
+def _minute() -> _Field:
+    minute = _field(12_000, 200.0)
+    minute.contenders.append(Contender(_SUM, minute.samples.sum))
+    _enter_ours(minute, [])
+    minute.contenders.append(Contender("analyse, all of it", lambda: analyse(minute.recording)))
+    minute.add_rival(_NAIVE, speed_rivals.sine_and_cosine, 1, rounds=5)
+    minute.add_rival("trigonometry reused", speed_rivals.trigonometry_reused, 1, rounds=5)
+    minute.add_rival("rfft of the whole run", speed_rivals.nearest_bins, 1, rounds=5)
+    _enter_peers(minute, 1, [])
+    minute.add_rival("scipy curve_fit, 8 parameters", speed_rivals.curve_fit, 1, rounds=2)
+    return minute
+
+
+def _enter_ours(arena: _Field, notes: list[str]) -> None:
+    arena.add_ours(_OURS, compiled=False)
+    if available():
+        arena.add_ours(_COMPILED, compiled=True)
+    else:
+        notes.append("The compiled sums were left out: numba is not installed.")
+
+
+def _enter_peers(arena: _Field, part: int, notes: list[str]) -> None:
+    for module, name, rival in (
+        ("ulia", "ulia (lock-in)", speed_rivals.ulia),
+        ("rota", "rota-order (order tracking)", speed_rivals.rota_order),
+    ):
+        if importlib.util.find_spec(module) is None:
+            notes.append(f"{name} was left out: it is not installed.")
+        else:
+            arena.add_rival(name, rival, part)
+
+
+def _rows(arena: _Field) -> list[Row]:
+    plain = arena.contenders[0].best_s
+    return [
+        {
+            "method": c.name,
+            "measured on": "all" if c.scale == 1.0 else f"1/{c.scale:.0f}",
+            "time, s": c.best_s,
+            "time over sum": c.best_s / plain,
+            "million samples a second": arena.samples.size / c.best_s / 1e6,
+            "largest error of S, C": arena.error(c.name),
+        }
+        for c in arena.contenders
+    ]
+
+
+def _run_rows(arena: _Field) -> list[Row]:
+    ours = next(c.best_s for c in arena.contenders if c.name == _OURS)
+    return [
+        {
+            "method": c.name,
+            "time a run, ms": 1e3 * c.best_s,
+            "runs a second": 1.0 / c.best_s,
+            f"time over {_OURS}": c.best_s / ours,
+            "largest error of S, C": arena.error(c.name),
+        }
+        for c in arena.contenders
+    ]
+
+
+BENCHMARK = Benchmark("speed", "Speed", run)
