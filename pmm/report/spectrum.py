@@ -176,7 +176,8 @@ def _draw_leakage(axes: "Axes", reading: Harmonics, highest_hz: float) -> list["
     orders = np.linspace(0.0, highest, 32 * lobes + 1)
     title = f"let through of a vibration at its worst phase ({reading.estimator})"
     if lobes > _MOST_LOBES:
-        title += f": top of each lobe; nothing at whole multiples of f/{reading.periods}"
+        zeros = f"; nothing at whole multiples of f/{reading.periods}"
+        title += ": top of each lobe" + (zeros if reading.estimator != HANN else "")
     drawn = []
     for n, curve in enumerate(leakage(orders, reading).T, start=1):
         x, part = (
