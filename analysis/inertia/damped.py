@@ -1,0 +1,291 @@
+"""Fit one or several damped oscillations with offset to a record: equations 5 and 15.
+
+    y(t) = y_0 [+ trend t] + sum_j A_j exp(-lambda_j t) cos(2 pi t/T_j + phi_j)
+
+Starting values are found from the spectrum; those that a user gives compete with them, so that a
+poor start cannot make a poor fit.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+from analysis.inertia.projection import Problem, Solution, columns, derivative, iterate, project
+from analysis.inertia.residuals import ResidualDiagnostics, diagnose
+from analysis.inertia.starts import starting_points, thinned
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One damped oscillation ``A exp(-lambda t) cos(2 pi t/T + phi)``, t from the fit's start.
+
+    Attributes
+    ----------
+    period_s
+        The damped period, as observed.
+    decay_1_s
+        Rate ``lambda``; the time constant is its inverse.
+    amplitude
+        Not negative, in the record's unit.
+    phase_rad
+        From -pi to pi.
+    """
+
+    period_s: float
+    decay_1_s: float
+    amplitude: float
+    phase_rad: float
+
+    @property
+    def damping_ratio(self) -> float:
+        """Share of critical damping."""
+        omega = 2.0 * math.pi / self.period_s
+        return self.decay_1_s / math.hypot(self.decay_1_s, omega)
+
+    @property
+    def undamped_period_s(self) -> float:
+        """The period without damping: ``T_0 = T / sqrt(1 + (lambda T/(2 pi))^2)``."""
+        return self.period_s / math.hypot(1.0, self.decay_1_s * self.period_s / (2.0 * math.pi))
+
+
+@dataclass(frozen=True)
+class DampedFit:
+    """A fit with its covariance.
+
+    Attributes
+    ----------
+    modes
+        Longest period first.
+    offset
+        ``y_0`` at the middle of the record; 0 where none was fitted.
+    covariance
+        Of (T, lambda, A, phi) of each mode in turn and then the base's columns, shape ``(P, P)``;
+        the colour of the residual is in it.
+    residual, time_s
+        What is left, shape ``(samples,)``, and when.
+    start_s
+        Where amplitudes and phases are counted from: the first sample's time.
+    """
+
+    modes: tuple[Mode, ...]
+    offset: float
+    covariance: FloatArray
+    diagnostics: ResidualDiagnostics
+    converged: bool
+    iterations: int
+    start_s: float
+    time_s: FloatArray
+    residual: FloatArray
+    flags: tuple[Flag, ...] = ()
+
+    def period_uncertainty_s(self, mode: int = 0) -> float:
+        """Standard uncertainty of a period from this fit alone: never a budget's only line."""
+        return float(np.sqrt(self.covariance[4 * mode, 4 * mode]))
+
+    def decay_uncertainty_1_s(self, mode: int = 0) -> float:
+        """Standard uncertainty of a decay rate from this fit alone."""
+        return float(np.sqrt(self.covariance[4 * mode + 1, 4 * mode + 1]))
+
+    def correlation(self) -> FloatArray:
+        """Return the parameters' correlation matrix, shape ``(P, P)``; 0 where a variance is 0."""
+        spread = np.sqrt(np.diag(self.covariance))
+        spread[spread == 0.0] = np.inf
+        return np.asarray(self.covariance / np.outer(spread, spread))
+
+    def values(self, time_s: FloatArray) -> FloatArray:
+        """Return the fitted oscillations with offset (without a trend) at some times."""
+        t = np.asarray(time_s) - self.start_s
+        total = np.full(t.shape, self.offset)
+        for mode in self.modes:
+            angle = 2.0 * np.pi * t / mode.period_s + mode.phase_rad
+            total = total + mode.amplitude * np.exp(-mode.decay_1_s * t) * np.cos(angle)
+        return total
+
+
+def fit_damped(
+    time_s: FloatArray,
+    values: FloatArray,
+    *,
+    modes: int = 1,
+    offset: bool = True,
+    trend: bool = False,
+    damped: bool = True,
+    start_periods_s: Sequence[float] | None = None,
+    where: str = "record",
+) -> DampedFit:
+    """Fit damped oscillations.
+
+    Parameters
+    ----------
+    time_s, values
+        Shape ``(samples,)``; NaN where a sample is missing.
+    modes
+        How many oscillations.
+    offset, trend, damped
+        Whether a constant, a line and decay rates are fitted.
+    start_periods_s
+        A user's guess, one per mode; it may be far off.
+
+    Raises
+    ------
+    DataError
+        For fewer samples than twice the parameters, or less than one and a half cycles.
+    """
+    problem, start_s = _problem(time_s, values, offset, trend, damped, modes, where)
+    coarse = thinned(problem)
+    starts = starting_points(coarse, modes, start_periods_s)
+    rough = [iterate(coarse, omega, decay) for omega, decay in starts]
+    ranked = sorted(rough, key=lambda solution: solution.cost)
+    solution = iterate(problem, ranked[0].omega_rad_s, ranked[0].decay_1_s)
+    return _finish(problem, solution, start_s, where)
+
+
+def _problem(
+    time_s: FloatArray,
+    values: FloatArray,
+    offset: bool,
+    trend: bool,
+    damped: bool,
+    modes: int,
+    where: str,
+) -> tuple[Problem, float]:
+    good = np.isfinite(values)
+    t, y = np.asarray(time_s)[good], np.asarray(values, dtype=np.float64)[good]
+    unknown = 4 * modes + offset + trend
+    if y.size < 2 * unknown:
+        raise DataError(
+            f"{where}: {y.size} samples for {unknown} unknowns; at least {2 * unknown} are needed: "
+            "record longer or faster"
+        )
+    if not np.ptp(y) > 0.0:
+        raise DataError(
+            f"{where}: the signal is constant ({y[0]:g}); nothing swings on this channel"
+        )
+    middle = 0.5 * (t[0] + t[-1])
+    centred = t - middle
+    base = [np.ones(t.size)] if offset else []
+    base += [centred / max(centred[-1], 1e-300)] if trend else []
+    columns_ = np.column_stack(base) if base else np.empty((t.size, 0))
+    return Problem(centred, y, columns_, damped), float(t[0])
+
+
+def _finish(problem: Problem, solution: Solution, start_s: float, where: str) -> DampedFit:
+    cycles = solution.omega_rad_s * problem.span_s / (2.0 * np.pi)
+    if cycles.min() < 1.5:
+        raise DataError(
+            f"{where}: {cycles.min():.2g} cycle(s) in {problem.span_s:.3g} s; at least 1.5 are "
+            "needed to tell a period: too few swings, record longer"
+        )
+    order = np.argsort(solution.omega_rad_s)
+    omega, decay = solution.omega_rad_s[order], solution.decay_1_s[order]
+    matrix = columns(problem, omega, decay)
+    linear, residual, _ = project(problem, matrix)
+    diagnostics = diagnose(residual, problem.time_s, omega / (2.0 * np.pi))
+    modes = tuple(
+        _mode(float(w), float(rate), linear[2 * k : 2 * k + 2], problem.time_s[0])
+        for k, (w, rate) in enumerate(zip(omega, decay, strict=True))
+    )
+    base = linear[2 * omega.size :]
+    return DampedFit(
+        modes=modes,
+        offset=float(base[0]) if base.size else 0.0,
+        covariance=_covariance(problem, omega, decay, linear, residual, diagnostics),
+        diagnostics=diagnostics,
+        converged=solution.converged,
+        iterations=solution.iterations,
+        start_s=start_s,
+        time_s=problem.time_s - problem.time_s[0] + start_s,
+        residual=residual,
+        flags=_flags(solution, diagnostics, modes, where),
+    )
+
+
+def _mode(omega: float, decay: float, pair: FloatArray, first_s: float) -> Mode:
+    """Turn amplitudes at mid-record into amplitude and phase at the first sample."""
+    start = complex(pair[0], -pair[1]) * np.exp((-decay + 1j * omega) * first_s)
+    return Mode(2.0 * math.pi / omega, decay, float(abs(start)), float(np.angle(start)))
+
+
+def _covariance(
+    problem: Problem,
+    omega: FloatArray,
+    decay: FloatArray,
+    linear: FloatArray,
+    residual: FloatArray,
+    diagnostics: ResidualDiagnostics,
+) -> FloatArray:
+    """Covariance of (T, lambda, A, phi) per mode and the base, the residual's colour included."""
+    count, extra = omega.size, problem.base.shape[1]
+    free = Problem(problem.time_s, problem.values, problem.base, damped=True)
+    matrix = columns(free, omega, decay)
+    slope = derivative(free, matrix, linear)
+    parts, inflation = [], []
+    for k in range(count):
+        parts += [slope[:, k], slope[:, count + k], matrix[:, 2 * k], matrix[:, 2 * k + 1]]
+        inflation += [float(diagnostics.mode_inflation[k])] * 4
+    jacobian = np.column_stack([*parts, problem.base])
+    inflation += [diagnostics.offset_inflation] * extra
+    used = np.ones(jacobian.shape[1], dtype=bool)
+    if not problem.damped:
+        used[1 : 4 * count : 4] = False
+    freedom = max(residual.size - int(used.sum()), 1)
+    scale = np.sqrt(np.einsum("ij,ij->j", jacobian, jacobian))
+    scale[scale == 0.0] = 1.0
+    scaled = (jacobian / scale)[:, used]
+    inverse = np.linalg.pinv(scaled.T @ scaled, hermitian=True)
+    widen = np.sqrt(np.array(inflation))[used] / scale[used]
+    small = inverse * np.outer(widen, widen) * float(residual @ residual) / freedom
+    raw = np.zeros((used.size, used.size))
+    raw[np.ix_(used, used)] = small
+    turn = _to_modes(omega, decay, linear, problem.time_s[0], extra)
+    return np.asarray(turn @ raw @ turn.T)
+
+
+def _to_modes(
+    omega: FloatArray, decay: FloatArray, linear: FloatArray, first_s: float, extra: int
+) -> FloatArray:
+    """Derivative of (T, lambda, A, phi, base) by (omega, lambda, a, b, base)."""
+    count = omega.size
+    turn = np.eye(4 * count + extra)
+    for k in range(count):
+        pair = complex(linear[2 * k], -linear[2 * k + 1])
+        growth = np.exp((-decay[k] + 1j * omega[k]) * first_s)
+        start = pair * growth
+        size = max(abs(start), 1e-300)
+        # logarithmic derivatives of the complex amplitude at the first sample
+        by = np.array([1j * first_s, -first_s, growth / start, -1j * growth / start])
+        block = turn[4 * k : 4 * k + 4, 4 * k : 4 * k + 4]
+        block[...] = 0.0
+        block[0, 0] = -2.0 * np.pi / omega[k] ** 2
+        block[1, 1] = 1.0
+        block[2] = size * by.real
+        block[3] = by.imag
+    return turn
+
+
+def _flags(
+    solution: Solution, diagnostics: ResidualDiagnostics, modes: tuple[Mode, ...], where: str
+) -> tuple[Flag, ...]:
+    flags = []
+    if not solution.converged:
+        message = (
+            f"{where}: the fit had not settled after {solution.iterations} iterations; its numbers "
+            "are not to be used: look at the record"
+        )
+        flags.append(Flag("not_converged", Severity.VOID, message))
+    if diagnostics.structured:
+        message = (
+            f"{where}: the residual is {diagnostics.structure:.3g} times as strong near the "
+            "oscillation as beside it: period or decay change with amplitude, or another mode is "
+            "there; extrapolate to zero amplitude, or fit one mode more"
+        )
+        flags.append(Flag("structured_residual", Severity.WARNING, message))
+    if min(mode.decay_1_s for mode in modes) < -1e-9:
+        message = f"{where}: an oscillation grows; the record is not a free decay from here on"
+        flags.append(Flag("growing", Severity.WARNING, message))
+    return tuple(flags)

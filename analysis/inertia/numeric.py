@@ -1,0 +1,66 @@
+"""Elementary functions that keep their argument's type: a number stays one, an array stays one.
+
+The formulas of this package are written once and serve single values, the Monte Carlo's arrays and
+the budget's differences alike.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Value = TypeVar("Value", float, FloatArray)
+
+STANDARD_GRAVITY_UNCERTAINTY_M_S2 = 0.015  # half of the Earth's range of g, as a standard deviation
+
+
+def sqrt(x: Value) -> Value:
+    """Square root; NaN where the argument is negative."""
+    with np.errstate(invalid="ignore"):
+        return cast("Value", np.sqrt(x))
+
+
+def sin(x: Value) -> Value:
+    """Sine of an angle in radians."""
+    return cast("Value", np.sin(x))
+
+
+def cos(x: Value) -> Value:
+    """Cosine of an angle in radians."""
+    return cast("Value", np.cos(x))
+
+
+def tan(x: Value) -> Value:
+    """Tangent of an angle in radians."""
+    return cast("Value", np.tan(x))
+
+
+def arctan2(y: Value, x: Value) -> Value:
+    """Angle of the point ``(x, y)`` in radians."""
+    return cast("Value", np.arctan2(y, x))
+
+
+def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray) -> FloatArray:
+    """Return the derivative of a real-analytic function by complex steps: exact to rounding.
+
+    Parameters
+    ----------
+    function
+        Takes shape ``(n,)`` and gives ``(m,)``; sums, products, quotients and roots only.
+    at
+        Where, shape ``(n,)``.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(m, n)``.
+    """
+    step = 1e-30
+    columns = []
+    for k in range(at.size):
+        shifted = at.astype(np.complex128)
+        shifted[k] += 1j * step
+        columns.append(np.imag(function(cast("FloatArray", shifted))) / step)
+    return np.stack(columns, axis=1).astype(np.float64)

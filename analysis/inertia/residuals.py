@@ -1,0 +1,96 @@
+"""What a fit leaves over: its colour, which widens the covariance, and its shape, which accuses.
+
+A damped sinusoid's parameters feel the noise near its own frequency only, an offset that near zero.
+So each column of the covariance is widened by the residual's spectral density near its frequency
+over the density that white noise of the same variance has.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+
+_NEAR_BINS = 12  # bins of one cycle per record on either side
+_STRUCTURE_BINS = 3
+STRUCTURED = 20.0  # times the density further away
+
+
+@dataclass(frozen=True)
+class ResidualDiagnostics:
+    """How the residual looks.
+
+    Attributes
+    ----------
+    rms
+        Standard deviation of the residual, in the record's unit.
+    lag1_correlation
+        Correlation of neighbouring samples; near 0 for white noise.
+    mode_inflation, offset_inflation
+        Factors on the variances of each mode's parameters, shape ``(modes,)``, and of the offset.
+    structure
+        Residual power within three cycles per record of the modes, over that beside it: large where
+        the model is wrong (period or decay vary with amplitude, another mode).
+    """
+
+    rms: float
+    lag1_correlation: float
+    mode_inflation: FloatArray
+    offset_inflation: float
+    structure: float
+
+    @property
+    def structured(self) -> bool:
+        """Whether the model, not the noise, seems to be at fault."""
+        return self.structure > STRUCTURED
+
+
+def diagnose(
+    residual: FloatArray, time_s: FloatArray, frequency_hz: FloatArray
+) -> ResidualDiagnostics:
+    """Look at a residual.
+
+    Parameters
+    ----------
+    residual, time_s
+        Shape ``(samples,)``; samples may be missing between.
+    frequency_hz
+        The modes' frequencies, shape ``(modes,)``.
+    """
+    grid = _on_grid(residual, time_s)
+    density = np.abs(np.fft.rfft(grid)) ** 2 / residual.size
+    variance = float(residual @ residual) / residual.size
+    white = variance if variance > 0.0 else 1.0
+    step = float(time_s[-1] - time_s[0]) / max(grid.size - 1, 1)
+    bins = np.rint(np.abs(frequency_hz) * step * grid.size).astype(int)
+    near = [_density(density, k, 1, _NEAR_BINS) / white for k in bins]
+    inside = max((_density(density, k, 0, _STRUCTURE_BINS) for k in bins), default=0.0)
+    beside = min(
+        (_density(density, k, _STRUCTURE_BINS + 1, 4 * _NEAR_BINS) for k in bins), default=1.0
+    )
+    neighbours = float(residual[1:] @ residual[:-1]) / (residual.size * white)
+    return ResidualDiagnostics(
+        rms=float(np.sqrt(variance)),
+        lag1_correlation=neighbours,
+        mode_inflation=np.maximum(np.array(near), 1.0),
+        offset_inflation=max(_density(density, 0, 1, _NEAR_BINS) / white, 1.0),
+        structure=inside / beside if beside > 0.0 else 1.0,
+    )
+
+
+def _on_grid(residual: FloatArray, time_s: FloatArray) -> FloatArray:
+    """Put samples back on their even grid, zero where missing."""
+    step = float(np.median(np.diff(time_s)))
+    place = np.rint((time_s - time_s[0]) / step).astype(int)
+    if place[-1] + 1 > 4 * residual.size:
+        return residual
+    grid = np.zeros(place[-1] + 1)
+    grid[place] = residual
+    return grid
+
+
+def _density(density: FloatArray, centre: int, nearest: int, farthest: int) -> float:
+    """Mean density of the bins at these distances on either side."""
+    distance = np.abs(np.arange(density.size) - centre)
+    chosen = density[(distance >= nearest) & (distance <= farthest)]
+    return float(chosen.mean()) if chosen.size else 0.0
