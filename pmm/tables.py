@@ -195,7 +195,7 @@ def format_value(value: float, half_width: float) -> str:
     if not (math.isfinite(value) and math.isfinite(half_width)):
         return f"{value:.6g} ± ?"
     if half_width <= 1e-12 * abs(value):
-        return f"{value:.12g} ± {half_width:.1g}"
+        return f"{value:.12g} ± {half_width:.2g}"
     last = math.floor(math.log10(float(f"{half_width:.1e}"))) - 1
     top = math.floor(math.log10(max(abs(value), half_width)))
     if -5 <= top <= 5 and last <= 1:

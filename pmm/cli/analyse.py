@@ -59,6 +59,7 @@ _COUNT = click.IntRange(min=1)
     metavar="X",
     help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
 )
+@click.option("--hann", is_flag=True, help="Taper each gate: for long gates with interference.")
 @click.option("--no-drift", is_flag=True, help="Leave a linear drift in.")
 @click.option("--map", "column_map", metavar="TOML", help="Which column of a text file is what.")
 @click.option(

@@ -11,11 +11,11 @@ import click
 from analysis.readers import write_recording
 from analysis.resolver.analyse import ReferenceChoice, Settings
 from hardware.description.errors import ConfigurationError, PmmError
-from pmm.cli.inputs import Source, chosen_columns, find_sources, read_source
+from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.request import Request
 from pmm.cli.resolving import analyse_recording, reference_channel
-from pmm.cli.screen import error_line, output, show_progress
+from pmm.cli.screen import error_line, messages, output, show_progress
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
@@ -41,21 +41,29 @@ def run(request: Request) -> None:
     DataError, ConfigurationError
         If the request itself is wrong. A file's own error ends up in the exit status.
     """
-    _check(request)
+    found = find_sources(request.files)
+    _check(request, found)
     columns = chosen_columns(request.column_map, request.columns)
     done: list[RunRows] = []
     failed: list[Failure] = []
-    for source in show_progress(find_sources(request.files), "analysing"):
+    for source in show_progress(found.sources, "analysing"):
         try:
             done.append(_analyse_source(source, request, columns))
         except PmmError as error:
             failed.append(Failure(str(source.path), str(error), error.exit_status))
-    _report(request, done, failed)
+    if request.as_json:
+        text = document(done, failed, found, request.level)
+        click.echo(json.dumps(text, indent=1, allow_nan=False))
+    else:
+        console = output()
+        for rows in done:
+            print_run(console, rows, request.level)
+    _report(failed, found)
     if failed:
         click.get_current_context().exit(min(failure.exit_status for failure in failed))
 
 
-def _check(request: Request) -> None:
+def _check(request: Request, found: Found) -> None:
     ways = {
         "--reference": request.reference,
         "--frequency": request.frequency,
@@ -64,7 +72,7 @@ def _check(request: Request) -> None:
     given = [name for name, value in ways.items() if value is not None]
     if len(given) > 1:
         raise ConfigurationError(f"give one reference, not {' and '.join(given)}")
-    if request.edges and len(find_sources(request.files)) > 1 and "{stem}" not in request.edges:
+    if request.edges and len(found.sources) > 1 and "{stem}" not in request.edges:
         raise ConfigurationError(
             f"--edges {request.edges}: one file of edges for several recordings; put {{stem}} "
             "where the recording's name stands in the names of their edge files"
@@ -95,13 +103,9 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
     )
 
 
-def _report(request: Request, done: list[RunRows], failed: list[Failure]) -> None:
-    if request.as_json:
-        click.echo(json.dumps(document(done, failed, request.level), indent=1, allow_nan=False))
-    else:
-        console = output()
-        for rows in done:
-            print_run(console, rows, request.level)
+def _report(failed: list[Failure], found: Found) -> None:
+    for path in found.not_recorded:
+        messages().print(f"not recorded yet: {path}")
     for failure in failed:
         error_line(_with_file(failure))
 
@@ -111,17 +115,20 @@ def _with_file(failure: Failure) -> str:
     return failure.message if named else f"{failure.file}: {failure.message}"
 
 
-def document(done: list[RunRows], failed: list[Failure], level: float) -> dict[str, Any]:
+def document(
+    done: list[RunRows], failed: list[Failure], found: Found, level: float
+) -> dict[str, Any]:
     """Return what ``--json`` prints; ``docs/campaigns.md`` describes it."""
-    found: dict[str, Any] = _without_nan(
+    text: dict[str, Any] = _without_nan(
         {
             "schema": JSON_SCHEMA,
             "level": level,
             "runs": [asdict(rows) for rows in done],
+            "not_recorded": [str(path) for path in found.not_recorded],
             "failed": [{"file": one.file, "message": one.message} for one in failed],
         }
     )
-    return found
+    return text
 
 
 def _without_nan(value: Any) -> Any:

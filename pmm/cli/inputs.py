@@ -37,20 +37,38 @@ class Source:
         return Path(self.path.name.removesuffix(".gz")).stem
 
 
-def find_sources(paths: Sequence[str]) -> tuple[Source, ...]:
+@dataclass(frozen=True)
+class Found:
+    """The recordings that are meant.
+
+    Attributes
+    ----------
+    not_recorded
+        Where the recordings of a campaign's other runs would lie; they are not there yet.
+    """
+
+    sources: tuple[Source, ...] = ()
+    not_recorded: tuple[Path, ...] = ()
+
+    def __add__(self, other: "Found") -> "Found":
+        """Return both."""
+        return Found(self.sources + other.sources, self.not_recorded + other.not_recorded)
+
+
+def find_sources(paths: Sequence[str]) -> Found:
     """Return the recordings that are meant; a campaign stands for those of all its runs.
 
     Raises
     ------
     DataError
-        For a folder without a campaign.
+        For a folder without a campaign, and a campaign without any recording.
     ConfigurationError
         If a campaign file is wrong.
     """
-    return tuple(source for path in paths for source in _sources(Path(path)))
+    return sum((_find(Path(path)) for path in paths), Found())
 
 
-def _sources(path: Path) -> tuple[Source, ...]:
+def _find(path: Path) -> Found:
     if path.is_dir():
         if not (path / CAMPAIGN_FILE).exists():
             raise DataError(
@@ -59,13 +77,27 @@ def _sources(path: Path) -> tuple[Source, ...]:
             )
         path = path / CAMPAIGN_FILE
     if path.suffix != ".toml":
-        return (Source(path),)
+        return Found((Source(path),))
+    return _find_in_campaign(path)
+
+
+def _find_in_campaign(path: Path) -> Found:
     campaign = read_campaign(path)
     if not campaign.runs:
-        raise DataError(f"{path}: the campaign has no runs; add one table [[runs]] for each")
-    return tuple(
-        Source(run.recording_path(path.parent), campaign, run.set_point) for run in campaign.runs
-    )
+        raise DataError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
+    sources, not_recorded = [], []
+    for run in campaign.runs:
+        recording = run.recording_path(path.parent)
+        if run.file is None and not recording.exists():
+            not_recorded.append(recording)
+        else:
+            sources.append(Source(recording, campaign, run.set_point))
+    if not sources:
+        raise DataError(
+            f"{path}: none of its {len(campaign.runs)} runs is recorded yet; the first would be "
+            f"{not_recorded[0]}"
+        )
+    return Found(tuple(sources), tuple(not_recorded))
 
 
 def chosen_columns(column_map: str | None, columns: Sequence[str]) -> "ColumnMap | None":

@@ -23,6 +23,7 @@ class Request:
     opens_at: float | None
     periods: int | None
     steady_tolerance: float | None
+    hann: bool
     no_drift: bool
     column_map: str | None
     columns: tuple[str, ...]
@@ -52,6 +53,7 @@ class Request:
             "opens_s": self.opens_at,
             "periods": self.periods,
             "steady_tolerance": self.steady_tolerance,
+            "hann": self.hann or None,
             "take_out_drift": False if self.no_drift else None,
         }
         return replace(base, **{key: value for key, value in given.items() if value is not None})

@@ -1,0 +1,124 @@
+"""The whole way: a campaign is simulated and analysed; the harmonics are those of theory.
+
+The phasors are worked out here from the equations of motion, apart from the simulator's code.
+"""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+
+SHIPPED = Path(__file__).parents[2] / "pmm" / "cli" / "campaigns"
+NOISE = "noise_rms = 0.05, resolution = 0.0152587890625, full_scale = 500.0"
+DRIFT = ", drift_per_s = 0.004"
+G_M_S2 = 9.80665
+
+Phasor = complex  # S + iC of S sin(theta) + C cos(theta)
+
+
+def run(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(cli, [str(one) for one in arguments], catch_exceptions=False)
+
+
+def strut_forces(
+    frequency_hz: float, eccentricity_m: float, phase_rad: float, speed_m_s: float
+) -> dict[str, Phasor]:
+    """Forces of the vertical example's struts on its model, from the equations of motion."""
+    half_m, mass_kg, inertia, x_g, z_g = 0.5, 70.0, 27.5, -0.02, 0.02
+    s = 2j * math.pi * frequency_hz
+    aft, fore = eccentricity_m, eccentricity_m * complex(math.cos(phase_rad), math.sin(phase_rad))
+    z, pitch = (aft + fore) / 2.0, (aft - fore) / (2.0 * half_m)
+    w, q = s * z + speed_m_s * pitch, s * pitch
+    force = mass_kg * s**2 * z - mass_kg * x_g * s**2 * pitch
+    force += 75.0 * s * w + 3.0 * s * q + 190.0 * w + 12.0 * q + 6900.0 * z + 345.0 * pitch
+    moment = -mass_kg * x_g * s**2 * z + inertia * s**2 * pitch + mass_kg * G_M_S2 * z_g * pitch
+    moment += 3.0 * s * w + 22.0 * s * q + 12.0 * w + 55.0 * q + 345.0 * z + 2400.0 * pitch
+    return {
+        "force_aft": (force + moment / half_m) / 2.0,
+        "force_fore": (force - moment / half_m) / 2.0,
+    }
+
+
+def analysed(folder: Path, *options: str) -> list[dict[str, Any]]:
+    done = run("analyse", folder, "--json", *options)
+    assert done.exit_code == 0, done.stderr
+    assert done.stderr == ""
+    runs: list[dict[str, Any]] = json.loads(done.stdout)["runs"]
+    return runs
+
+
+def expected(rows: dict[str, Any]) -> dict[str, Phasor]:
+    kind, frequency = rows["run"].split("-")
+    return strut_forces(float(frequency), 0.020, math.pi if kind == "pitch" else 0.0, 1.2)
+
+
+def channel(rows: dict[str, Any], name: str) -> dict[str, Any]:
+    (found,) = (one for one in rows["gates"][0]["channels"] if one["name"] == name)
+    return dict(found)
+
+
+def test_without_noise_the_forces_are_those_of_theory(tmp_path: Path) -> None:
+    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    assert text.count(NOISE) == 2
+    assert text.count(DRIFT) == 1
+    file = tmp_path / "perfect.toml"
+    file.write_text(text.replace(NOISE, "").replace(DRIFT, ""), encoding="utf-8")
+    assert run("simulate", file, "--output", tmp_path / "runs").exit_code == 0
+    runs = analysed(tmp_path / "runs")
+    assert len(runs) == 6
+    for rows in runs:
+        for name, force in expected(rows).items():
+            first, *higher = channel(rows, name)["harmonics"]
+            assert first["in_phase"]["value"] == pytest.approx(force.real, abs=1e-9 * abs(force))
+            assert first["quadrature"]["value"] == pytest.approx(force.imag, abs=1e-9 * abs(force))
+            assert max(one["amplitude"]["value"] for one in higher) < 1e-9 * abs(force)
+
+
+def test_with_noise_theory_lies_within_the_intervals(tmp_path: Path) -> None:
+    assert run("simulate", SHIPPED / "vertical.toml", "--output", tmp_path).exit_code == 0
+    misses = []
+    for rows in analysed(tmp_path):
+        for name, force in expected(rows).items():
+            first = channel(rows, name)["harmonics"][0]
+            for part, value in (("in_phase", force.real), ("quadrature", force.imag)):
+                miss = abs(first[part]["value"] - value)
+                misses.append(miss / first[part]["half_width"])
+                assert miss < 0.02  # newtons: 0.05 rms of noise, thousands of samples
+    assert len(misses) == 24
+    assert sum(miss > 1.0 for miss in misses) <= 4
+    assert max(misses) < 3.0
+
+
+def test_the_drift_that_was_put_in_is_taken_out(tmp_path: Path) -> None:
+    arguments = ("simulate", SHIPPED / "vertical.toml", "--run", "heave-0.50")
+    assert run(*arguments, "--output", tmp_path).exit_code == 0
+    file = tmp_path / "heave-0.50.nc"
+    (rows,) = analysed(file)
+    assert channel(rows, "force_aft")["drift_per_s"] == pytest.approx(0.004, abs=2e-4)
+    (left_in,) = analysed(file, "--no-drift")
+    assert channel(left_in, "force_aft")["drift_per_s"] == 0.0
+
+
+def test_a_wider_level_widens_the_intervals(tmp_path: Path) -> None:
+    arguments = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20")
+    assert run(*arguments, "--output", tmp_path).exit_code == 0
+    file = tmp_path / "sway-0.20.nc"
+    narrow, wide = (
+        channel(analysed(file, "--level", level)[0], "force_aft")["mean"]["half_width"]
+        for level in ("0.68", "0.99")
+    )
+    assert wide > 2.0 * narrow
+
+
+def test_gates_of_one_period_each(tmp_path: Path) -> None:
+    arguments = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20")
+    assert run(*arguments, "--output", tmp_path).exit_code == 0
+    (rows,) = analysed(tmp_path / "sway-0.20.nc", "--gate", "1", "--harmonics", "2")
+    assert [gate["periods"] for gate in rows["gates"]] == [1] * 6
+    assert len(rows["gates"][0]["channels"][0]["harmonics"]) == 2
+    assert rows["gates"][0]["interval_source"] == "scatter between the periods around the gate"

@@ -1,0 +1,44 @@
+"""A value and its half-width as text: digits as the half-width bears, checked by hand."""
+
+import math
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pmm.tables import format_value
+
+
+@pytest.mark.parametrize(
+    ("value", "half_width", "text"),
+    [
+        (15.80790, 0.12543, "15.81 ± 0.13"),
+        (-12.3, 4.449, "-12.3 ± 4.4"),
+        (0.0, 0.0, "0 ± 0"),
+        (1.0, 0.0996, "1.00 ± 0.10"),
+        (1.0, 0.0994, "1.000 ± 0.099"),
+        (-102.3, 149.2, "-102 ± 149"),
+        (0.02, 3.1e-7, "0.02000000 ± 0.00000031"),
+        (1.3e-8, 2.11e-7, "(13 ± 211)e-9"),
+        (1.2345e7, 2.5e4, "(12.345 ± 0.025)e6"),
+        (12345.0, 1e4, "(12 ± 10)e3"),
+        (3.14159265, math.nan, "3.14159 ± ?"),
+        (math.nan, 1.0, "nan ± ?"),
+    ],
+)
+def test_against_hand(value: float, half_width: float, text: str) -> None:
+    assert format_value(value, half_width) == text
+
+
+@given(
+    value=st.floats(-1e9, 1e9),
+    half_width=st.floats(1e-9, 1e9),
+)
+def test_what_is_printed_is_the_value_within_its_interval(value: float, half_width: float) -> None:
+    text = format_value(value, half_width)
+    match = re.fullmatch(r"\(?(\S+) ± ([^)]+)\)?(?:e(-?\d+))?", text)
+    assert match
+    scale = 10.0 ** int(match[3] or 0)
+    assert abs(float(match[1]) * scale - value) <= 0.051 * half_width + 1e-11 * abs(value)
+    assert float(match[2]) * scale == pytest.approx(half_width, rel=0.051)
