@@ -43,9 +43,10 @@ def from_photocell(
     if len(edges) < 2:
         raise DataError(f"{len(edges)} photocell pulses; a whole period needs at least two")
     if not np.all(np.diff(edges) > 0.0):
-        at = int(np.argmax(np.diff(edges) <= 0.0))
+        at = int(np.argmin(np.diff(edges) > 0.0))
         raise DataError(
-            f"photocell pulse {at + 1} at {edges[at + 1]:.6f} s does not come after {at}"
+            f"photocell pulse {at + 1} at {edges[at + 1]:.6f} s does not come after pulse {at} "
+            f"at {edges[at]:.6f} s; pulses must be given in order of time, each once"
         )
     edges, extra = _without_extra(edges)
     turns = _turns(edges)
@@ -63,19 +64,26 @@ def _local_period(intervals: FloatArray) -> FloatArray:
 
 
 def _without_extra(edges: FloatArray) -> tuple[FloatArray, list[float]]:
-    """Drop pulses that cut a revolution in two; the two parts together make a period."""
+    """Drop pulses that cut a revolution short: of the two, the one out of time with the rest."""
     dropped: list[float] = []
-    k = 1
-    while k < len(edges) - 1:
+    while len(edges) > 2:
         intervals = np.diff(edges)
-        period = _local_period(intervals)[k - 1]
-        parts = intervals[k - 1] + intervals[k]
-        if min(intervals[k - 1], intervals[k]) < EARLY * period and parts < LATE * period:
-            dropped.append(float(edges[k]))
-            edges = np.delete(edges, k)
-        else:
-            k += 1
+        period = _local_period(intervals)
+        short = np.flatnonzero(intervals < EARLY * period)
+        if not short.size:
+            break
+        k = int(short[0])
+        later = _out_of_time(edges, k + 1, period[k]) >= _out_of_time(edges, k, period[k])
+        dropped.append(float(edges[k + later]))
+        edges = np.delete(edges, k + later)
     return edges, dropped
+
+
+def _out_of_time(edges: FloatArray, pulse: int, period: float) -> float:
+    """How far from whole periods the pulses around one lie, by their median."""
+    near = edges[max(0, pulse - _NEIGHBOURS // 2) : pulse + _NEIGHBOURS // 2 + 1]
+    away = (near[near != edges[pulse]] - edges[pulse]) / period
+    return float(np.median(np.abs(away - np.rint(away))))
 
 
 def _turns(edges: FloatArray) -> FloatArray:
