@@ -104,6 +104,7 @@ def _average(recording: Recording, frequency_hz: float) -> _Run:
     mode = RunningAverage(recording.channel_names, _RATE_HZ, frequency_hz, 1.5 / frequency_hz)
     reference = from_photocell(np.asarray(_pulses(recording)))
     state, took = AverageState(0.0), []
+    mode.advance(state, recording.samples[:, :_BLOCK], reference.cycles_at)  # loads its filter
     for start in range(0, recording.sample_count, _BLOCK):
         block = recording.samples[:, start : start + _BLOCK]
         started = time.thread_time()
