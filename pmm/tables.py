@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from analysis.resolver.analyse import Analysis
     from analysis.resolver.harmonics import Harmonics
 
-DEFAULT_LEVEL = 0.95
-
 # An amplitude this many times its half-width is no play of the noise.
 _SIGNIFICANT = 2.0
 
@@ -108,8 +106,8 @@ def run_rows(
     analysis: "Analysis",
     *,
     file: str,
+    level: float,
     reference_channel: str | None = None,
-    level: float = DEFAULT_LEVEL,
 ) -> RunRows:
     """Turn an analysis into rows.
 
@@ -145,7 +143,7 @@ def _window(analysis: "Analysis") -> str:
     return "found steady" if steady else "not steady"
 
 
-def gate_rows(reading: "Harmonics", level: float = DEFAULT_LEVEL) -> GateRows:
+def gate_rows(reading: "Harmonics", level: float) -> GateRows:
     """Turn one gate's harmonics into rows with intervals of some probability."""
     half_width = reading.half_width(level)
     factor = reading.coverage_factor(level)[1::2]

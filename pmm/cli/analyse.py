@@ -5,35 +5,40 @@ from typing import Any
 
 import click
 
-DEFAULT_LEVEL = 0.95  # of the intervals; as in pmm.tables, which is too heavy to import here
+DEFAULT_LEVEL = 0.95  # probability of the intervals
 
 
-class FiniteFloat(click.FloatRange):
-    """A number within a range; neither NaN nor infinite."""
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """Turn text into the number, or fail."""
-        number = float(super().convert(value, param, ctx))
-        if not math.isfinite(number):
-            self.fail(f"{value} is not a finite number.", param, ctx)
-        return number
-
-
-_ANY = FiniteFloat()
-_POSITIVE = FiniteFloat(min=0.0, min_open=True)
+_POSITIVE = click.FloatRange(min=0.0, min_open=True)
+_PROBABILITY = click.FloatRange(min=0.0, max=1.0, min_open=True, max_open=True)
 _COUNT = click.IntRange(min=1)
+
+
+def _finite(
+    ctx: click.Context,  # noqa: ARG001
+    param: click.Parameter,  # noqa: ARG001
+    value: float | None,
+) -> float | None:
+    if value is not None and not math.isfinite(value):
+        raise click.BadParameter(f"{value} is not a finite number.")
+    return value
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--reference", metavar="CHANNEL", help="Take the phase from this channel.")
-@click.option("--frequency", type=_POSITIVE, metavar="HZ", help="Take a known frequency.")
-@click.option("--edges", metavar="FILE", help="Times of the photocell's edges, a column of text.")
-@click.option("--latency", type=_ANY, metavar="S", help="Delay of the photocell's pulses.")
 @click.option(
-    "--angle-offset", type=_ANY, metavar="DEG", help="Shaft angle at the photocell's mark."
+    "--frequency", type=_POSITIVE, callback=_finite, metavar="HZ", help="Take a known frequency."
+)
+@click.option("--edges", metavar="FILE", help="Times of the photocell's edges, a column of text.")
+@click.option(
+    "--latency", type=float, callback=_finite, metavar="S", help="Delay of the photocell's pulses."
+)
+@click.option(
+    "--angle-offset",
+    type=float,
+    callback=_finite,
+    metavar="DEG",
+    help="Shaft angle at the photocell's mark.",
 )
 @click.option(
     "--channel",
@@ -48,7 +53,8 @@ _COUNT = click.IntRange(min=1)
 )
 @click.option(
     "--opens-at",
-    type=_ANY,
+    type=float,
+    callback=_finite,
     metavar="S",
     help="Open the first gate at this time.  [default: where the run is steady]",
 )
@@ -56,6 +62,7 @@ _COUNT = click.IntRange(min=1)
 @click.option(
     "--steady-tolerance",
     type=_POSITIVE,
+    callback=_finite,
     metavar="X",
     help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
 )
@@ -69,10 +76,18 @@ _COUNT = click.IntRange(min=1)
     metavar='"NAME=SOURCE[:UNIT]"',
     help="The same, one column at a time; repeatable.",
 )
-@click.option("--sample-rate", type=_POSITIVE, metavar="HZ", help="In place of a time column.")
+@click.option(
+    "--sample-rate",
+    type=_POSITIVE,
+    callback=_finite,
+    metavar="HZ",
+    help="In place of a time column.",
+)
 @click.option(
     "--level",
-    type=FiniteFloat(min=0.0, max=1.0, min_open=True, max_open=True),
+    type=_PROBABILITY,
+    callback=_finite,
+    metavar="P",
     default=DEFAULT_LEVEL,
     show_default=True,
     help="Probability of the intervals.",
@@ -81,7 +96,7 @@ _COUNT = click.IntRange(min=1)
 @click.option("--save", metavar="FOLDER", help="Write the recordings there, as NetCDF.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of tables.")
 def analyse(**options: Any) -> None:
-    r"""Resolve recordings into mean and harmonics, with uncertainty.
+    """Resolve recordings into mean and harmonics, with uncertainty.
 
     Each FILE is a recording (.csv, .txt, .dat, plain or .gz, or .nc) or a campaign: a folder with
     a campaign.toml and a recording per run. The phase comes from the photocell, else the encoder
@@ -90,7 +105,7 @@ def analyse(**options: Any) -> None:
     \b
     pmm analyse run.csv --reference stroke --channel Fy
     pmm analyse campaign/ --plot plots
-    """
+    """  # noqa: D301
     from pmm.cli.analysing import run
     from pmm.cli.request import Request
 

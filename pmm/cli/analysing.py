@@ -77,6 +77,18 @@ def _check(request: Request, found: Found) -> None:
             f"--edges {request.edges}: one file of edges for several recordings; put {{stem}} "
             "where the recording's name stands in the names of their edge files"
         )
+    if request.plot or request.save:
+        _check_names(found)
+
+
+def _check_names(found: Found) -> None:
+    stems = [source.stem for source in found.sources]
+    twice = next((stem for stem in stems if stems.count(stem) > 1), None)
+    if twice is not None:
+        raise ConfigurationError(
+            f"several recordings are called {twice!r}, and what is written of them would be too; "
+            "use a folder for each with --plot and --save"
+        )
 
 
 def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None") -> RunRows:

@@ -9,6 +9,7 @@ from analysis.readers import read_recording
 from analysis.resolver.analyse import Analysis
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from pmm.campaign_file import read_campaign
+from pmm.cli.analyse import DEFAULT_LEVEL
 from pmm.cli.printing import print_compact
 from pmm.cli.resolving import analyse_recording
 from pmm.cli.screen import busy, output, show_progress
@@ -35,7 +36,7 @@ def run(folder_name: str, *, with_horizontal: bool = True) -> None:
     runs = [one for shown in campaigns for one in shown]
     print_compact(
         output(),
-        [run_rows(one.analysis, file=str(one.path)) for one in runs],
+        [run_rows(one.analysis, file=str(one.path), level=DEFAULT_LEVEL) for one in runs],
         (FORCE_AFT.name, FORCE_FORE.name),
     )
     _write_plots([shown[0] for shown in campaigns], folder / "plots")

@@ -16,8 +16,9 @@ _WIDTH = 17  # of a column of values: "-12.345 ± 0.012" and room for a longer o
 def print_run(console: "Console", rows: "RunRows", level: float) -> None:
     """Print everything about one recording."""
     from rich.rule import Rule
+    from rich.text import Text
 
-    console.print(Rule(f"{rows.file}", align="left", characters="─"), style="bold")
+    console.print(Rule(Text(rows.file, style="bold"), align="left", style="dim"))
     channel = f" {rows.reference_channel}" if rows.reference_channel else ""
     console.print(f"reference  {rows.reference}{channel}, {rows.reference_frequency_hz:.6g} Hz")
     console.print(

@@ -238,6 +238,25 @@ def test_recordings_are_saved_and_kept(folder: Path, tmp_path: Path) -> None:
     assert "run_1.nc: exists already" in again.stderr
 
 
+def test_plots_are_written(folder: Path, tmp_path: Path) -> None:
+    plots = ("--channel", "force_aft", "--plot", tmp_path / "plots")
+    assert run("analyse", folder / "heave-1.20.nc", *plots).exit_code == 0
+    names = {path.name for path in (tmp_path / "plots").iterdir()}
+    kinds = ("gate", "phasors", "spectrum")
+    assert names == {f"heave-1.20-{kind}.{end}" for kind in kinds for end in ("svg", "png")}
+
+
+@pytest.mark.parametrize("option", ["--plot", "--save"])
+def test_two_recordings_of_one_name_do_not_overwrite_each_other(
+    option: str, folder: Path, tmp_path: Path
+) -> None:
+    recording = folder / "heave-1.20.nc"
+    done = run("analyse", recording, recording, option, tmp_path / "out")
+    assert done.exit_code == 2
+    assert "several recordings are called 'heave-1.20'" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
 def test_an_interrupt_has_its_own_status(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
