@@ -76,8 +76,8 @@ def _notes(trials: int) -> tuple[str, ...]:
         f"{trials} draws of the frequency (0.9 to 1.1 Hz) and of all phases. Mean 10, harmonics "
         "1 to 3 of 1, 0.3 and 0.1; unmodelled are harmonics 4 to 8 of 0.1 each; the drift is 1 per "
         "period.",
-        "Ours has six-point edges, the Gram solve, and takes the drift out first. At m = 1 it takes that "
-        "from the periods on either side; a gate alone cannot tell it.",
+        "Ours has six-point edges, the Gram solve, and takes the drift out first; at m = 1 from "
+        "the periods on either side, for a gate alone cannot tell it.",
         "The thresholds take the largest error of ours, that of the mean at mid-gate included.",
     )
 
@@ -110,7 +110,8 @@ def _ours(truth: Truth, values: FloatArray, edges_cycles: FloatArray, case: _Cas
     edges = edges_cycles[1:-1] if alone else edges_cycles
     sums = period_sums(recording, reference, edges_cycles=edges, compiled=False)
     gate = sums if alone else sums[1:-1]
-    return resolve(recording, gate, around=None if alone else sums).coefficients[0]
+    found = resolve(recording, gate, around=None if alone else sums)
+    return np.asarray(found.coefficients[0])
 
 
 BENCHMARK = Benchmark("accuracy", "Accuracy", run)

@@ -74,7 +74,7 @@ def weighted(gate: Gate, nodes: int, *, solve: bool) -> FloatArray:
     basis = template(gate.cycles, _ORDERS)
     moment = basis @ (weights * gate.values)
     if solve:
-        return np.linalg.solve((basis * weights) @ basis.T, moment)
+        return np.asarray(np.linalg.solve((basis * weights) @ basis.T, moment), dtype=np.float64)
     return _doubled(moment / (gate.closing - gate.opening))
 
 
@@ -99,7 +99,9 @@ def edge_weights(opening: float, closing: float, nodes: int, count: int) -> Floa
 
 def _cell(nodes: int, low: float, high: float) -> FloatArray:
     """Integrals of a cell's Lagrange polynomials from ``low`` to ``high``, within [0, 1]."""
-    return np.array([antiderivative(high) - antiderivative(low) for antiderivative in _lagrange(nodes)])
+    return np.array(
+        [antiderivative(high) - antiderivative(low) for antiderivative in _lagrange(nodes)]
+    )
 
 
 @cache

@@ -1,7 +1,6 @@
 """What the live resolver takes of a core, and whether its final values are the batch's."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,8 +79,11 @@ def _interleaved(recording: Recording, frequency_hz: float, rounds: int) -> tupl
     for _ in range(rounds):
         ours.append(_resolve(recording))
         rivals.append(_average(recording, frequency_hz))
-    best: Callable[[list[_Run]], _Run] = lambda runs: min(runs, key=lambda one: one.total_s)
-    return best(ours), best(rivals)
+    return _best(ours), _best(rivals)
+
+
+def _best(runs: list[_Run]) -> _Run:
+    return min(runs, key=lambda one: one.total_s)
 
 
 def _resolve(recording: Recording) -> _Run:

@@ -22,11 +22,11 @@ def run(quick: bool, report: Report) -> Outcome:
     seconds = 60.0 if quick else 3600.0
     data_gib = CHANNELS * seconds * RATE_HZ * 8.0 / _GIB
     notes = [
-        f"{CHANNELS} channels of {seconds / 60.0:.0f} min at 10 kHz, {data_gib:.2f} GiB of samples; "
-        "`analyse` with its default settings, in a process of its own, interpreter and libraries "
-        "included.",
-        "The rival reads the same file into memory first; `over data` is the peak over the samples' "
-        "own size.",
+        f"{CHANNELS} channels of {seconds / 60.0:.0f} min at 10 kHz, {data_gib:.2f} GiB of "
+        "samples; `analyse` with its default settings, in a process of its own, interpreter and "
+        "libraries included.",
+        "The rival reads the same file into memory first; `over data` is the peak over the size of "
+        "the samples.",
     ]
     report("a generated record")
     found = _child("generated", str(seconds))
@@ -52,7 +52,7 @@ def _rival(path: Path, data_gib: float, rows: list[Row], notes: list[str]) -> No
     if importlib.util.find_spec("psutil") is None:
         notes.append("The rival was left out: psutil, which tells the memory left, is missing.")
         return
-    import psutil
+    import psutil  # type: ignore[import-untyped]
 
     available_gib = psutil.virtual_memory().available / _GIB
     if available_gib < 2.0 * data_gib:

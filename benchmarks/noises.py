@@ -16,7 +16,7 @@ _AR1 = 0.95
 
 def white(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
     """Draw noise that knows nothing of the sample before."""
-    return rng.standard_normal((channels, samples))
+    return np.asarray(rng.standard_normal((channels, samples)))
 
 
 def autoregressive(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
@@ -36,13 +36,13 @@ def drift(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
     """Draw white noise on a straight drift of 1 per period, up or down."""
     time = np.arange(samples) / SAMPLES_PER_PERIOD
     slope = rng.choice([-1.0, 1.0], channels)
-    return white(channels, samples, rng) + slope[:, None] * time
+    return np.asarray(white(channels, samples, rng) + slope[:, None] * time)
 
 
 def random_walk(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
     """Draw white noise on a random walk that strays by 1 (standard deviation) in a period."""
     steps = rng.standard_normal((channels, samples)) / np.sqrt(SAMPLES_PER_PERIOD)
-    return white(channels, samples, rng) + np.cumsum(steps, axis=1)
+    return np.asarray(white(channels, samples, rng) + np.cumsum(steps, axis=1))
 
 
 def _stationary(

@@ -73,9 +73,10 @@ def judge(name: str, measured: Mapping[str, float]) -> list[Verdict]:
 
 
 def _verdict(key: str, entry: Mapping[str, Any], value: float | None) -> Verdict:
-    most, least = entry.get("at_most"), entry.get("at_least")
-    limit = f"at least {least:g}" if most is None else f"at most {most:g}"
+    below = "at_most" in entry
+    bound = float(entry["at_most" if below else "at_least"])
+    limit = f"at {'most' if below else 'least'} {bound:g}"
     met = None
     if value is not None:
-        met = bool(value >= least if most is None else value <= most)
+        met = value <= bound if below else value >= bound
     return Verdict(key, entry["what"], limit, value, met)

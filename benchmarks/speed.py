@@ -43,7 +43,9 @@ class _Field:
     found: dict[str, FloatArray] = field(default_factory=dict)
     contenders: list[Contender] = field(default_factory=list)
 
-    def add_rival(self, name: str, rival: Rival, part: int, channels: int = 0, rounds: int = 2) -> None:
+    def add_rival(
+        self, name: str, rival: Rival, part: int, channels: int = 0, rounds: int = 2
+    ) -> None:
         """Enter a rival that gets the first ``1 / part`` of the samples, of some channels only."""
         channels = channels or len(self.samples)
         piece = self.samples[:channels, : self.samples.shape[1] // part]
@@ -119,8 +121,8 @@ def _long(count: int, *, quick: bool) -> tuple[_Field, tuple[str, ...]]:
     long.contenders.append(Contender(_SUM, long.samples.sum))
     notes = [
         "No noise: the errors are the methods' own. Each rival got the first part of the record "
-        "that its row names, and its time is scaled up in proportion; the best of the rounds counts "
-        "(seven for the sums, two for the rivals).",
+        "that its row names, and its time is scaled up in proportion. The best round counts: "
+        "seven for the sums, two for the rivals, one after the other in each round.",
         "The nearest bins and the plain products suffer from a record that is not whole periods; a "
         "user would cut it first.",
     ]

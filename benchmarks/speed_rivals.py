@@ -74,7 +74,7 @@ def curve_fit(samples: FloatArray, rate_hz: float, frequency_hz: float) -> Float
 
 def ulia(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray:
     """Lock in to a cosine, each harmonic executed; average the middle as its manual does."""
-    from ulia import ULIA
+    from ulia import ULIA  # type: ignore[import-untyped]
 
     count = samples.shape[1]
     reference = np.cos(2.0 * np.pi * frequency_hz * (np.arange(count) / rate_hz))
@@ -82,8 +82,8 @@ def ulia(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray
     middle = slice(int(0.3 * count), int(0.9 * count))
     for row, values in enumerate(samples):
         lock_in = ULIA(count, rate_hz, 5.0 / frequency_hz, 2, 0.2)
-        lock_in.load_data(reference, values)
         for n in _ORDERS:
+            lock_in.load_data(reference, values)  # executing a harmonic overwrites the reference
             lock_in.execute(n)
             found[row, 2 * n - 1] = -2.0 * lock_in.y[middle].mean()
             found[row, 2 * n] = 2.0 * lock_in.x[middle].mean()
@@ -92,7 +92,7 @@ def ulia(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray
 
 def rota_order(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray:
     """Track three orders over eight revolutions; average the envelopes away from the ends."""
-    from rota.extract import tracked_harmonics
+    from rota.extract import tracked_harmonics  # type: ignore[import-untyped]
 
     speed_rpm = np.full(samples.shape[1], 60.0 * frequency_hz)
     tracked = tracked_harmonics(samples.T, rate_hz, speed_rpm, _ORDERS, window_revs=8.0)

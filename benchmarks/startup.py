@@ -25,7 +25,9 @@ def run(quick: bool, report: Report) -> Outcome:
     for contender in contenders:
         if contender.name == "pmm --help":
             measured["help_s"] = statistics.median(contender.times_s)
-    return Outcome({"Time to answer": [_row(c, contenders[0]) for c in contenders]}, measured, (*notes,))
+    return Outcome(
+        {"Time to answer": [_row(c, contenders[0]) for c in contenders]}, measured, (*notes,)
+    )
 
 
 def _started(name: str, code: str) -> Contender:
