@@ -13,8 +13,11 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _COARSE_SAMPLES = 1 << 20  # enough for the first look at the frequency of a record of any length
+_FASTEST = 0.9  # of the Nyquist frequency: beyond it a period has too few samples to follow
 _MOVING = 0.5  # of the usual amplitude: below it the signal is starting, stopping or at rest
 _JUMP_CYCLES = 0.1  # from one period to the next: noise, not a motion
+_BY_CHANCE = 0.1  # periods of noise alone that would keep time so well: more is no motion
+_ROUNDING = 1e-12  # of the largest value: a spectrum as small is that of a constant or a ramp
 
 
 def from_signal(recording: Recording, name: str) -> PhaseReference:
@@ -41,7 +44,8 @@ def from_signal(recording: Recording, name: str) -> PhaseReference:
     middle_s, cycles = _follow(signal, frequency_hz)
     refined = _slope(middle_s, cycles) if len(cycles) > 2 else frequency_hz
     middle_s, cycles = _follow(signal, refined)
-    if len(cycles) < 2 or np.any(np.diff(cycles) <= 0.0):
+    periods = refined * (recording.end_s - recording.start_s)
+    if len(cycles) < 2 or _by_chance(cycles, periods) > _BY_CHANCE:
         raise _no_reference(recording, name, f"nothing that keeps time near {frequency_hz:.3g} Hz")
     # The phase is known at the middle of each period; knots at whole cycles make them straight.
     followed = PhaseReference(ReferenceSource.SIGNAL, middle_s, cycles)
@@ -61,10 +65,14 @@ def _coarse_frequency_hz(values: FloatArray, sample_rate_hz: float) -> float:
     step = -(-len(values) // _COARSE_SAMPLES)
     kept = len(values) // step * step
     coarse = values[:kept].reshape(-1, step).mean(axis=1)
-    power = np.abs(np.fft.rfft((coarse - coarse.mean()) * np.hanning(len(coarse))))
+    time = np.linspace(-1.0, 1.0, len(coarse))
+    level = coarse - coarse.mean()
+    level -= time * (time @ level) / (time @ time)
+    power = np.abs(np.fft.rfft(level * np.hanning(len(coarse))))
     power[:2] = 0.0  # offset and drift
+    power[int(_FASTEST * len(power)) :] = 0.0
     peak = int(np.argmax(power))
-    if power[peak] == 0.0 or peak + 1 >= len(power):
+    if power[peak] <= _ROUNDING * len(coarse) * np.abs(coarse).max():
         return 0.0
     left, top, right = np.log(np.maximum(power[peak - 1 : peak + 2], 1e-300))
     between = 0.5 * (left - right) / (left - 2.0 * top + right)
@@ -94,6 +102,16 @@ def _longest_motion(phasor: ComplexArray) -> slice:
     breaks = np.flatnonzero(np.concatenate(([True], ~joined, [True])))
     longest = int(np.argmax(np.diff(breaks)))
     return slice(int(breaks[longest]), int(breaks[longest + 1]))
+
+
+def _by_chance(cycles: FloatArray, periods: float) -> float:
+    """Stretches of this length and as good a time that ``periods`` of mere noise would hold.
+
+    From one period of noise to the next the phase turns by anything; one turn is used up where the
+    frequency was fitted.
+    """
+    turn = 2.0 * float(np.abs(np.diff(cycles) - 1.0).max())
+    return float(periods * turn ** max(1, len(cycles) - 2))
 
 
 def _slope(times_s: FloatArray, cycles: FloatArray) -> float:
