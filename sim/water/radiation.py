@@ -1,6 +1,6 @@
 """The water's linear reaction with its memory: infinite-frequency added mass and a state space."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import ClassVar
 
 import numpy as np
@@ -115,6 +115,19 @@ class Radiation:
         kernel: FloatArray = self.output_matrix @ decayed @ self.input_matrix
         return np.broadcast_to(kernel, (*time.shape, 2, 2))
 
+    def joined(
+        self, state_matrix: ArrayLike, input_matrix: ArrayLike, output_matrix: ArrayLike
+    ) -> "Radiation":
+        """Return the memory with further states beside these: the loads of both add up."""
+        from scipy.linalg import block_diag
+
+        return replace(
+            self,
+            state_matrix=block_diag(self.state_matrix, np.asarray(state_matrix)),
+            input_matrix=np.concatenate([self.input_matrix, input_matrix]),
+            output_matrix=np.concatenate([self.output_matrix, output_matrix], axis=1),
+        )
+
     def is_passive(self, tolerance: float = 1e-9) -> bool:
         """Tell whether the memory can never give back more energy than it has taken.
 
@@ -130,6 +143,12 @@ class Radiation:
         memory = scaled.memory(np.concatenate([edges, between, 2.0 * edges[-1:]]))
         hermitian = (memory + memory.conj().swapaxes(-1, -2)) / 2.0
         return bool(np.linalg.eigvalsh(hermitian).min() >= -tolerance * (1.0 + 1e-6))
+
+
+def constant(added_mass: ArrayLike) -> Radiation:
+    """Return an added mass, shape ``(2, 2)``, that does not depend on the frequency: no memory."""
+    empty = np.zeros((0, 2))
+    return Radiation(np.asarray(added_mass), np.zeros((0, 0)), empty, empty.T)
 
 
 def _unit_size(radiation: Radiation) -> Radiation:

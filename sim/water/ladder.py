@@ -1,0 +1,139 @@
+"""Block Schwarz form: every memory that is passive and vanishes at rest, and nothing else.
+
+In units of the square root of energy the memory of m degrees of freedom is
+
+    xi' = (J - R) xi + G v        mu = G^T xi        G = -J X
+
+with J skew and block tridiagonal (energy handed along a ladder of N blocks of m states), R = L L^T
+in the last block only (there the energy leaves with the waves) and X zero in the last block. Then
+
+    d/dt (xi^T xi / 2) = v^T mu - xi^T R xi,
+
+so that for any motion the work done on the water exceeds what is stored: the memory is passive
+whatever the numbers are. R X = 0 makes K(0) = G^T (R - J)^-1 G = X^T R X = 0: no damping at zero
+frequency. For m = 1 the 2 N - 1 numbers reach every positive real, strictly proper rational
+function of degree N with a zero at the origin.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.signals import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """J - R, G and the infinite-frequency added mass for one set of numbers."""
+
+    state: FloatArray
+    input: FloatArray
+    added_mass: FloatArray
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Where each of the form's numbers stands.
+
+    The numbers of a form are one vector: those of J, of L, of X, of the added mass (which is
+    symmetric).
+
+    Attributes
+    ----------
+    blocks
+        Number N of blocks, at least 2.
+    size
+        Number m of degrees of freedom, and of states in a block.
+    """
+
+    blocks: int
+    size: int
+
+    @property
+    def states(self) -> int:
+        """Number N m of states."""
+        return self.blocks * self.size
+
+    @cached_property
+    def bases(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Unit matrices of J (p, n, n), L (p, n, m), X (p, n, m) and the added mass (p, m, m)."""
+        n, m = self.states, self.size
+        unit = np.eye(n)
+        coupled = [(i, j) for i in range(n) for j in range(i + 1, n) if j // m - i // m < 2]
+        skew = [np.outer(unit[i], unit[j]) - np.outer(unit[j], unit[i]) for i, j in coupled]
+        lower = [np.outer(unit[n - m + i], np.eye(m)[j]) for i in range(m) for j in range(i + 1)]
+        inner = [np.outer(unit[i], np.eye(m)[j]) for i in range(n - m) for j in range(m)]
+        pairs = [np.outer(np.eye(m)[i], np.eye(m)[j]) for i in range(m) for j in range(i, m)]
+        symmetric = [np.maximum(pair, pair.T) for pair in pairs]
+        return np.array(skew), np.array(lower), np.array(inner), np.array(symmetric)
+
+    @cached_property
+    def cuts(self) -> NDArray[np.int64]:
+        """Where the numbers of L, of X and of the added mass begin."""
+        return np.cumsum([len(basis) for basis in self.bases[:-1]])
+
+    def split(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return J, L (in the last block of n rows), X and the added mass."""
+        parts = np.split(numbers, self.cuts)
+        j, low, x, a = (np.tensordot(p, b, 1) for p, b in zip(parts, self.bases, strict=True))
+        return j, low, x, a
+
+    def join(
+        self, skew: FloatArray, lower: FloatArray, inner: FloatArray, added: FloatArray
+    ) -> FloatArray:
+        """Return the numbers of given matrices: the inverse of :meth:`split`."""
+        given = (skew, lower, inner, added)
+        parts = [
+            np.tensordot(basis, matrix, 2) / (basis**2).sum(axis=(1, 2))
+            for basis, matrix in zip(self.bases, given, strict=True)
+        ]
+        return np.concatenate(parts)
+
+    def matrices(self, numbers: FloatArray) -> Matrices:
+        """Return the state space that the numbers stand for."""
+        skew, lower, inner, added = self.split(numbers)
+        return Matrices(skew - lower @ lower.T, -skew @ inner, added)
+
+    def response(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
+        """Return B + i w A = K + i w A_inf, shape ``(k, m, m)``."""
+        found = self.matrices(numbers)
+        right = _solve(omega, found.state, found.input)
+        return found.input.T @ right + 1j * omega[:, None, None] * found.added_mass
+
+    def slope(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
+        """Return the derivative of :meth:`response` to each number, shape ``(p, k, m, m)``."""
+        skew, lower, inner, _ = self.split(numbers)
+        found = self.matrices(numbers)
+        right = _solve(omega, found.state, found.input)
+        left = _solve(omega, found.state.T, found.input).swapaxes(1, 2)
+        base_j, base_l, base_x, base_a = self.bases
+
+        def through_state(change: FloatArray) -> ComplexArray:
+            moved: ComplexArray = left @ change[:, None] @ right
+            return moved
+
+        def through_gain(change: FloatArray) -> ComplexArray:
+            moved: ComplexArray = change.swapaxes(1, 2)[:, None] @ right + left @ change[:, None]
+            return moved
+
+        loss = base_l @ lower.T + lower @ base_l.swapaxes(1, 2)
+        parts = (
+            through_state(base_j) + through_gain(-base_j @ inner),
+            through_state(-loss),
+            through_gain(-skew @ base_x),
+            1j * omega[:, None, None] * base_a[:, None],
+        )
+        return np.concatenate(parts)
+
+
+def _solve(omega: FloatArray, state: FloatArray, gain: FloatArray) -> ComplexArray:
+    """Return (i w - state)^-1 gain, shape ``(k, n, m)``."""
+    shifted = 1j * omega[:, None, None] * np.eye(len(state)) - state
+    solved: ComplexArray = np.linalg.solve(
+        shifted, np.broadcast_to(gain, (omega.size, *gain.shape))
+    )
+    return solved
