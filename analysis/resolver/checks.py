@@ -13,6 +13,7 @@ FloatArray = NDArray[np.float64]
 _SPEED_CHANGE = 0.005  # from the shortest to the longest period, relative
 _FEW_PERIODS = 3  # below it an interval is a formality
 _SURE = 4.0  # standard errors that make a trend sure
+_ROUNDING = 1e-9  # of the mean: what a constant channel may seem to drift
 _NOTABLE = 0.01  # of the first harmonic: a change that matters
 
 
@@ -59,14 +60,19 @@ def _speed(gate: PeriodSums) -> list[Flag]:
 
 
 def _drift(result: Harmonics) -> list[Flag]:
-    """A drift that would have mattered, had it not been taken out."""
+    """A drift that would have mattered, had it not been taken out.
+
+    One that is lost in the in-phase part's own interval, or in rounding, would not.
+    """
     if result.drift_source is DriftSource.NONE:
         return []
     per_period = np.abs(result.drift_per_s) / result.frequency_hz
     leak = per_period / np.pi  # into the first in-phase part
+    matters = np.maximum(_NOTABLE * result.amplitude[:, 0], _ROUNDING * np.abs(result.mean))
+    matters = np.fmax(matters, result.half_width()[:, 1])
     flags = []
     for row, name in enumerate(result.channel_names):
-        if leak[row] > max(_NOTABLE * result.amplitude[row, 0], 1e-300):
+        if leak[row] > matters[row]:
             message = (
                 f"a drift of {result.drift_per_s[row]:.3g} {result.units[row]}/s was taken out; "
                 f"left in, it would shift the in-phase part by {leak[row]:.3g} {result.units[row]}"
@@ -86,7 +92,8 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
     amplitude = result.amplitude[:, 0]
     sure = (np.abs(slope) > _SURE * error) & (change > _NOTABLE * amplitude[:, None])
     flags = []
-    for row in np.flatnonzero(sure.any(axis=1)):
+    moves = amplitude > result.half_width()[:, 1:3].max(axis=1)  # else noise trends by itself
+    for row in np.flatnonzero(sure.any(axis=1) & moves):
         share = 100.0 * change[row].max() / amplitude[row]
         message = (
             f"the first harmonic still changes by {share:.1f} % over the gate; open it later, or "

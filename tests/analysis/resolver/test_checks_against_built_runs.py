@@ -1,0 +1,108 @@
+"""Each flag appears where its cause was put, and nowhere else."""
+
+import numpy as np
+import pytest
+
+from analysis.resolver.checks import gate_flags
+from analysis.resolver.estimate import resolve
+from analysis.resolver.photocell import from_photocell
+from analysis.resolver.reference import from_frequency
+from analysis.resolver.sums import PeriodSums, period_sums
+from hardware.description.flags import Flag, Severity
+from tests.analysis.resolver.signals import FloatArray, recording
+
+RATE_HZ = 50.0
+TIME = np.arange(3000) / RATE_HZ
+MOTION = np.sin(2.0 * np.pi * TIME + 0.4)
+
+
+def noise(size: float, seed: int = 0, channels: int = 1) -> FloatArray:
+    return size * np.random.default_rng(seed).normal(size=(channels, TIME.size))
+
+
+def flags(values: FloatArray, periods: int, edges_s: FloatArray | None = None) -> tuple[Flag, ...]:
+    run = recording(values, RATE_HZ)
+    reference = from_frequency(1.0, 0.0, run.end_s) if edges_s is None else from_photocell(edges_s)
+    sums: PeriodSums = period_sums(run, reference)[3 : 3 + periods]
+    return gate_flags(sums, resolve(run, sums))
+
+
+def codes(values: FloatArray, periods: int, edges_s: FloatArray | None = None) -> list[str]:
+    return [flag.code for flag in flags(values, periods, edges_s)]
+
+
+@pytest.mark.parametrize("periods", [3, 5, 6, 10, 30])
+@pytest.mark.parametrize("size", [0.0, 1e-3, 0.1])
+def test_a_good_gate_has_no_flag(periods: int, size: float) -> None:
+    assert codes(MOTION + noise(size), periods) == []
+
+
+@pytest.mark.parametrize("periods", [3, 5, 6, 10, 30])
+def test_channels_of_noise_or_of_nothing_have_no_flag(periods: int) -> None:
+    """400 channels of noise beside a motion and two constants: as good as no false alarm."""
+    constant = np.stack((np.zeros(TIME.size), np.full(TIME.size, 9.81)))
+    values = np.concatenate((MOTION[None], constant, noise(1.0, 1, 400)))
+    found = flags(values, periods)
+    assert len(found) <= 3  # where 4 standard errors of few periods are no rarity
+    assert not {"force_0", "force_1", "force_2"} & {flag.channel for flag in found}
+
+
+@pytest.mark.parametrize("periods", [2, 3, 10])
+def test_drift_is_noted_with_what_it_would_have_done(periods: int) -> None:
+    drifting = np.stack((MOTION, MOTION + 0.5 * TIME))
+    found = [flag for flag in flags(drifting, periods) if flag.code == "drift"]
+    assert [flag.channel for flag in found] == ["force_1"]
+    assert found[0].severity is Severity.NOTE
+    assert "0.5 N/s" in found[0].message
+    assert "0.159 N" in found[0].message  # 0.5 / pi
+
+
+def test_a_small_drift_is_not_worth_a_word() -> None:
+    assert codes(MOTION + 0.01 * TIME, 10) == []
+
+
+def test_speed_change_is_flagged_above_half_a_percent() -> None:
+    def edges(change: float) -> FloatArray:
+        """Periods that grow by ``change`` over the ten of the gate."""
+        return np.concatenate(([0.0], np.cumsum(1.0 + change * np.arange(40.0) / 9.0)))
+
+    assert codes(np.ones(TIME.size), 10, edges(0.004)) == []
+    found = flags(np.ones(TIME.size), 10, edges(0.01))
+    assert [flag.code for flag in found] == ["speed_change"]
+    assert "0.99 % within the gate (limit 0.5 %)" in found[0].message
+
+
+@pytest.mark.parametrize("periods", [6, 10, 20])
+@pytest.mark.parametrize("size", [0.0, 1e-3])
+def test_a_transient_is_flagged_in_its_channel(periods: int, size: float) -> None:
+    """A tenth of the amplitude dies away over the gate's length."""
+    dying = 0.1 * np.exp(-TIME / periods)
+    values = np.stack((MOTION, (1.0 + dying) * MOTION)) + noise(size, 2, 2)
+    found = flags(values, periods)
+    assert [(flag.code, flag.channel) for flag in found] == [("transient", "force_1")]
+
+
+def test_a_transient_of_the_phase_is_flagged() -> None:
+    turning = np.sin(2.0 * np.pi * TIME + 0.01 * TIME)
+    assert codes(turning, 10) == ["transient"]
+
+
+def test_a_single_period_has_no_interval() -> None:
+    found = flags(MOTION, 1)
+    assert [flag.code for flag in found] == ["no_interval"]
+    assert "gate more periods" in found[0].message
+
+
+def test_two_periods_are_few() -> None:
+    found = flags(MOTION, 2)
+    assert [flag.code for flag in found] == ["few_periods"]
+    assert "rests on 2 periods; 3 or more" in found[0].message
+
+
+def test_void_periods_are_counted() -> None:
+    gap = MOTION.copy()
+    gap[[int(5.5 * RATE_HZ), int(7.5 * RATE_HZ)]] = np.nan
+    found = flags(gap, 10)
+    assert [flag.code for flag in found] == ["void_periods"]
+    assert found[0].severity is Severity.VOID
+    assert found[0].message.startswith("2 of 10 periods")
