@@ -12,6 +12,7 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _PRESENT = 0.2  # of the usual amplitude: below it nothing moves yet, or no longer
+_ROUNDING = 1e-12  # of the mean: what a constant channel leaves in its harmonics
 _NOISE = 4.0  # standard deviations of a period's own noise that are no change
 
 
@@ -51,7 +52,9 @@ def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
     """
     phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
     size = np.array([_usual(column) for column in np.abs(phasors).T])
-    noise = np.array([_noise(column) for column in phasors.T])
+    mean = values.coefficients[:, :, 0]
+    rounding = _ROUNDING * np.abs(np.where(np.isfinite(mean), mean, 0.0)).max(axis=0)
+    noise = np.maximum([_noise(column) for column in phasors.T], rounding)
     allowed = np.maximum(tolerance * size, _NOISE * noise)
     # A channel of noise alone says nothing about where the motion is.
     telling = size > 2.0 * _NOISE * noise
@@ -82,7 +85,7 @@ def _longest_within(
     """Longest run of usable rows in which no column's range exceeds what is allowed."""
     highs: list[deque[int]] = [deque() for _ in allowed]
     lows: list[deque[int]] = [deque() for _ in allowed]
-    best, start = (0, 1), 0
+    best, start = (0, 0), 0
     for row in range(len(parts)):
         if not usable[row]:
             start = row + 1
@@ -93,7 +96,7 @@ def _longest_within(
             start = _first_within(highs[column], lows[column], parts[:, column], start, limit)
         if row + 1 - start > best[1] - best[0]:
             best = (start, row + 1)
-    return best
+    return best if best[1] else (0, 1)
 
 
 def _keep(extremes: deque[int], column: FloatArray, row: int, sign: float) -> None:
