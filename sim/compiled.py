@@ -1,0 +1,60 @@
+"""Compiled loops, where numba is there; the same functions interpreted, where it is not.
+
+Only loops that carry something from sample to sample need this; everything else is NumPy on whole
+blocks. numba comes with the extra ``fast``; it is loaded when the first such loop runs.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from importlib.util import find_spec
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from sim.signals import FloatArray
+
+FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
+
+
+def compile_loop(function: FunctionT) -> FunctionT:
+    """Return the function compiled by numba, or as it is without numba: the same numbers."""
+    if find_spec("numba") is None:
+        return function
+    import numba
+
+    return cast("FunctionT", numba.njit(cache=True, nogil=True)(function))
+
+
+def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArray:
+    """Return the states ``x_k = step x_(k-1) + forcing_k``.
+
+    Parameters
+    ----------
+    step
+        Shape ``(n, n)``.
+    forcing
+        Shape ``(samples, n)``.
+    state
+        The state before the first sample, shape ``(n,)``.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(samples, n)``.
+    """
+    states = np.empty((len(forcing) + 1, len(state)))
+    states[0] = state
+    _follow()(np.ascontiguousarray(step), np.ascontiguousarray(forcing), states)
+    return states[1:]
+
+
+@cache
+def _follow() -> Callable[[FloatArray, FloatArray, FloatArray], None]:
+    return compile_loop(follow_loop)
+
+
+def follow_loop(step: FloatArray, forcing: FloatArray, states: FloatArray) -> None:
+    """Fill rows 1 on of ``states`` from row 0: the loop behind :func:`follow`."""
+    for k in range(len(forcing)):
+        np.dot(step, states[k], states[k + 1])
+        states[k + 1] += forcing[k]

@@ -1,0 +1,299 @@
+"""Forces that depend on the motion at once: friction, drag, springs; each one small law.
+
+A law gives the force that a strut (or the couple that both) has to exert because of it, positive
+along the motion, from the motion at one :class:`Point` of the model. A new law is a new class with
+a method ``force``; nothing else needs to know of it.
+
+A law that jumps where the velocity changes sign is averaged over the sample (``jumps = True``): the
+velocity is taken as linear over the sample, so that sgn(v) becomes the part of the sample with
+v > 0 less the part with v < 0. Its harmonics then lack sinc(n w h / 2), as those of every mean over
+a sample do: 4e-5 of the first at 200 samples a period, where sampling sgn(v) itself is off by up to
+1.5 %. The periodic form divides that factor out.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar, Final
+
+import numpy as np
+
+from sim.signals import FloatArray
+from sim.stage import UNKNOWN_KEYS_REFUSED
+
+_TINY: Final = 1e-300
+
+
+class Point(StrEnum):
+    """Where a law acts, and so which motion it depends on."""
+
+    AFT = "aft"
+    FORE = "fore"
+    TRANSLATION = "translation"
+    ROTATION = "rotation"
+    THROUGH_WATER = "through_water"  # translation; its velocity includes U times the rotation
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What a law may depend on: one value per sample each.
+
+    Attributes
+    ----------
+    position, velocity, acceleration
+        At the law's point: m, or rad at :attr:`Point.ROTATION`.
+    load
+        What the linear parts of the model ask of the struts at that point: N, or N m.
+    time_s
+        Time of each sample.
+    step_s
+        Time from sample to sample, over which a law that jumps is averaged.
+    speed_m_s
+        Carriage speed.
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    load: FloatArray
+    time_s: FloatArray
+    step_s: float
+    speed_m_s: FloatArray
+
+    @property
+    def direction(self) -> FloatArray:
+        """Sign of the velocity, averaged over the sample."""
+        half = np.abs(self.acceleration) * (self.step_s / 2.0) + _TINY
+        return np.minimum(np.maximum(self.velocity / half, -1.0), 1.0)
+
+
+class ForceLaw(ABC):
+    """A force that depends on the motion at once.
+
+    Attributes
+    ----------
+    jumps
+        True where the law uses :attr:`Motion.direction`, so that it is a mean over a sample.
+    periodic
+        False for a force with a frequency of its own, which has no part in a periodic steady state.
+    """
+
+    jumps: ClassVar[bool] = False
+    periodic: ClassVar[bool] = True
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    @abstractmethod
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted, shape ``(samples,)``."""
+
+
+@dataclass(frozen=True)
+class Viscous(ForceLaw):
+    """``b v``."""
+
+    viscous_n_s_m: float
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        return self.viscous_n_s_m * motion.velocity
+
+
+@dataclass(frozen=True)
+class Quadratic(ForceLaw):
+    """``B (v + v0) |v + v0|``, with a mean velocity v0 (drift)."""
+
+    quadratic_n_s2_m2: float
+    drift_m_s: float = 0.0
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        velocity = motion.velocity + self.drift_m_s
+        return self.quadratic_n_s2_m2 * velocity * np.abs(velocity)
+
+
+@dataclass(frozen=True)
+class Cubic(ForceLaw):
+    """``B v^3``."""
+
+    cubic_n_s3_m3: float
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        return self.cubic_n_s3_m3 * motion.velocity**3
+
+
+@dataclass(frozen=True)
+class Coulomb(ForceLaw):
+    """``F_c sgn(v)``, and the constant that different friction to either side leaves.
+
+    With F+ and F- the friction forward and backward, ``coulomb_n`` is their mean and ``uneven_n``
+    is (F+ - F-)/2.
+    """
+
+    coulomb_n: float
+    uneven_n: float = 0.0
+
+    jumps: ClassVar[bool] = True
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        return self.coulomb_n * motion.direction + self.uneven_n
+
+
+@dataclass(frozen=True)
+class Stribeck(ForceLaw):
+    """``(F_s - F_c) exp(-(v/v_s)^2) sgn(v)``: what sticking adds to Coulomb friction."""
+
+    excess_n: float
+    stribeck_speed_m_s: float
+
+    jumps: ClassVar[bool] = True
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        return (
+            self.excess_n
+            * np.exp(-((motion.velocity / self.stribeck_speed_m_s) ** 2))
+            * motion.direction
+        )
+
+
+@dataclass(frozen=True)
+class LoadFriction(ForceLaw):
+    """``mu |N + N_0| sgn(v)``: N the load that the linear parts put on the strut."""
+
+    friction: float
+    side_load_n: float = 0.0
+    load_share: float = 1.0
+
+    jumps: ClassVar[bool] = True
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        normal = np.abs(self.load_share * motion.load + self.side_load_n)
+        return self.friction * normal * motion.direction
+
+
+@dataclass(frozen=True)
+class Spring(ForceLaw):
+    """``k x + k_2 x^2 + k_3 x^3``: a cable, a flaring hull."""
+
+    stiffness_n_m: float = 0.0
+    stiffness_n_m2: float = 0.0
+    stiffness_n_m3: float = 0.0
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        x = motion.position
+        return x * (self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3))
+
+
+@dataclass(frozen=True)
+class RubbingSpring(ForceLaw):
+    """``k_h |x| sgn(v)``: a loss per cycle that does not depend on the frequency (Reid)."""
+
+    rubbing_n_m: float
+
+    jumps: ClassVar[bool] = True
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        return self.rubbing_n_m * np.abs(motion.position) * motion.direction
+
+
+@dataclass(frozen=True)
+class Proximity(ForceLaw):
+    """``F_0 (U/U_0)^2 ((h/(h - x))^p - 1)``: a wall, or the bottom, at the distance h."""
+
+    proximity_n: float
+    clearance_m: float
+    exponent: float = 2.0
+    reference_speed_m_s: float | None = None
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        ratio = self.clearance_m / (self.clearance_m - motion.position)
+        return (
+            self.proximity_n
+            * _dynamic(motion, self.reference_speed_m_s)
+            * (ratio**self.exponent - 1.0)
+        )
+
+
+@dataclass(frozen=True)
+class Exponential(ForceLaw):
+    """``F_0 (U/U_0)^2 (exp(k x) - 1)``: suction below a free surface."""
+
+    suction_n: float
+    rate_1_m: float
+    reference_speed_m_s: float | None = None
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        dynamic = _dynamic(motion, self.reference_speed_m_s)
+        return self.suction_n * dynamic * np.expm1(self.rate_1_m * motion.position)
+
+
+@dataclass(frozen=True)
+class Tone(ForceLaw):
+    """A force from outside at a frequency of its own: waves left over, shed vortices.
+
+    It decays with ``decay_s`` if that is given. Being no multiple of the shaft's frequency, it has
+    no part in the periodic steady state.
+    """
+
+    tone_n: float
+    tone_hz: float
+    tone_phase_rad: float = 0.0
+    decay_s: float | None = None
+
+    periodic: ClassVar[bool] = False
+
+    def force(self, motion: Motion) -> FloatArray:
+        """Return the force that has to be exerted."""
+        turned = 2.0 * math.pi * self.tone_hz * motion.time_s + self.tone_phase_rad
+        decay = 1.0 if self.decay_s is None else np.exp(-motion.time_s / self.decay_s)
+        tone: FloatArray = self.tone_n * decay * np.sin(turned)
+        return tone
+
+
+def _dynamic(motion: Motion, reference_speed_m_s: float | None) -> FloatArray | float:
+    """Return (U/U_0)^2, or 1 where the law does not depend on the speed."""
+    if reference_speed_m_s is None:
+        return 1.0
+    return (motion.speed_m_s / reference_speed_m_s) ** 2
+
+
+AnyLaw = (
+    Viscous
+    | Quadratic
+    | Cubic
+    | Coulomb
+    | Stribeck
+    | LoadFriction
+    | Spring
+    | RubbingSpring
+    | Proximity
+    | Exponential
+    | Tone
+)
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A law and the point of the model at which it acts.
+
+    Attributes
+    ----------
+    law
+        One of the laws of this file where it comes from a configuration file, else any.
+    in_water
+        True for a law of the water, which a run in air does not have.
+    """
+
+    law: AnyLaw | ForceLaw
+    point: Point = Point.TRANSLATION
+    in_water: bool = False
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}
