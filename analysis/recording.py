@@ -112,22 +112,49 @@ class Recording:
         return replace(
             self,
             channels=tuple(self.channels[row] for row in rows),
-            samples=_Rows(self.samples, tuple(rows)),
+            samples=_Part(self.samples, tuple(rows), 0, self.sample_count),
+        )
+
+    def between(self, start_s: float, end_s: float) -> "Recording":
+        """Return the samples between two times; the photocell's edges stay as they are.
+
+        Raises
+        ------
+        DataError
+            If no sample lies there.
+        """
+        numbers = self.sample_number(np.array([start_s, end_s]))
+        first = max(0, int(np.ceil(numbers[0])))
+        stop = min(self.sample_count, int(np.floor(numbers[1])) + 1)
+        if first >= stop:
+            raise DataError(
+                f"{self.name}: no samples from {start_s:g} s to {end_s:g} s; the record runs from "
+                f"{self.start_s:g} s to {self.end_s:g} s"
+            )
+        rows = tuple(range(len(self.channels)))
+        return replace(
+            self,
+            samples=_Part(self.samples, rows, first, stop),
+            start_s=self.start_s + first / self.sample_rate_hz,
         )
 
 
 @dataclass(frozen=True)
-class _Rows:
-    """Some rows of other samples, read only when asked for."""
+class _Part:
+    """Some rows and a stretch of other samples, read only when asked for."""
 
     source: Samples
     rows: tuple[int, ...]
+    first: int
+    stop: int
 
     @property
     def shape(self) -> tuple[int, ...]:
-        return (len(self.rows), self.source.shape[1])
+        return (len(self.rows), self.stop - self.first)
 
     def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
         chosen, when = key
         rows = self.rows[chosen] if isinstance(chosen, slice) else [self.rows[i] for i in chosen]
-        return np.ascontiguousarray(self.source[list(rows), when])
+        start, stop, _ = when.indices(self.shape[1])
+        within = slice(self.first + start, self.first + stop)
+        return np.ascontiguousarray(self.source[list(rows), within])

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import ClassVar
 
 from analysis.readers import ColumnMap
-from analysis.resolver.analyse import ReferenceChoice, Settings
+from analysis.resolver.analyse import Settings
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator

@@ -107,7 +107,6 @@ def run_rows(
     *,
     file: str,
     level: float,
-    reference_channel: str | None = None,
 ) -> RunRows:
     """Turn an analysis into rows.
 
@@ -115,8 +114,6 @@ def run_rows(
     ----------
     file
         Where the recording came from.
-    reference_channel
-        The channel that told the phase, if one did.
     level
         Probability of the two-sided intervals.
     """
@@ -125,7 +122,7 @@ def run_rows(
         file=file,
         run=analysis.recording.name,
         reference=str(analysis.reference.source),
-        reference_channel=reference_channel,
+        reference_channel=analysis.reference.channel,
         reference_frequency_hz=analysis.reference.frequency_hz,
         window=_window(analysis),
         window_opened_s=float(steady.opened_s[0]),

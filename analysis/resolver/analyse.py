@@ -7,15 +7,16 @@ from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.checks import gate_flags
+from analysis.resolver.choice import ReferenceChoice, choose_reference
 from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.photocell import from_photocell
-from analysis.resolver.reference import PhaseReference, from_encoder, from_frequency
-from analysis.resolver.signal_reference import from_signal
+from analysis.resolver.leakage import measured_leakage
+from analysis.resolver.reference import PhaseReference
 from analysis.resolver.steady import Stretch, find_steady
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
-from hardware.description.channels import DISPLACEMENT_AFT, SHAFT_ANGLE
+from analysis.resolver.weights import REACH
+from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 
@@ -25,36 +26,13 @@ _ENOUGH_STEADY = 3  # periods: a shorter stretch is no stretch
 
 
 @dataclass(frozen=True)
-class ReferenceChoice:
-    """What tells the phase; at most one of the first two, else the recording's own best.
-
-    The order is photocell, encoder (channel ``shaft_angle``), displacement of the aft strut, the
-    set-point's frequency.
-
-    Attributes
-    ----------
-    channel
-        A channel whose fundamental is the reference; ``shaft_angle`` is read as an encoder.
-    frequency_hz
-        A known frequency, with phase 0 at the first sample.
-    latency_s, angle_offset_rad
-        Calibration of the photocell, or the offset of the encoder.
-    """
-
-    channel: str | None = None
-    frequency_hz: float | None = None
-    latency_s: float = 0.0
-    angle_offset_rad: float = 0.0
-
-
-@dataclass(frozen=True)
 class Settings:
     """How to analyse a recording.
 
     Attributes
     ----------
     channels
-        Which channels, in order; all of them if empty.
+        Which channels, in order; if empty, all but the reference's and the shaft angle.
     gate_periods
         Periods of each gate; ``None`` takes the whole stretch as one gate.
     opens_s
@@ -103,50 +81,6 @@ class Analysis:
         return self.sums[self.stretch.start : self.stretch.stop]
 
 
-def choose_reference(recording: Recording, choice: ReferenceChoice) -> PhaseReference:
-    """Build the reference that was asked for, or the best one that the recording has.
-
-    Raises
-    ------
-    DataError
-        If it cannot be had; the message says what was looked for.
-    ConfigurationError
-        If two are asked for.
-    """
-    if choice.channel is not None and choice.frequency_hz is not None:
-        raise ConfigurationError("give a reference channel or a frequency, not both")
-    if choice.channel is not None:
-        return _from_channel(recording, choice.channel, choice.angle_offset_rad)
-    if choice.frequency_hz is not None:
-        return _from_frequency(recording, choice.frequency_hz)
-    if recording.photocell_edges_s is not None and len(recording.photocell_edges_s):
-        return from_photocell(
-            recording.photocell_edges_s,
-            latency_s=choice.latency_s,
-            angle_offset_rad=choice.angle_offset_rad,
-        )
-    for name in (SHAFT_ANGLE.name, DISPLACEMENT_AFT.name):
-        if name in recording.channel_names:
-            return _from_channel(recording, name, choice.angle_offset_rad)
-    if recording.set_point is not None:
-        return _from_frequency(recording, recording.set_point.frequency_hz)
-    raise DataError(
-        f"{recording.name}: no reference found: no photocell edges, no channel "
-        f"{SHAFT_ANGLE.name!r} or {DISPLACEMENT_AFT.name!r}, no set-point; give the frequency or "
-        f"name a reference channel (channels: {', '.join(recording.channel_names)})"
-    )
-
-
-def _from_channel(recording: Recording, name: str, angle_offset_rad: float) -> PhaseReference:
-    if name == SHAFT_ANGLE.name:
-        return from_encoder(recording.time_s(), recording.values(name), angle_offset_rad)
-    return from_signal(recording, name)
-
-
-def _from_frequency(recording: Recording, frequency_hz: float) -> PhaseReference:
-    return from_frequency(frequency_hz, recording.start_s, recording.end_s)
-
-
 def analyse(
     recording: Recording,
     choice: ReferenceChoice = ReferenceChoice(),
@@ -163,7 +97,7 @@ def analyse(
     """
     _check(settings)
     reference = choose_reference(recording, choice)
-    chosen = recording.select(settings.channels) if settings.channels else recording
+    chosen = recording.select(settings.channels or _default_channels(recording, reference))
     edges = _edges(chosen, reference, settings)
     sums = period_sums(chosen, reference, settings.harmonics, edges_cycles=edges)
     values = solve_periods(sums)
@@ -186,6 +120,17 @@ def analyse(
         readings,
         recording.flags + reference.flags + flags,
     )
+
+
+def _default_channels(recording: Recording, reference: PhaseReference) -> tuple[str, ...]:
+    """All channels that have harmonics of interest."""
+    left_out = (reference.channel, SHAFT_ANGLE.name)
+    names = tuple(name for name in recording.channel_names if name not in left_out)
+    if not names:
+        raise DataError(
+            f"{recording.name}: no channel is left beside the reference; name the one to resolve"
+        )
+    return names
 
 
 def _check(settings: Settings) -> None:
@@ -244,13 +189,64 @@ def _reading(
     steady: PeriodSums,
     settings: Settings,
 ) -> Harmonics:
-    drifting = settings.take_out_drift
     if settings.hann:
-        edges = np.append(gate.opened_cycle, gate.opened_cycle[-1] + 1.0)
-        result = resolve_hann(
-            recording, reference, edges, settings.harmonics, take_out_drift=drifting
-        )
+        result = _under_hann(recording, reference, gate, settings)
     else:
         around = steady if steady.period_count > gate.period_count else None
+        drifting = settings.take_out_drift
         result = resolve(recording, gate, around=around, take_out_drift=drifting)
     return replace(result, flags=gate_flags(gate, result))
+
+
+def _under_hann(
+    recording: Recording, reference: PhaseReference, gate: PeriodSums, settings: Settings
+) -> Harmonics:
+    return resolve_hann(
+        recording,
+        reference,
+        gate.edges_cycles,
+        settings.harmonics,
+        take_out_drift=settings.take_out_drift,
+    )
+
+
+def let_through(
+    analysis: Analysis, frequencies_hz: FloatArray, reading_index: int = 0
+) -> FloatArray:
+    """Tell what the estimator of a reading lets through of vibrations that are no harmonics.
+
+    Found by feeding the very gate with them; see
+    :func:`analysis.resolver.leakage.measured_leakage`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Part of the vibration's amplitude that appears in each harmonic at the worst phase, shape
+        ``(frequencies, harmonics)``.
+
+    Raises
+    ------
+    ConfigurationError
+        If a frequency is not below half the sample rate.
+    """
+    nyquist_hz = analysis.recording.sample_rate_hz / 2.0
+    if not np.all((frequencies_hz > 0.0) & (frequencies_hz < nyquist_hz)):
+        raise ConfigurationError(
+            f"a vibration's frequency must lie between 0 and {nyquist_hz:g} Hz, half the sample "
+            "rate; faster ones appear at another frequency"
+        )
+    size = analysis.readings[reading_index].periods
+    start = analysis.stretch.start + reading_index * size
+    gate = analysis.sums[start : start + size]
+    reference, settings = analysis.reference, analysis.settings
+
+    def estimator(probe: Recording) -> Harmonics:
+        if settings.hann:
+            return _under_hann(probe, reference, gate, settings)
+        edges = gate.edges_cycles
+        sums = period_sums(probe, reference, settings.harmonics, edges_cycles=edges)
+        return resolve(probe, sums, take_out_drift=settings.take_out_drift)
+
+    beside_s = 2.0 * REACH / analysis.recording.sample_rate_hz
+    probed = analysis.recording.between(gate.opened_s[0] - beside_s, gate.closed_s[-1] + beside_s)
+    return measured_leakage(probed, estimator, frequencies_hz)

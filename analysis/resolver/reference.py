@@ -41,12 +41,15 @@ class PhaseReference:
     times_s, cycles
         Knots, both increasing, shape ``(knots,)``; the phase is straight between them. Whole
         numbers of ``cycles`` are where the reference motion passes zero upwards.
+    channel
+        The channel that told the phase, if one did.
     """
 
     source: ReferenceSource
     times_s: FloatArray
     cycles: FloatArray
     flags: tuple[Flag, ...] = ()
+    channel: str | None = None
 
     def cycles_at(self, times_s: FloatArray) -> FloatArray:
         """Return the revolutions at some times; beyond the knots the end lines go on."""

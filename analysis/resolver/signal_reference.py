@@ -50,7 +50,7 @@ def from_signal(recording: Recording, name: str) -> PhaseReference:
     # The phase is known at the middle of each period; knots at whole cycles make them straight.
     followed = PhaseReference(ReferenceSource.SIGNAL, middle_s, cycles)
     whole = np.arange(np.ceil(cycles[0] - 0.5), np.floor(cycles[-1] + 0.5) + 1.0)
-    return PhaseReference(ReferenceSource.SIGNAL, followed.times_at(whole), whole)
+    return PhaseReference(ReferenceSource.SIGNAL, followed.times_at(whole), whole, channel=name)
 
 
 def _no_reference(recording: Recording, name: str, found: str) -> DataError:

@@ -66,6 +66,11 @@ class PeriodSums:
         """Number of periods."""
         return len(self.gram)
 
+    @property
+    def edges_cycles(self) -> FloatArray:
+        """Where periods that follow each other meet, shape ``(periods + 1,)``."""
+        return np.append(self.opened_cycle, self.opened_cycle[-1] + 1.0)
+
     def __getitem__(self, periods: slice | NDArray[np.bool_]) -> "PeriodSums":
         """Return the sums of some of the periods."""
         per_period = ("opened_s", "closed_s", "opened_cycle", "gram", "moment", "ramp")

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from analysis.readers import write_recording
-from analysis.resolver.analyse import ReferenceChoice, Settings
+from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.errors import ConfigurationError, PmmError
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.request import Request
-from pmm.cli.resolving import analyse_recording, reference_channel
 from pmm.cli.screen import error_line, messages, output, show_progress
 from pmm.tables import RunRows, run_rows
 
@@ -102,7 +102,7 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
         write_recording(recording, folder / f"{source.stem}.nc")
-    analysis = analyse_recording(recording, choice, settings)
+    analysis = analyse(recording, choice, settings)
     if request.plot is not None:
         from pmm.report.plots import save_figures
 
@@ -110,7 +110,6 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
     return run_rows(
         analysis,
         file=str(source.path),
-        reference_channel=reference_channel(recording, choice),
         level=request.level,
     )
 

@@ -6,12 +6,11 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analyse import Analysis, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from pmm.campaign_file import read_campaign
 from pmm.cli.analyse import DEFAULT_LEVEL
 from pmm.cli.printing import print_compact
-from pmm.cli.resolving import analyse_recording
 from pmm.cli.screen import busy, output, show_progress
 from pmm.cli.simulating import copy_campaign, simulate_runs
 from pmm.tables import run_rows
@@ -55,7 +54,7 @@ def _campaign(name: str, folder: Path) -> list[Shown]:
         copy_campaign(file, folder)
     paths = [Path(one.file) for one in written]
     return [
-        Shown(path, analyse_recording(read_recording(path), campaign.reference, campaign.analysis))
+        Shown(path, analyse(read_recording(path), campaign.reference, campaign.analysis))
         for path in show_progress(paths, f"analysing {name}")
     ]
 

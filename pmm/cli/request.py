@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from analysis.resolver.analyse import ReferenceChoice, Settings
+from analysis.resolver.analyse import Settings
+from analysis.resolver.choice import ReferenceChoice
 
 
 @dataclass(frozen=True)

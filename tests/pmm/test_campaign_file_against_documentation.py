@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from analysis.resolver.analyse import ReferenceChoice, Settings
+from analysis.resolver.analyse import Settings
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator

@@ -3,7 +3,8 @@
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, ReferenceChoice, Settings, analyse
+from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import Channel
 
 FREQUENCY_HZ = 1.0137
