@@ -1,0 +1,105 @@
+"""Forces of the water that are not linear in the velocity: cubic and quadratic.
+
+Both laws are plain functions of the velocity through the water, (translation, rotation) in the
+first axis, and return (force, moment) that the struts exert: positive coefficients dissipate. From
+derivatives of the load on the hull (Y_vvv, N_v|v| ...) the sign changes. The describing functions
+are closed forms, for v = V cos(phi), and serve as oracles.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hardware.description.errors import ConfigurationError
+from sim.signals import FloatArray
+
+# Columns of the coefficients, v the translation's velocity and r the rotation's.
+CUBIC_TERMS: Final = ("v^3", "v^2 r", "v r^2", "r^3")
+QUADRATIC_TERMS: Final = ("v|v|", "v|r|", "r|v|", "r|r|")
+
+
+def cubic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
+    """Return force and moment of the cubic terms.
+
+    Parameters
+    ----------
+    coefficients
+        Shape ``(2, 4)``: rows force and moment, columns :data:`CUBIC_TERMS`.
+    velocity
+        Shape ``(2, ...)``.
+
+    Returns
+    -------
+    loads
+        Shape ``(2, ...)``.
+
+    Raises
+    ------
+    ConfigurationError
+        If the coefficients do not have this shape.
+    """
+    v, r = np.asarray(velocity, dtype=np.float64)
+    return _combined(coefficients, CUBIC_TERMS, np.stack([v**3, v * v * r, v * r * r, r**3]))
+
+
+def quadratic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
+    """Return force and moment of the quadratic terms (columns :data:`QUADRATIC_TERMS`).
+
+    See :func:`cubic_loads` for shapes and errors.
+    """
+    v, r = np.asarray(velocity, dtype=np.float64)
+    v_size, r_size = np.abs(v), np.abs(r)
+    terms = np.stack([v * v_size, v * r_size, r * v_size, r * r_size])
+    return _combined(coefficients, QUADRATIC_TERMS, terms)
+
+
+def cubic_describing_function(harmonic: int) -> float:
+    """Return the amplitude of cos(n phi) in cos^3(phi): 3/4 for n = 1, 1/4 for n = 3."""
+    return {1: 0.75, 3: 0.25}.get(harmonic, 0.0)
+
+
+def quadratic_describing_function(harmonic: int, drift_ratio: float = 0.0) -> float:
+    """Return the amplitude of cos(n phi) in u|u|, u = e + cos(phi).
+
+    Without drift 8/(3 pi), 8/(15 pi), -8/(105 pi) for n = 1, 3, 5; a small drift e gives the mean
+    4 e/pi and the second harmonic 8 e/(3 pi).
+
+    Parameters
+    ----------
+    harmonic
+        n, from 0 (the mean).
+    drift_ratio
+        e, steady velocity over the amplitude of the oscillating one; beyond 1 the sign of u never
+        changes.
+    """
+    e, n = drift_ratio, harmonic
+    turn = math.acos(max(-1.0, min(1.0, -e)))
+    # u is positive up to the turn and negative from there to pi.
+    whole = 2.0 * _integral(e, n, turn) - _integral(e, n, math.pi)
+    return whole * (1.0 if n == 0 else 2.0) / math.pi
+
+
+def _integral(e: float, n: int, end: float) -> float:
+    """Return the integral of (e + cos)^2 cos(n phi) from 0 to ``end``."""
+
+    def of_cosine(k: int) -> float:
+        return end if k == 0 else math.sin(k * end) / k
+
+    return (
+        (e * e + 0.5) * of_cosine(n)
+        + e * (of_cosine(n - 1) + of_cosine(n + 1))
+        + 0.25 * (of_cosine(n - 2) + of_cosine(n + 2))
+    )
+
+
+def _combined(coefficients: ArrayLike, names: tuple[str, ...], terms: FloatArray) -> FloatArray:
+    matrix = np.asarray(coefficients, dtype=np.float64)
+    if matrix.shape != (2, 4):
+        raise ConfigurationError(
+            f"coefficients have the shape {matrix.shape}; (2, 4) is needed: force and moment for "
+            f"{', '.join(names)}"
+        )
+    loads: FloatArray = np.tensordot(matrix, terms, 1)
+    return loads
