@@ -50,9 +50,9 @@ def _batches(noise: Noise, periods: int, trials: int) -> Iterator[_Batch]:
     for start in range(0, trials, _AT_ONCE):
         step = 1.0 / SAMPLES_PER_PERIOD * rng.uniform(0.99, 1.01)  # not commensurate
         count = int(periods / step) + 2 * _LEAD
-        values = noise(min(_AT_ONCE, trials - start), count, rng)
-        recording = recorded(values, 1.0)
         opening = (_LEAD - rng.random()) * step  # between two samples, at theta = 0
+        from_middle: FloatArray = np.arange(count) * step - opening - periods / 2.0
+        recording = recorded(noise(min(_AT_ONCE, trials - start), from_middle, rng), 1.0)
         reference = from_frequency(step, 0.0, recording.end_s, -2.0 * np.pi * opening)
         yield _Batch(recording, reference, np.arange(periods + 1.0))
 
@@ -109,8 +109,8 @@ def _covered(name: str, noise: Noise, periods: int, trials: int) -> Row:
 
 
 def _mean_is_known(noise: str, periods: int) -> bool:
-    """Tell whether a mean of zero is the truth, and an interval for it is given."""
-    return periods > 2 and noise not in ("drift", "random_walk")
+    """Tell whether the mean has a truth, which is zero, and an interval is given for it."""
+    return periods > 2 and noise != "random_walk"
 
 
 def _worst(parts: list[FloatArray]) -> float | str:
@@ -194,6 +194,11 @@ def _judged(rows: list[Row]) -> dict[str, float]:
         return [float(row["whole periods, worst n"]) for row in chosen]
 
     measured = {name: min(shares(_JUDGED, name)) for name in NOISES}
+    measured["mean"] = min(
+        float(row["whole periods, mean"])
+        for row in rows
+        if row["m"] in _JUDGED and row["whole periods, mean"] != ""
+    )
     measured["white_largest"] = max(shares(_JUDGED, "white"))
     measured["short"] = min(shares((2, 3)))
     measured["hann"] = min(float(r["Hann, worst n"]) for r in rows if r["m"] in _HANN_JUDGED)

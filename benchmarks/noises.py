@@ -6,43 +6,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-Noise = Callable[[int, int, np.random.Generator], FloatArray]
-"""Draws noise, shape ``(channels, samples)``."""
+Noise = Callable[[int, FloatArray, np.random.Generator], FloatArray]
+"""Draws noise, shape ``(channels, samples)``, at some cycles of the motion from mid-gate."""
 
 SAMPLES_PER_PERIOD = 100.0  # of the motion, whose frequency the noises below refer to
 _SLOSHING_ORDER, _SLOSHING_Q = 1.37, 20.0
 _AR1 = 0.95
 
 
-def white(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
+def white(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Draw noise that knows nothing of the sample before."""
-    return np.asarray(rng.standard_normal((channels, samples)))
+    return np.asarray(rng.standard_normal((channels, len(cycles))))
 
 
-def autoregressive(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
+def autoregressive(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Draw AR(1) noise of 0.95."""
-    return _stationary(np.array([_AR1, 0.0]), channels, samples, rng)
+    return _stationary(np.array([_AR1, 0.0]), channels, len(cycles), rng)
 
 
-def sloshing(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
+def sloshing(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Draw the response of a resonator at 1.37 times the motion's frequency, Q = 20, to noise."""
     angle = 2.0 * np.pi * _SLOSHING_ORDER / SAMPLES_PER_PERIOD
     pole = np.exp(-angle / (2.0 * _SLOSHING_Q) + 1j * angle * np.sqrt(1 - 0.25 / _SLOSHING_Q**2))
     coefficients = np.array([2.0 * pole.real, -(abs(pole) ** 2)])
-    return _stationary(coefficients, channels, samples, rng)
+    return _stationary(coefficients, channels, len(cycles), rng)
 
 
-def drift(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
-    """Draw white noise on a straight drift of 1 per period, up or down."""
-    time = np.arange(samples) / SAMPLES_PER_PERIOD
+def drift(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Draw white noise on a straight drift of 1 per period, up or down, through 0 at mid-gate."""
     slope = rng.choice([-1.0, 1.0], channels)
-    return np.asarray(white(channels, samples, rng) + slope[:, None] * time)
+    return np.asarray(white(channels, cycles, rng) + slope[:, None] * cycles)
 
 
-def random_walk(channels: int, samples: int, rng: np.random.Generator) -> FloatArray:
+def random_walk(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Draw white noise on a random walk that strays by 1 (standard deviation) in a period."""
-    steps = rng.standard_normal((channels, samples)) / np.sqrt(SAMPLES_PER_PERIOD)
-    return np.asarray(white(channels, samples, rng) + np.cumsum(steps, axis=1))
+    steps = rng.standard_normal((channels, len(cycles))) / np.sqrt(SAMPLES_PER_PERIOD)
+    return np.asarray(white(channels, cycles, rng) + np.cumsum(steps, axis=1))
 
 
 def _stationary(

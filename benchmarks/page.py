@@ -81,9 +81,9 @@ def write_page(folder: Path, page: Path, order: list[str]) -> None:
 _HEAD = """# Benchmarks
 
 Written by `python -m benchmarks` (`make bench`) from `benchmarks/results/*.json`; do not edit. The
-thresholds stand in `benchmarks/thresholds.toml` and were set before anything was measured. Times
-are ratios to a rival named in the table, measured in the same run, one thread each; rivals take
-turns and the best time of each counts.
+thresholds stand in `benchmarks/thresholds.toml` and were set before anything was measured; those
+added since are marked there. Times are ratios to a rival named in the table, measured in the same
+run, one thread each; rivals take turns and the best time of each counts.
 """
 
 

@@ -51,15 +51,15 @@ def test_six_point_edges_are_those_of_the_resolver() -> None:
 
 @pytest.mark.parametrize("name", ["white", "ar1", "sloshing"])
 def test_stationary_noise_has_unit_variance_from_the_first_sample(name: str) -> None:
-    drawn = noises.NOISES[name](20_000, 40, np.random.default_rng(2))
+    drawn = noises.NOISES[name](20_000, np.arange(40.0), np.random.default_rng(2))
     assert drawn.var(axis=0) == pytest.approx(np.ones(40), abs=0.05)
 
 
 def test_noise_is_correlated_as_named() -> None:
-    drawn = noises.autoregressive(20_000, 10, np.random.default_rng(3))
+    drawn = noises.autoregressive(20_000, np.arange(10.0), np.random.default_rng(3))
     for lag in (1, 2, 5):
         assert np.mean(drawn[:, 0] * drawn[:, lag]) == pytest.approx(0.95**lag, abs=0.03)
-    swings = noises.sloshing(20_000, 100, np.random.default_rng(4))
+    swings = noises.sloshing(20_000, np.arange(100.0), np.random.default_rng(4))
     lags = np.arange(100)
     angle = 2.0 * np.pi * 1.37 / 100.0 * lags
     closed = np.exp(-angle / 40.0) * np.cos(angle)
