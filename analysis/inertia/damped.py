@@ -63,6 +63,8 @@ class DampedFit:
         Longest period first.
     offset
         ``y_0`` at the middle of the record; 0 where none was fitted.
+    trend
+        Change of the base from the middle to the end of the record; 0 where none was fitted.
     covariance
         Of (T, lambda, A, phi) of each mode in turn and then the base's columns, shape ``(P, P)``;
         the colour of the residual is in it.
@@ -74,6 +76,7 @@ class DampedFit:
 
     modes: tuple[Mode, ...]
     offset: float
+    trend: float
     covariance: FloatArray
     diagnostics: ResidualDiagnostics
     converged: bool
@@ -127,7 +130,7 @@ def fit_damped(
     modes
         How many oscillations.
     offset, trend, damped
-        Whether a constant, a line and decay rates are fitted.
+        Whether a constant, a line (with the constant only) and decay rates are fitted.
     start_periods_s
         A user's guess, one per mode; it may be far off.
 
@@ -169,7 +172,7 @@ def _problem(
     middle = 0.5 * (t[0] + t[-1])
     centred = t - middle
     base = [np.ones(t.size)] if offset else []
-    base += [centred / max(centred[-1], 1e-300)] if trend else []
+    base += [centred / centred[-1]] if offset and trend else []
     columns_ = np.column_stack(base) if base else np.empty((t.size, 0))
     return Problem(centred, y, columns_, damped), float(t[0])
 
@@ -194,6 +197,7 @@ def _finish(problem: Problem, solution: Solution, start_s: float, where: str) ->
     return DampedFit(
         modes=modes,
         offset=float(base[0]) if base.size else 0.0,
+        trend=float(base[1]) if base.size > 1 else 0.0,
         covariance=_covariance(problem, omega, decay, linear, residual, diagnostics),
         diagnostics=diagnostics,
         converged=solution.converged,

@@ -1,0 +1,195 @@
+"""What can be wrong with a record of a free oscillation before anything is fitted."""
+
+import math
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+from analysis.inertia.series import Series, UsablePart
+from analysis.inertia.spectrum import spectrum
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+FEWEST_SWINGS = 3.0
+FEW_SWINGS = 10.0
+FEWEST_SAMPLES_A_PERIOD = 5.0
+ALIASED_SHARE = 0.1
+LARGEST_ANGLE_RAD = 0.7  # 40 degrees: nobody releases a pendulum for inertia from further out
+SWAY_TOLERANCE = 0.03
+
+
+def check_record(part: UsablePart) -> tuple[Flag, ...]:
+    """Check number of swings, sampling and size of an oscillation.
+
+    Returns
+    -------
+    tuple of Flag
+        ``few_swings`` under ten.
+
+    Raises
+    ------
+    DataError
+        Under three swings, under five samples a period, where the spectrum stands against the
+        Nyquist frequency (aliasing), and for angles that only degrees can be.
+    """
+    check_sampling(part.series, part.period_s)
+    check_angle(part.series.where, part.series.unit, part.first_amplitude)
+    return check_swings(part)
+
+
+def check_swings(part: UsablePart) -> tuple[Flag, ...]:
+    """Refuse a stretch of under three swings; flag one of under ten."""
+    series = part.series
+    swings = series.values.size / series.sample_rate_hz / part.period_s
+    if swings < FEWEST_SWINGS:
+        raise DataError(
+            f"{series.where}: too few swings: {swings:.2g} of {part.period_s:.3g} s are usable, at "
+            f"least {FEWEST_SWINGS:g} are needed; record longer or release from further out"
+        )
+    if swings >= FEW_SWINGS:
+        return ()
+    message = (
+        f"{series.where}: {swings:.2g} swings of {part.period_s:.3g} s are usable; ten or more "
+        "make a period that repeats"
+    )
+    return (Flag("few_swings", Severity.WARNING, message, series.channel),)
+
+
+def check_sampling(series: Series, period_s: float) -> None:
+    """Refuse a record that is, or may be, sampled too slowly.
+
+    Raises
+    ------
+    DataError
+        Under five samples a period, or with a tenth of the strongest line at half the rate.
+    """
+    samples = period_s * series.sample_rate_hz
+    lines = spectrum(series.values, series.sample_rate_hz)
+    top = lines.frequency_hz > 0.45 * series.sample_rate_hz
+    share = float(lines.amplitude[top].max() / lines.amplitude[1:].max())
+    if samples < FEWEST_SAMPLES_A_PERIOD or share > ALIASED_SHARE:
+        raise DataError(
+            f"{series.where}: {samples:.2g} samples a period of {period_s:.3g} s (at least "
+            f"{FEWEST_SAMPLES_A_PERIOD:g}), and {100 * share:.0f} % of the strongest line stands "
+            f"at half the sample rate (limit {100 * ALIASED_SHARE:g} %): aliasing; a faster motion "
+            f"looks slow at {series.sample_rate_hz:g} Hz: sample faster"
+        )
+
+
+def check_angle(where: str, unit: str, amplitude: float) -> None:
+    """Refuse an angle in radians that can only be in degrees.
+
+    Raises
+    ------
+    DataError
+        If the amplitude of a channel in ``rad`` is above 0.7.
+    """
+    if unit == "rad" and amplitude > LARGEST_ANGLE_RAD:
+        raise DataError(
+            f"{where}: an amplitude of {amplitude:.3g} rad is {math.degrees(amplitude):.0f} deg "
+            f"(limit {LARGEST_ANGLE_RAD:g} rad): it seems to be degrees given as radians; state "
+            'the unit "deg" in the column map'
+        )
+
+
+def check_amplitude_effect(
+    where: str, amplitude_rad: FloatArray, period_s: FloatArray, uncertainty_s: FloatArray
+) -> tuple[Flag, ...]:
+    """Flag angles whose period does not lengthen with amplitude as a pendulum's must.
+
+    A pendulum of amplitude A has the period ``T_0 (1 + A^2/16)``. Where the record's angles promise
+    a change ten times what can be seen, and under a third of it is there, the angles are too
+    large: degrees given as radians, or a wrong scale.
+
+    Parameters
+    ----------
+    amplitude_rad, period_s, uncertainty_s
+        Of successive parts of the record, shape ``(parts,)``.
+    """
+    square = amplitude_rad**2 / 16.0
+    weight = 1.0 / uncertainty_s**2
+    centred = square - np.average(square, weights=weight)
+    spread = float(weight @ centred**2)
+    if not spread > 0.0:
+        return ()
+    base = float(period_s.min())
+    slope = float((weight * centred) @ period_s) / spread / base
+    doubt = 1.0 / math.sqrt(spread) / base
+    if 10.0 * doubt > 1.0 or slope > 1.0 / 3.0:
+        return ()
+    message = (
+        f"{where}: amplitudes of {amplitude_rad.max():.2g} to {amplitude_rad.min():.2g} rad should "
+        f"lengthen the period by {100 * float(np.ptp(square)):.2g} %, and {100 * slope:.0f} % of "
+        "that is seen; the angle's unit or scale seems wrong (degrees given as radians?)"
+    )
+    return (Flag("angle_scale", Severity.WARNING, message),)
+
+
+def check_sway_axis(
+    where: str,
+    period_s: float,
+    line_length_m: float,
+    gravity_m_s2: float = STANDARD_GRAVITY_M_S2,
+) -> None:
+    """Refuse a sway record whose period is not that of the lines: ``2 pi sqrt(l/g)``.
+
+    Raises
+    ------
+    DataError
+        If it is off by more than 3 %: another axis (yaw for sway) or another length.
+    """
+    expected = 2.0 * math.pi * math.sqrt(line_length_m / gravity_m_s2)
+    off = period_s / expected - 1.0
+    if abs(off) > SWAY_TOLERANCE:
+        raise DataError(
+            f"{where}: a period of {period_s:.4g} s is {100 * off:+.1f} % from the "
+            f"{expected:.4g} s of sway on lines of {line_length_m:.4g} m (limit "
+            f"{100 * SWAY_TOLERANCE:g} %): a record of the wrong axis (yaw for sway?), or a wrong "
+            "line length"
+        )
+
+
+def check_yaw_axis(
+    where: str,
+    period_s: float,
+    line_length_m: float,
+    gravity_m_s2: float = STANDARD_GRAVITY_M_S2,
+) -> tuple[Flag, ...]:
+    """Flag a yaw record whose period is that of sway, within 0.5 %.
+
+    It may be true, where the half spacing happens to equal the gyradius; more often the channel
+    shows sway.
+    """
+    sway = 2.0 * math.pi * math.sqrt(line_length_m / gravity_m_s2)
+    if abs(period_s / sway - 1.0) > 0.005:
+        return ()
+    message = (
+        f"{where}: the yaw period {period_s:.4g} s is that of sway on lines of "
+        f"{line_length_m:.4g} m ({sway:.4g} s): a record of the wrong axis (sway for yaw), unless "
+        "the half spacing equals the gyradius; change the spacing to tell"
+    )
+    return (Flag("period_is_sway", Severity.WARNING, message),)
+
+
+def strongest_axis(chosen: Series, others: tuple[Series, ...]) -> tuple[Flag, ...]:
+    """Flag a channel beside which another of the same unit swings more at the same time.
+
+    For records with several axes (a phone's three rates): the wanted axis is the strongest one.
+    """
+    own = float(np.nanstd(chosen.values))
+    stronger = [
+        other
+        for other in others
+        if other.unit == chosen.unit
+        and other.channel != chosen.channel
+        and float(np.nanstd(other.values)) > own
+    ]
+    if not stronger:
+        return ()
+    best = max(stronger, key=lambda other: float(np.nanstd(other.values)))
+    message = (
+        f"{chosen.where}: {best.channel} swings {float(np.nanstd(best.values)) / own:.2g} times as "
+        "much; is this the right axis?"
+    )
+    return (Flag("weaker_axis", Severity.WARNING, message, chosen.channel),)

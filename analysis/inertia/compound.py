@@ -1,0 +1,110 @@
+"""Compound pendulum (eqs 22 to 24) and Lamboley's test on two axes."""
+
+import math
+
+from analysis.inertia.estimate import Estimate, require_positive
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value, sqrt
+
+
+def pendulum_period(gyradius_m: Value, depth_m: Value, gravity_m_s2: Value) -> Value:
+    """Period of a body whose centre of gravity hangs ``depth_m`` below the axis (eq 22)."""
+    square = gyradius_m * gyradius_m + depth_m * depth_m
+    return 2.0 * math.pi * sqrt(square / (depth_m * gravity_m_s2))
+
+
+def pendulum_gyradius(period_s: Value, depth_m: Value, gravity_m_s2: Value) -> Value:
+    """Gyradius from the period (eq 23); the depth drops out where it equals the gyradius."""
+    return sqrt(
+        period_s * period_s * depth_m * gravity_m_s2 / (4.0 * math.pi**2) - depth_m * depth_m
+    )
+
+
+def lamboley_depth(
+    first_period_s: Value, second_period_s: Value, apart_m: Value, gravity_m_s2: Value
+) -> Value:
+    """Depth below the first axis, from periods about two; the second is ``apart_m`` higher."""
+    scale = gravity_m_s2 / (4.0 * math.pi**2)
+    first = first_period_s * first_period_s * scale
+    second = second_period_s * second_period_s * scale
+    return apart_m * (second - apart_m) / (2.0 * apart_m - (second - first))
+
+
+def lamboley_gyradius(
+    first_period_s: Value, second_period_s: Value, apart_m: Value, gravity_m_s2: Value
+) -> Value:
+    """Gyradius from periods about two axes."""
+    depth = lamboley_depth(first_period_s, second_period_s, apart_m, gravity_m_s2)
+    return pendulum_gyradius(first_period_s, depth, gravity_m_s2)
+
+
+def inverted_v_depth(line_m: Value, half_spacing_m: Value, cg_depth_m: Value) -> Value:
+    """Depth of the centre of gravity below the axis of inverted-V lines: ``l_0 + l_2``."""
+    return sqrt(line_m * line_m - half_spacing_m * half_spacing_m) + cg_depth_m
+
+
+def compound_pendulum(
+    period: Estimate, depth: Estimate, gravity: Estimate, *, seed: int = 0
+) -> Assessment:
+    """Return the gyradius of a compound pendulum with its budget.
+
+    Raises
+    ------
+    ConfigurationError
+        For a period, depth or gravity that is not above zero.
+    DataError
+        If the period is shorter than any gyradius allows at that depth.
+    """
+    require_positive(
+        "compound pendulum",
+        period_s=period.value,
+        depth_m=depth.value,
+        gravity_m_s2=gravity.value,
+    )
+    inputs = {"period_s": period, "depth_m": depth, "gravity_m_s2": gravity}
+    return assess("k", pendulum_gyradius, inputs, unit="m", seed=seed)
+
+
+def lamboley(
+    first_period: Estimate,
+    second_period: Estimate,
+    apart: Estimate,
+    gravity: Estimate,
+    *,
+    seed: int = 0,
+) -> tuple[Assessment, Assessment]:
+    """Return depth below the first axis and gyradius from periods about two axes.
+
+    Raises
+    ------
+    ConfigurationError
+        For a value that is not above zero.
+    DataError
+        If the periods contradict the distance of the axes.
+    """
+    require_positive(
+        "Lamboley",
+        first_period_s=first_period.value,
+        second_period_s=second_period.value,
+        apart_m=apart.value,
+    )
+    inputs = {
+        "first_period_s": first_period,
+        "second_period_s": second_period,
+        "apart_m": apart,
+        "gravity_m_s2": gravity,
+    }
+    return (
+        assess("a", lamboley_depth, inputs, unit="m", seed=seed),
+        assess("k", lamboley_gyradius, inputs, unit="m", seed=seed + 1),
+    )
+
+
+def torsional_inertia(stiffness_n_m_rad: Value, period_s: Value) -> Value:
+    """Inertia of a body on a torsion rod: ``c T^2/(4 pi^2)``, kg m2."""
+    return stiffness_n_m_rad * period_s * period_s / (4.0 * math.pi**2)
+
+
+def torsional_stiffness(inertia_kg_m2: Value, period_s: Value) -> Value:
+    """Stiffness of a torsion rod from a body of known inertia, N m/rad."""
+    return 4.0 * math.pi**2 * inertia_kg_m2 / (period_s * period_s)

@@ -1,0 +1,114 @@
+"""Repeated runs to one value: the scatter between runs is always in its uncertainty.
+
+A fit's own error says how well one record is described; releases differ by much more (the three P1
+runs of the swing by 0.4 %, each known to 0.001 %). So no period leaves here with a fit's error
+alone: one run needs the scatter known from elsewhere, or that between its own parts.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.amplitude import LocalPeriods
+from analysis.inertia.estimate import Estimate
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """One value from several runs.
+
+    Attributes
+    ----------
+    estimate
+        The mean with the larger of scatter and fit errors, and its degrees of freedom.
+    scatter
+        Standard deviation of a single run; NaN for one run.
+    fit_uncertainty
+        Root mean square of the runs' own errors.
+    """
+
+    estimate: Estimate
+    runs: tuple[float, ...]
+    scatter: float
+    fit_uncertainty: float
+    flags: tuple[Flag, ...] = ()
+
+
+def combine_runs(
+    runs: Sequence[Estimate], *, known_scatter: Estimate | None = None, what: str = "period"
+) -> Repeated:
+    """Combine runs of the same set-up.
+
+    Parameters
+    ----------
+    runs
+        Value of each run with its fit's error.
+    known_scatter
+        Standard deviation of single runs known from earlier repeats (as the value); pooled with
+        that of these runs by degrees of freedom, and needed where there is one run only.
+
+    Raises
+    ------
+    DataError
+        For no run, and for one run without a known scatter.
+    """
+    if not runs or (len(runs) < 2 and known_scatter is None):
+        raise DataError(
+            f"{what}: {len(runs)} run(s); a fit's own error alone is no uncertainty: repeat the "
+            "release (three times or more), or hand in the scatter known from earlier repeats"
+        )
+    values = np.array([run.value for run in runs])
+    own = math.sqrt(float(np.mean([run.uncertainty**2 for run in runs])))
+    scatter = float(values.std(ddof=1)) if len(runs) > 1 else math.nan
+    spread, freedom = _pooled(scatter, len(runs) - 1, known_scatter)
+    larger = max(spread, own)
+    if own > spread:
+        freedom = min(run.degrees_of_freedom for run in runs)
+    uncertainty = larger / math.sqrt(len(runs))
+    estimate = Estimate(float(values.mean()), uncertainty, runs[0].unit, freedom)
+    return Repeated(
+        estimate, tuple(values.tolist()), scatter, own, _scatter_flags(what, spread, own)
+    )
+
+
+def _pooled(scatter: float, freedom: int, known: Estimate | None) -> tuple[float, float]:
+    if known is None:
+        return scatter, float(freedom)
+    if freedom < 1:
+        return known.value, known.degrees_of_freedom
+    if math.isinf(known.degrees_of_freedom):
+        return known.value, math.inf
+    total = freedom + known.degrees_of_freedom
+    square = freedom * scatter**2 + known.degrees_of_freedom * known.value**2
+    return math.sqrt(square / total), total
+
+
+def _scatter_flags(what: str, scatter: float, own: float) -> tuple[Flag, ...]:
+    if own <= 0.0 or scatter < 3.0 * own:
+        return ()
+    message = (
+        f"{what}: runs scatter by {scatter:.3g}, {scatter / own:.3g} times what each fit claims; "
+        "the scatter is what counts (release, stiction, temperature, amplitude)"
+    )
+    return (Flag("scatter_exceeds_fit", Severity.NOTE, message),)
+
+
+def single_run(local: LocalPeriods, zero: Estimate, *, what: str = "period") -> Repeated:
+    """Stand in for repeats with the parts of one run, where there is no other.
+
+    The scatter of the parts about their mean is taken for that between runs, undivided: parts of
+    one release share what another release would change.
+    """
+    spread = float(local.period_s.std(ddof=1))
+    uncertainty = math.hypot(spread, zero.uncertainty)
+    message = (
+        f"{what}: one run only; the scatter between its {local.period_s.size} parts "
+        f"({spread:.2g} {zero.unit}) stands in for that between runs: repeat the release"
+    )
+    estimate = Estimate(zero.value, uncertainty, zero.unit, float(local.period_s.size - 1))
+    flag = Flag("single_run", Severity.WARNING, message)
+    return Repeated(estimate, (zero.value,), spread, zero.uncertainty, (flag,))

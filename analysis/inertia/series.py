@@ -1,0 +1,204 @@
+"""One signal of a free oscillation, and which part of it is usable."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+from analysis.inertia.spectrum import spectrum
+from analysis.recording import Recording
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+SWINGING_UNITS = ("rad", "m", "rad/s", "m/s2", "V")
+
+DIED_OUT = 0.03  # of the first amplitude
+ABOVE_NOISE = 3.0  # times the noise's standard deviation
+RELEASED = 0.9  # of the largest amplitude
+LONGEST_GAP_PERIODS = 0.5
+
+
+@dataclass(frozen=True)
+class Series:
+    """An evenly sampled signal.
+
+    Attributes
+    ----------
+    values
+        Shape ``(samples,)`` in ``unit``; NaN where a sample is missing.
+    flags
+        What the reader and this package noticed.
+    """
+
+    name: str
+    channel: str
+    unit: str
+    sample_rate_hz: float
+    start_s: float
+    values: FloatArray
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def time_s(self) -> FloatArray:
+        """Times of the samples, shape ``(samples,)``."""
+        return np.asarray(self.start_s + np.arange(self.values.size) / self.sample_rate_hz)
+
+    @property
+    def where(self) -> str:
+        """Name of record and channel, for messages."""
+        return f"{self.name}, {self.channel}"
+
+
+@dataclass(frozen=True)
+class UsablePart:
+    """The stretch between release and dying out.
+
+    Attributes
+    ----------
+    series
+        That stretch.
+    period_s
+        Rough period of the strongest oscillation.
+    first_amplitude, last_amplitude
+        At its ends, in the record's unit.
+    noise_rms
+        Standard deviation of what changes from sample to sample.
+    because
+        In words, why it starts and ends there.
+    """
+
+    series: Series
+    period_s: float
+    first_amplitude: float
+    last_amplitude: float
+    noise_rms: float
+    because: str
+
+
+def series_from_recording(recording: Recording, channel: str) -> Series:
+    """Take one channel of a recording.
+
+    Raises
+    ------
+    DataError
+        If there is no such channel, it has no finite sample, or its unit is not one that a swinging
+        body shows (angle, displacement, rate, acceleration, volts).
+    """
+    unit = recording.channels[recording.index(channel)].unit
+    if unit not in (*SWINGING_UNITS, "", "1"):
+        raise DataError(
+            f"{recording.name}: channel {channel!r} is in {unit}; a free oscillation is read from "
+            f"one of {', '.join(SWINGING_UNITS)}: choose another channel"
+        )
+    values = np.asarray(recording.values(channel), dtype=np.float64)
+    if not np.isfinite(values).any():
+        raise DataError(f"{recording.name}: channel {channel!r} has no finite sample")
+    flags = tuple(flag for flag in recording.flags if flag.channel in (None, channel))
+    return Series(
+        recording.name, channel, unit, recording.sample_rate_hz, recording.start_s, values, flags
+    )
+
+
+def cut(series: Series, start_s: float, stop_s: float) -> Series:
+    """Return the samples from ``start_s`` to ``stop_s``, both included."""
+    rate = series.sample_rate_hz
+    first = max(int(np.ceil((start_s - series.start_s) * rate - 1e-6)), 0)
+    last = min(int(np.floor((stop_s - series.start_s) * rate + 1e-6)), series.values.size - 1)
+    return replace(
+        series, start_s=series.start_s + first / rate, values=series.values[first : last + 1]
+    )
+
+
+def usable_part(series: Series) -> UsablePart:
+    """Find the free oscillation: after the release, before it dies out.
+
+    The amplitude over one period is followed through the record. The stretch starts at the first
+    whole period after the amplitude is at its largest and ends where it falls below 3 % of that or
+    three times the noise. Missing samples are left out of the fits; a gap of more than half a
+    period gets a flag.
+
+    Raises
+    ------
+    DataError
+        If nothing swings above the noise.
+    """
+    period = _rough_period(series)
+    size = max(round(period * series.sample_rate_hz), 4)
+    noise = _noise(series.values)
+    envelope = _envelope(series.values, size)
+    top = float(np.nanmax(envelope))
+    floor = max(DIED_OUT * top, ABOVE_NOISE * noise)
+    if not top > floor:
+        raise DataError(
+            f"{series.where}: the largest amplitude is {top:.3g} {series.unit} over a noise of "
+            f"{noise:.3g}; nothing swings: choose another channel, or release from further out"
+        )
+    first = _release(series.values, envelope, size, top)
+    after = np.flatnonzero(np.nan_to_num(envelope[first:]) < floor)
+    last = first + int(after[0]) if after.size else series.values.size - 1
+    start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))
+    chosen = cut(series, start_s, stop_s)
+    ends = np.clip([first + size // 2, last - size // 2], 0, envelope.size - 1)
+    how = "falls below the limit" if after.size else "is still there at the record's end"
+    because = (
+        f"from {start_s:.4g} s (after the largest swing, {top:.3g} {series.unit}) to "
+        f"{stop_s:.4g} s (the amplitude {how}: {floor:.2g} {series.unit})"
+    )
+    flags = _gap_flags(chosen, size)
+    chosen = replace(chosen, flags=(*chosen.flags, *flags))
+    return UsablePart(
+        chosen, period, float(envelope[ends[0]]), float(envelope[ends[1]]), noise, because
+    )
+
+
+def _rough_period(series: Series) -> float:
+    slowest = 1.5 * series.sample_rate_hz / series.values.size
+    return 1.0 / spectrum(series.values, series.sample_rate_hz).peak_hz(slowest)
+
+
+def _noise(values: FloatArray) -> float:
+    """Return the noise from third differences, of which a slow oscillation has none."""
+    third = np.diff(values, 3)
+    third = third[np.isfinite(third)]
+    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20.0)) if third.size else 0.0
+
+
+def _envelope(values: FloatArray, size: int) -> FloatArray:
+    """Return the amplitude over the period around each sample, gaps left out."""
+    good = np.isfinite(values)
+    filled = np.where(good, values - np.nanmean(values[good]), 0.0)
+    window = np.ones(min(size, values.size))
+    count = np.maximum(np.convolve(good.astype(np.float64), window, "same"), 1.0)
+    mean = np.convolve(filled, window, "same") / count
+    square = np.convolve(filled**2, window, "same") / count
+    envelope = np.sqrt(2.0 * np.maximum(square - mean**2, 0.0))
+    envelope[np.convolve(good.astype(np.float64), window, "same") < 0.25 * window.size] = np.nan
+    return np.asarray(envelope)
+
+
+def _release(values: FloatArray, envelope: FloatArray, size: int, top: float) -> int:
+    """Return the sample after the largest swing: where the body hangs free."""
+    high = np.flatnonzero(np.nan_to_num(envelope) >= RELEASED * top)
+    edge = size // 2 + 1
+    if high[0] <= edge:
+        return 0
+    near = values[max(high[0] - size, 0) : high[0] + size]
+    centre = float(np.nanmean(values))
+    peak = max(high[0] - size, 0) + int(np.nanargmax(np.abs(near - centre)))
+    return int(min(peak + size // 2, values.size - 1))
+
+
+def _gap_flags(series: Series, size: int) -> tuple[Flag, ...]:
+    missing = ~np.isfinite(series.values)
+    count = int(missing.sum())
+    if not count:
+        return ()
+    padded = np.concatenate(([False], missing, [False]))
+    edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2)
+    longest = int((edges[:, 1] - edges[:, 0]).max()) / size
+    severity = Severity.WARNING if longest > LONGEST_GAP_PERIODS else Severity.NOTE
+    message = (
+        f"{series.where}: {count} of {series.values.size} samples are missing, the longest gap is "
+        f"{longest:.2g} periods (limit {LONGEST_GAP_PERIODS:g}); they are left out of the fits"
+    )
+    return (Flag("gaps", severity, message, series.channel),)

@@ -1,0 +1,292 @@
+"""The swing in motion: pivot inertia from the period, and a model's from the difference.
+
+I_P = T^2/(4 pi^2) m g R         I = I_P - m R^2             (eqs 4 to 7)
+"""
+
+import math
+from dataclasses import dataclass
+
+from analysis.inertia.budget import Correlations, linear_budget
+from analysis.inertia.estimate import Estimate, require_positive
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value, sqrt
+from hardware.description.flags import Flag, Severity
+
+SMALL_SHARE = 0.05
+FORECAST_LIMIT = 0.05  # of the gyradius, relative standard uncertainty
+
+
+def pivot_inertia(period_s: Value, mass_kg: Value, cg_m: Value, gravity_m_s2: Value) -> Value:
+    """Inertia about the pivot (eq 4): ``cg_m`` below it, in kg m2."""
+    return period_s * period_s * mass_kg * gravity_m_s2 * cg_m / (4.0 * math.pi**2)
+
+
+def inertia_at_cg(period_s: Value, mass_kg: Value, cg_m: Value, gravity_m_s2: Value) -> Value:
+    """Inertia about the centre of gravity (eqs 4 and 6), in kg m2."""
+    about_pivot = pivot_inertia(period_s, mass_kg, cg_m, gravity_m_s2)
+    return about_pivot - mass_kg * cg_m * cg_m
+
+
+@dataclass(frozen=True)
+class SwingState:
+    """A swing as it hangs: alone, or with a model.
+
+    Attributes
+    ----------
+    period, mass, moment, gravity
+        Undamped period in s, mass in kg, first moment about the pivot in kg m, g in m/s2.
+    """
+
+    period: Estimate
+    mass: Estimate
+    moment: Estimate
+    gravity: Estimate
+
+    @property
+    def inputs(self) -> dict[str, Estimate]:
+        """The state as a budget's inputs."""
+        return {
+            "period_s": self.period,
+            "mass_kg": self.mass,
+            "moment_kg_m": self.moment,
+            "gravity_m_s2": self.gravity,
+        }
+
+
+@dataclass(frozen=True)
+class SwingInertia:
+    """Of one state: about the pivot and about its own centre of gravity."""
+
+    about_pivot: Assessment
+    about_cg: Assessment
+
+
+def swing_inertia(
+    state: SwingState, *, correlations: Correlations | None = None, seed: int = 0
+) -> SwingInertia:
+    """Return the inertia of what hangs on the knife edges.
+
+    Raises
+    ------
+    ConfigurationError
+        For a period, mass, moment or gravity that is not above zero.
+    """
+    _check(state)
+    tied = correlations or {}
+
+    def pivot(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
+        return pivot_inertia(period_s, mass_kg, moment_kg_m / mass_kg, gravity_m_s2)
+
+    def own(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
+        return inertia_at_cg(period_s, mass_kg, moment_kg_m / mass_kg, gravity_m_s2)
+
+    inputs = state.inputs
+    return SwingInertia(
+        assess("I_P", pivot, inputs, unit="kg m2", correlations=tied, seed=seed),
+        assess("I_CG", own, inputs, unit="kg m2", correlations=tied, seed=seed + 1),
+    )
+
+
+def model_inertia(
+    tare_period_s: Value,
+    total_period_s: Value,
+    tare_moment_kg_m: Value,
+    total_moment_kg_m: Value,
+    model_mass_kg: Value,
+    gravity_m_s2: Value,
+) -> Value:
+    """Inertia of the model about its own centre of gravity: total less swing less ``m d^2``."""
+    about = gravity_m_s2 / (4.0 * math.pi**2)
+    total = total_period_s * total_period_s * total_moment_kg_m * about
+    tare = tare_period_s * tare_period_s * tare_moment_kg_m * about
+    moment = total_moment_kg_m - tare_moment_kg_m
+    return total - tare - moment * moment / model_mass_kg
+
+
+@dataclass(frozen=True)
+class SwingModel:
+    """A model measured on the swing.
+
+    Attributes
+    ----------
+    cg_below_pivot
+        Distance of the model's centre of gravity below the pivot, m.
+    about_cg, gyradius
+        About the axis through the model's own centre of gravity, kg m2 and m.
+    share
+        Part of the total pivot inertia that is the model's about its own centre of gravity.
+    """
+
+    cg_below_pivot: Assessment
+    about_cg: Assessment
+    gyradius: Assessment
+    share: float
+    flags: tuple[Flag, ...]
+
+
+def model_on_swing(
+    tare: SwingState,
+    loaded: SwingState,
+    model_mass: Estimate,
+    *,
+    correlations: Correlations | None = None,
+    seed: int = 0,
+) -> SwingModel:
+    """Return the model's centre of gravity and inertia from the swing alone and with it.
+
+    Parameters
+    ----------
+    correlations
+        By pairs of ``tare_period_s``, ``total_period_s``, ``tare_moment_kg_m``,
+        ``total_moment_kg_m``, ``model_mass_kg``, ``gravity_m_s2``.
+
+    Raises
+    ------
+    ConfigurationError
+        For a mass, period or moment that is not above zero.
+    DataError
+        If the loaded swing's inertia does not exceed what position alone makes of the model.
+    """
+    _check(tare)
+    _check(loaded)
+    require_positive("model", mass_kg=model_mass.value)
+    inputs = {
+        "tare_period_s": tare.period,
+        "total_period_s": loaded.period,
+        "tare_moment_kg_m": tare.moment,
+        "total_moment_kg_m": loaded.moment,
+        "model_mass_kg": model_mass,
+        "gravity_m_s2": tare.gravity,
+    }
+    tied = correlations or {}
+
+    def below(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
+        return (total_moment_kg_m - tare_moment_kg_m) / model_mass_kg
+
+    def gyradius(**given: Value) -> Value:
+        return sqrt(model_inertia(**given) / given["model_mass_kg"])
+
+    few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
+    part = {pair: r for pair, r in tied.items() if set(pair) <= set(few)}
+    cg = assess("d_M", below, few, unit="m", correlations=part, seed=seed)
+    own = assess("I_M", model_inertia, inputs, unit="kg m2", correlations=tied, seed=seed + 1)
+    k = _gyradius(own, gyradius, inputs, tied, seed)
+    total = pivot_inertia(loaded.period.value, 1.0, loaded.moment.value, loaded.gravity.value)
+    share = own.budget.result.value / total
+    return SwingModel(cg, own, k, share, share_flags(share, k.budget.result))
+
+
+def _gyradius(
+    own: Assessment,
+    formula: object,
+    inputs: dict[str, Estimate],
+    tied: Correlations,
+    seed: int,
+) -> Assessment:
+    """Assess the gyradius; where it is ill known the Monte Carlo says so."""
+    from hardware.description.errors import DataError
+
+    low = own.budget.result.value - 2.3 * own.budget.result.uncertainty
+    if low <= 0.0:
+        result = own.budget.result
+        raise DataError(
+            f"model on the swing: inertia {result.value:.3g} +- {result.uncertainty:.2g} kg m2 "
+            "cannot be told from none; the swing is too heavy for this model: use a bifilar "
+            "suspension, or a lighter cradle"
+        )
+    assert callable(formula)  # noqa: S101
+    return assess("k_M", formula, inputs, unit="m", correlations=tied, seed=seed + 2)
+
+
+def share_flags(share: float, gyradius: Estimate) -> tuple[Flag, ...]:
+    """Say when the model is too small a part of the total to be worth swinging."""
+    if share >= SMALL_SHARE and gyradius.relative <= FORECAST_LIMIT:
+        return ()
+    message = (
+        f"the model's own inertia is {100 * share:.2g} % of the total (limit "
+        f"{100 * SMALL_SHARE:g} %) and its gyradius known to {100 * gyradius.relative:.2g} % "
+        f"(limit {100 * FORECAST_LIMIT:g} %): a small difference of large numbers; use a bifilar "
+        "suspension or a lighter swing"
+    )
+    return (Flag("small_difference", Severity.WARNING, message),)
+
+
+@dataclass(frozen=True)
+class SwingForecast:
+    """What a test would give, before it is made.
+
+    Attributes
+    ----------
+    period_s
+        Of the loaded swing.
+    gyradius
+        The model's, with the uncertainty to expect.
+    share
+        As in :class:`SwingModel`.
+    """
+
+    period_s: float
+    gyradius: Estimate
+    share: float
+    worth_swinging: bool
+    flags: tuple[Flag, ...]
+
+
+def forecast_swing(
+    tare: SwingState,
+    model_mass: Estimate,
+    cg_below_pivot_m: float,
+    gyradius_m: float,
+    *,
+    period_scatter_relative: float,
+    moment_relative: float,
+) -> SwingForecast:
+    """Forecast period and uncertainty of a model's gyradius from its design values.
+
+    Parameters
+    ----------
+    period_scatter_relative, moment_relative
+        Relative standard uncertainties to expect of the loaded period and first moment.
+
+    Raises
+    ------
+    ConfigurationError
+        For a mass, distance or gyradius that is not above zero.
+    """
+    require_positive(
+        "forecast",
+        mass_kg=model_mass.value,
+        cg_below_pivot_m=cg_below_pivot_m,
+        gyradius_m=gyradius_m,
+    )
+    _check(tare)
+    g = tare.gravity.value
+    moment = tare.moment.value + model_mass.value * cg_below_pivot_m
+    swing = pivot_inertia(tare.period.value, 1.0, tare.moment.value, g)
+    own = model_mass.value * gyradius_m**2
+    total = swing + own + model_mass.value * cg_below_pivot_m**2
+    period = 2.0 * math.pi * math.sqrt(total / (moment * g))
+    inputs = {
+        "tare_period_s": tare.period,
+        "total_period_s": Estimate(period, period_scatter_relative * period, "s"),
+        "tare_moment_kg_m": tare.moment,
+        "total_moment_kg_m": Estimate(moment, moment_relative * moment, "kg m"),
+        "model_mass_kg": model_mass,
+        "gravity_m_s2": tare.gravity,
+    }
+    inertia = linear_budget("I_M", model_inertia, inputs, unit="kg m2").result
+    spread = 0.5 * gyradius_m * inertia.relative  # k = sqrt(I/m), m by far the better known
+    gyradius = Estimate(gyradius_m, spread, "m")
+    share = own / total
+    flags = share_flags(share, gyradius)
+    return SwingForecast(period, gyradius, share, not flags, flags)
+
+
+def _check(state: SwingState) -> None:
+    require_positive(
+        "swing",
+        period_s=state.period.value,
+        mass_kg=state.mass.value,
+        moment_kg_m=state.moment.value,
+        gravity_m_s2=state.gravity.value,
+    )

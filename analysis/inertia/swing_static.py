@@ -1,0 +1,212 @@
+"""The swing at rest: centre of gravity from tilts under calibration weights (eqs 1 to 3, 8 to 13).
+
+    tan(alpha) = m_W d_W / S [+ offset],      S = m_S d_S + m_M d_M
+
+is linear in 1/S, so one solve takes any number of levers at once and needs no starting value.
+Gravity cancels. F1 has no offset; F2, with one, is the better.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.estimate import Estimate, require_positive
+from analysis.inertia.numeric import FloatArray
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+DISAGREE = 0.01  # probability under which series are said to differ
+
+
+@dataclass(frozen=True)
+class LeverSeries:
+    """Tilts at one lever.
+
+    Attributes
+    ----------
+    lever_m
+        Horizontal distance of the weights from the pivot.
+    weight_kg, tilt_rad
+        Shape ``(readings,)``; tilts towards the weights are positive.
+    """
+
+    name: str
+    lever_m: float
+    weight_kg: FloatArray
+    tilt_rad: FloatArray
+
+
+@dataclass(frozen=True)
+class StaticMoment:
+    """First moment of the swing (with model) about the pivot.
+
+    Attributes
+    ----------
+    moment
+        ``S`` in kg m; a distance follows by division by the mass.
+    offset_rad
+        Tangent of the tilt without weights; 0 for F1.
+    residual_rms_rad
+        Standard deviation of the tangents about the line.
+    """
+
+    moment: Estimate
+    offset_rad: Estimate
+    residual_rms_rad: float
+    series: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class StaticResult:
+    """All levers at once, and each alone.
+
+    Attributes
+    ----------
+    pooled
+        One fit to all readings; its uncertainty grows by the scatter between the series.
+    alone
+        Each series by itself.
+    disagreeing
+        Names of the series that differ from the others.
+    """
+
+    pooled: StaticMoment
+    alone: tuple[StaticMoment, ...]
+    disagreeing: tuple[str, ...]
+    flags: tuple[Flag, ...]
+
+
+def fit_static(series: Sequence[LeverSeries], *, with_offset: bool = True) -> StaticResult:
+    """Fit F2 (or F1) to all levers at once and compare the series.
+
+    Raises
+    ------
+    ConfigurationError
+        For a lever that is not above zero.
+    DataError
+        For no readings, fewer than three in a series, weights all the same, or a tilt that does not
+        grow with the weight.
+    """
+    if not series:
+        raise DataError("no lever series; at least one is needed")
+    for one in series:
+        _check(one)
+    pooled = _fit(series, with_offset)
+    alone = tuple(_fit([one], with_offset) for one in series)
+    disagreeing = _disagreeing(series, alone, with_offset)
+    flags = _flags(series, alone, disagreeing)
+    return StaticResult(_widened(pooled, alone), alone, disagreeing, flags)
+
+
+def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
+    """Return the distance of the centre of gravity below the pivot, in metres.
+
+    Raises
+    ------
+    ConfigurationError
+        For a mass of zero or less.
+    """
+    require_positive("swing", mass_kg=mass_kg.value)
+    value = moment.value / mass_kg.value
+    spread = abs(value) * float(np.hypot(moment.relative, mass_kg.relative))
+    return Estimate(value, spread, "m", moment.degrees_of_freedom)
+
+
+def _check(one: LeverSeries) -> None:
+    require_positive(f"series {one.name!r}", lever_m=one.lever_m)
+    if one.weight_kg.size < 3 or not np.ptp(one.weight_kg) > 0.0:
+        raise DataError(
+            f"series {one.name!r}: {one.weight_kg.size} reading(s), weights from "
+            f"{one.weight_kg.min(initial=np.inf):g} kg; at least 3 with different weights are needed"
+        )
+    if not (np.isfinite(one.tilt_rad).all() and one.tilt_rad.size == one.weight_kg.size):
+        raise DataError(f"series {one.name!r}: a tilt is missing; leave that reading out")
+    largest = float(np.abs(one.tilt_rad).max())
+    if largest > 0.7:
+        raise DataError(
+            f"series {one.name!r}: a tilt of {largest:.3g} rad is {np.degrees(largest):.0f} deg "
+            "(limit 0.7 rad): it seems to be degrees given as radians; convert them"
+        )
+    if float(np.polyfit(one.weight_kg, one.tilt_rad, 1)[0]) <= 0.0:
+        raise DataError(
+            f"series {one.name!r}: the tilt falls with the weight; tilts towards the weights are "
+            "positive: turn the sign of the inclinometer"
+        )
+
+
+def _columns(series: Sequence[LeverSeries], with_offset: bool) -> tuple[FloatArray, FloatArray]:
+    pull = np.concatenate([one.weight_kg * one.lever_m for one in series])
+    tangent = np.concatenate([np.tan(one.tilt_rad) for one in series])
+    return np.column_stack([pull, np.ones(pull.size)][: 1 + with_offset]), tangent
+
+
+def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
+    matrix, tangent = _columns(series, with_offset)
+    inverse = np.linalg.inv(matrix.T @ matrix)
+    solved = inverse @ (matrix.T @ tangent)
+    residual = tangent - matrix @ solved
+    freedom = max(tangent.size - matrix.shape[1], 1)
+    variance = float(residual @ residual) / freedom
+    slope, spread = float(solved[0]), float(np.sqrt(inverse[0, 0] * variance))
+    moment = Estimate(1.0 / slope, spread / slope**2, "kg m", float(freedom))
+    offset = Estimate(0.0, 0.0, "rad")
+    if with_offset:
+        error = float(np.sqrt(inverse[1, 1] * variance))
+        offset = Estimate(float(solved[1]), error, "rad", float(freedom))
+    return StaticMoment(moment, offset, float(np.sqrt(variance)), tuple(one.name for one in series))
+
+
+def _disagreeing(
+    series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], with_offset: bool
+) -> tuple[str, ...]:
+    """Name the series whose moment differs from that of all the others together."""
+    from scipy.stats import t as student
+
+    if len(series) < 2:
+        return ()
+    found = []
+    for k, one in enumerate(series):
+        others = [other for j, other in enumerate(series) if j != k]
+        rest = _fit(others, with_offset).moment
+        own = alone[k].moment
+        spread = float(np.hypot(own.uncertainty, rest.uncertainty))
+        freedom = own.degrees_of_freedom + rest.degrees_of_freedom
+        apart = abs(own.value - rest.value)
+        if apart > float(student.isf(DISAGREE / 2.0 / len(series), freedom)) * spread:
+            found.append((apart / spread, one.name))
+    return tuple(name for _, name in sorted(found, reverse=True))
+
+
+def _widened(pooled: StaticMoment, alone: tuple[StaticMoment, ...]) -> StaticMoment:
+    """Let the scatter between series into the uncertainty, where it is the larger."""
+    if len(alone) < 2:
+        return pooled
+    values = np.array([one.moment.value for one in alone])
+    between = float(values.std(ddof=1)) / np.sqrt(values.size)
+    own = pooled.moment
+    if between <= own.uncertainty:
+        return pooled
+    moment = Estimate(own.value, float(between), own.unit, float(values.size - 1))
+    return StaticMoment(moment, pooled.offset_rad, pooled.residual_rms_rad, pooled.series)
+
+
+def _flags(
+    series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], disagreeing: tuple[str, ...]
+) -> tuple[Flag, ...]:
+    flags = []
+    if len({one.lever_m for one in series}) < 2:
+        message = (
+            f"only one lever ({series[0].lever_m:g} m): a series that is wrong as a whole would not "
+            "be seen (one was by 8 %); measure at a second lever"
+        )
+        flags.append(Flag("single_lever", Severity.WARNING, message))
+    if disagreeing:
+        values = ", ".join(f"{one.series[0]} {one.moment.value:.5g} kg m" for one in alone)
+        what = ", ".join(map(repr, disagreeing))
+        message = (
+            f"series {what} differ from the others beyond chance ({values}); check lever and "
+            "weights of these, or measure them again"
+        )
+        flags.append(Flag("series_disagree", Severity.WARNING, message))
+    return tuple(flags)
