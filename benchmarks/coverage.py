@@ -51,7 +51,7 @@ def _batches(noise: Noise, periods: int, trials: int) -> Iterator[_Batch]:
         step = 1.0 / SAMPLES_PER_PERIOD * rng.uniform(0.99, 1.01)  # not commensurate
         count = int(periods / step) + 2 * _LEAD
         opening = (_LEAD - rng.random()) * step  # between two samples, at theta = 0
-        from_middle: FloatArray = np.arange(count) * step - opening - periods / 2.0
+        from_middle = np.arange(count, dtype=np.float64) * step - (opening + periods / 2.0)
         recording = recorded(noise(min(_AT_ONCE, trials - start), from_middle, rng), 1.0)
         reference = from_frequency(step, 0.0, recording.end_s, -2.0 * np.pi * opening)
         yield _Batch(recording, reference, np.arange(periods + 1.0))
@@ -59,7 +59,7 @@ def _batches(noise: Noise, periods: int, trials: int) -> Iterator[_Batch]:
 
 def run(quick: bool, report: Report) -> Outcome:
     """Draw trials of every noise and gate."""
-    trials = 200 if quick else 20_000
+    trials = 100 if quick else 20_000
     rows: list[Row] = []
     for name, noise in NOISES.items():
         for periods in _GATES:

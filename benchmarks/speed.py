@@ -111,8 +111,8 @@ def run(quick: bool, report: Report) -> Outcome:
         measured["compiled_over_sum"] = best[_COMPILED] / best[_SUM]
         ratios = [best[name] / best[_COMPILED] for name in (_NAIVE, _NAIVE_PIECE)]
         notes += (
-            f"Over the compiled sums, {_NAIVE} takes {ratios[0]:.0f} times as long, in a piece that "
-            f"the cache holds {ratios[1]:.0f} times.",
+            f"Over the compiled sums, {_NAIVE} takes {ratios[0]:.0f} times as long, in a piece "
+            f"that the cache holds {ratios[1]:.0f} times.",
         )
         if not quick:
             report("compiling in new interpreters")
