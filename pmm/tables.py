@@ -1,12 +1,14 @@
 """An analysis as rows of numbers: one set of them for the printed table and for ``--json``."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hardware.description.flags import Flag
+from pmm.classic_rows import ClassicRow, classic_rows
 
 if TYPE_CHECKING:
     from analysis.resolver.analyse import Analysis
@@ -76,6 +78,14 @@ class GateRows:
 
 
 @dataclass(frozen=True)
+class LetThrough:
+    """Part of a vibration's amplitude that gets into harmonics 1 to N of the first gate."""
+
+    frequency_hz: float
+    parts: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class RunRows:
     """One recording.
 
@@ -87,6 +97,8 @@ class RunRows:
         ``"found steady"``, ``"given"`` or ``"not steady"`` (all periods were used).
     window_opened_s, window_closed_s, window_periods
         The periods that the gates were taken from.
+    let_through, classic
+        What was asked for besides, of the first gate.
     """
 
     file: str
@@ -100,6 +112,8 @@ class RunRows:
     window_periods: int
     gates: tuple[GateRows, ...]
     flags: tuple[Flag, ...]
+    let_through: tuple[LetThrough, ...] = ()
+    classic: tuple[ClassicRow, ...] = ()
 
 
 def run_rows(
@@ -107,6 +121,8 @@ def run_rows(
     *,
     file: str,
     level: float,
+    vibrations_hz: Sequence[float] = (),
+    classic: bool = False,
 ) -> RunRows:
     """Turn an analysis into rows.
 
@@ -116,6 +132,10 @@ def run_rows(
         Where the recording came from.
     level
         Probability of the two-sided intervals.
+    vibrations_hz
+        Frequencies for which to tell what the first gate lets through.
+    classic
+        Whether to read the modes of 1963 too.
     """
     steady = analysis.steady_sums
     return RunRows(
@@ -130,6 +150,20 @@ def run_rows(
         window_periods=steady.period_count,
         gates=tuple(gate_rows(reading, level) for reading in analysis.readings),
         flags=analysis.flags,
+        let_through=_let_through(analysis, vibrations_hz),
+        classic=classic_rows(analysis) if classic else (),
+    )
+
+
+def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple[LetThrough, ...]:
+    from analysis.resolver.analyse import let_through
+
+    if not frequencies_hz:
+        return ()
+    parts = let_through(analysis, np.array(frequencies_hz))
+    return tuple(
+        LetThrough(frequency_hz, tuple(row.tolist()))
+        for frequency_hz, row in zip(frequencies_hz, parts, strict=True)
     )
 
 

@@ -23,6 +23,14 @@ def _finite(
     return value
 
 
+def _all_finite(
+    ctx: click.Context, param: click.Parameter, values: tuple[float, ...]
+) -> tuple[float, ...]:
+    for value in values:
+        _finite(ctx, param, value)
+    return values
+
+
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--reference", metavar="CHANNEL", help="Take the phase from this channel.")
@@ -65,6 +73,31 @@ def _finite(
     callback=_finite,
     metavar="X",
     help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
+)
+@click.option(
+    "--let-through",
+    type=_POSITIVE,
+    callback=_all_finite,
+    multiple=True,
+    metavar="HZ",
+    help="Tell how much of a vibration of this frequency gets into each harmonic; repeatable.",
+)
+@click.option(
+    "--classic", is_flag=True, help="Show beside it what the measuring modes of 1963 would read."
+)
+@click.option(
+    "--carrier",
+    type=_POSITIVE,
+    callback=_finite,
+    metavar="HZ",
+    help="Detect the channels given with --channel from a carrier first.",
+)
+@click.option(
+    "--bandwidth",
+    type=_POSITIVE,
+    callback=_finite,
+    metavar="HZ",
+    help="Keep signals up to here of those on a carrier.  [default: 50]",
 )
 @click.option("--hann", is_flag=True, help="Taper each gate: for long gates with interference.")
 @click.option("--no-drift", is_flag=True, help="Leave a linear drift in.")

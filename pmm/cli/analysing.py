@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,7 @@ from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
+    from analysis.recording import Recording
 
 JSON_SCHEMA = "pmm-analysis-1"
 
@@ -77,6 +79,8 @@ def _check(request: Request, found: Found) -> None:
             f"--edges {request.edges}: one file of edges for several recordings; put {{stem}} "
             "where the recording's name stands in the names of their edge files"
         )
+    if request.bandwidth is not None and request.carrier is None:
+        raise ConfigurationError("--bandwidth belongs to --carrier; give both or neither")
     if request.plot or request.save:
         _check_names(found)
 
@@ -102,6 +106,8 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
         write_recording(recording, folder / f"{source.stem}.nc")
+    if request.carrier is not None:
+        recording = _detected(recording, settings.channels, request.carrier, request.bandwidth)
     analysis = analyse(recording, choice, settings)
     if request.plot is not None:
         from pmm.report.plots import save_figures
@@ -111,7 +117,24 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
         analysis,
         file=str(source.path),
         level=request.level,
+        vibrations_hz=request.let_through,
+        classic=request.classic,
     )
+
+
+def _detected(
+    recording: "Recording",
+    channels: Sequence[str],
+    carrier_hz: float,
+    bandwidth_hz: float | None,
+) -> "Recording":
+    """Take channels off their carrier, the optional first stage of the resolver."""
+    from analysis.resolver.carrier import demodulate
+
+    if not channels:
+        raise ConfigurationError("--carrier: say with --channel which channels ride on it")
+    bandwidth = {} if bandwidth_hz is None else {"bandwidth_hz": bandwidth_hz}
+    return demodulate(recording, channels, carrier_hz, **bandwidth)
 
 
 def _report(failed: list[Failure], found: Found) -> None:

@@ -1,5 +1,6 @@
 """Tables for people."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -27,8 +28,39 @@ def print_run(console: "Console", rows: "RunRows", level: float) -> None:
     )
     for number, gate in enumerate(rows.gates, 1):
         _print_gate(console, gate, f"gate {number} of {len(rows.gates)}", level)
+    _print_let_through(console, rows)
+    _print_classic(console, rows)
     print_flags(console, rows.flags)
     console.print()
+
+
+def _print_let_through(console: "Console", rows: "RunRows") -> None:
+    for one in rows.let_through:
+        parts = ", ".join(
+            f"{100.0 * part:.2g} % into n = {n}" for n, part in enumerate(one.parts, 1)
+        )
+        console.print(f"lets through of a vibration at {one.frequency_hz:g} Hz: {parts}")
+
+
+def _print_classic(console: "Console", rows: "RunRows") -> None:
+    """Print what each mode of 1963 reads in the first gate's window."""
+    from rich.table import Table
+
+    for name in dict.fromkeys(row.channel for row in rows.classic):
+        chosen = [row for row in rows.classic if row.channel == name]
+        table = Table(box=None, padding=(0, 1), pad_edge=False)
+        table.add_column(f"{name} [{chosen[0].unit}] by mode")
+        for k in range(len(chosen[0].parts) // 2):
+            table.add_column(f"in phase {k + 1}", justify="right")
+            table.add_column(f"quadrature {k + 1}", justify="right")
+        for row in chosen:
+            table.add_row(row.mode, *(_plain(part) for part in row.parts))
+        console.print(table)
+        console.print()
+
+
+def _plain(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.5g}"
 
 
 def _print_gate(console: "Console", gate: "GateRows", name: str, level: float) -> None:

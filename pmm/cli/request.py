@@ -24,6 +24,10 @@ class Request:
     opens_at: float | None
     periods: int | None
     steady_tolerance: float | None
+    let_through: tuple[float, ...]
+    classic: bool
+    carrier: float | None
+    bandwidth: float | None
     hann: bool
     no_drift: bool
     column_map: str | None
