@@ -1,14 +1,20 @@
 """Least squares of a ladder's numbers against added mass and damping, in scaled units."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from hardware.description.errors import DataError
 from sim.signals import FloatArray
 from sim.water.ladder import ComplexArray, Ladder
 
 _EVALUATIONS: Final = 300
+# Rate, relative to the lowest frequency, at which every state has to fade at least.
+_SLOWEST_FADING: Final = 0.05
+# Standard deviation of the starts around an uncoupled pair, relative to its numbers.
+_SPREAD: Final = 0.1
 # Root mean square deviation that no panel method's table deserves to be fitted better than.
 _GOOD_ENOUGH: Final = 2e-6
 
@@ -68,14 +74,49 @@ def best_ladder(
 ) -> tuple[Ladder, FloatArray]:
     """Return the ladder of one degree of freedom that comes nearest from several starts."""
     ladder = Ladder(states, 1)
-    best, least = np.zeros(0), np.inf
-    for _ in range(starts):
-        numbers, deviation = target.refine(ladder, _draw(ladder, target, generator))
-        if deviation < least:
+    drawn = (_draw(ladder, target, generator) for _ in range(starts))
+    return ladder, _best(target, ladder, drawn)
+
+
+def best_joint_ladder(
+    target: Target,
+    first: tuple[Ladder, FloatArray],
+    second: tuple[Ladder, FloatArray],
+    starts: int,
+    generator: np.random.Generator,
+) -> tuple[Ladder, FloatArray]:
+    """Return the ladder of two coupled degrees of freedom, from the ladders of either alone.
+
+    A third as many starts serve: the first is the uncoupled pair, the others lie around it.
+    """
+    ladder, pair = joint_ladder(first, second)
+    spread = generator.normal(0.0, _SPREAD, (max(starts // 3, 1), pair.size))
+    spread[0] = 0.0
+    size = np.sqrt(np.mean(pair**2))
+    return ladder, _best(target, ladder, (pair + size * one for one in spread))
+
+
+def _best(target: Target, ladder: Ladder, candidates: Iterable[FloatArray]) -> FloatArray:
+    """Refine the candidates and return the best result that fades."""
+    best, least = None, np.inf
+    for start in candidates:
+        numbers, deviation = target.refine(ladder, start)
+        if deviation < least and _fades(target, ladder, numbers):
             best, least = numbers, deviation
         if least < _GOOD_ENOUGH:
             break
-    return ladder, best
+    if best is None:
+        raise DataError(
+            f"no start led to a memory of {ladder.states} states that fades within some periods of "
+            f"the table's lowest frequency; use fewer states or more starts"
+        )
+    return best
+
+
+def _fades(target: Target, ladder: Ladder, numbers: FloatArray) -> bool:
+    """Tell whether the slowest state fades: one that does not is an artefact between frequencies."""
+    slowest = np.linalg.eigvals(ladder.matrices(numbers).state).real.max()
+    return bool(slowest < -_SLOWEST_FADING * target.omega[0])
 
 
 def joint_ladder(

@@ -14,7 +14,7 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError, DataError
 from sim.signals import FloatArray
-from sim.water.identification import Target, best_ladder, joint_ladder
+from sim.water.identification import Target, best_joint_ladder, best_ladder
 from sim.water.ladder import Ladder
 from sim.water.radiation import Radiation, constant
 from sim.water.tables import RadiationTable
@@ -76,7 +76,8 @@ def fit_memory(
     ConfigurationError
         If ``states``, ``floor`` or ``starts`` is out of range.
     DataError
-        If the table has fewer frequencies than states, or its coupling is not symmetric.
+        If the table has fewer frequencies than states, its coupling is not symmetric, or no
+        start leads to a memory that fades.
     """
     _check(table, states, floor, starts)
     targets = _Targets(table.symmetrised(), floor)
@@ -85,9 +86,8 @@ def fit_memory(
         i: best_ladder(targets.of((i,)), states, starts, generator) for i in targets.with_damping
     }
     if len(fits) == 2 and targets.coupling > COUPLING_IS_NOISE:
-        start = joint_ladder(fits[0], fits[1])
-        numbers = targets.of((0, 1)).refine(*start)[0]
-        return targets.judged([((0, 1), start[0], numbers)])
+        both = best_joint_ladder(targets.of((0, 1)), fits[0], fits[1], starts, generator)
+        return targets.judged([((0, 1), *both)])
     return targets.judged([((i,), *fit) for i, fit in fits.items()])
 
 
