@@ -1,8 +1,8 @@
 """The two measuring modes of 1963 and the switch between them.
 
 Kept because users of such rigs know them and have decades of results from them; the whole-period
-estimator (:mod:`analysis.resolver.estimate`) is the better one in every figure of
-``docs/modes-of-1963.md``. Use
+estimator (:mod:`analysis.resolver.estimate`) is better wherever there is a mean, a drift
+or an edge between samples (``docs/modes-of-1963.md``). Use
 
 * :mod:`analysis.resolver.classic_average`, the needles of the running average, above 0.5 Hz;
 * :mod:`analysis.resolver.classic_gate`, the integral over m periods with hold and reset, below;
