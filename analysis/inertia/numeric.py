@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 Value = TypeVar("Value", float, FloatArray)
 
-STANDARD_GRAVITY_UNCERTAINTY_M_S2 = 0.015  # half of the Earth's range of g, as a standard deviation
-
 
 def sqrt(x: Value) -> Value:
     """Square root; NaN where the argument is negative."""
@@ -37,9 +35,9 @@ def tan(x: Value) -> Value:
     return cast("Value", np.tan(x))
 
 
-def arctan2(y: Value, x: Value) -> Value:
-    """Angle of the point ``(x, y)`` in radians."""
-    return cast("Value", np.arctan2(y, x))
+def arctan(x: Value) -> Value:
+    """Angle in radians of that tangent, within a quarter turn of zero."""
+    return cast("Value", np.arctan(x))
 
 
 def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray) -> FloatArray:

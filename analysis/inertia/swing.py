@@ -10,6 +10,7 @@ from analysis.inertia.budget import Correlations, linear_budget
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.numeric import Value, sqrt
+from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 SMALL_SHARE = 0.05
@@ -103,6 +104,26 @@ def model_inertia(
     return total - tare - moment * moment / model_mass_kg
 
 
+def model_gyradius(
+    tare_period_s: Value,
+    total_period_s: Value,
+    tare_moment_kg_m: Value,
+    total_moment_kg_m: Value,
+    model_mass_kg: Value,
+    gravity_m_s2: Value,
+) -> Value:
+    """Gyradius of the model about its own centre of gravity, m."""
+    inertia = model_inertia(
+        tare_period_s,
+        total_period_s,
+        tare_moment_kg_m,
+        total_moment_kg_m,
+        model_mass_kg,
+        gravity_m_s2,
+    )
+    return sqrt(inertia / model_mass_kg)
+
+
 @dataclass(frozen=True)
 class SwingModel:
     """A model measured on the swing.
@@ -163,39 +184,25 @@ def model_on_swing(
     def below(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
         return (total_moment_kg_m - tare_moment_kg_m) / model_mass_kg
 
-    def gyradius(**given: Value) -> Value:
-        return sqrt(model_inertia(**given) / given["model_mass_kg"])
-
     few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
     part = {pair: r for pair, r in tied.items() if set(pair) <= set(few)}
     cg = assess("d_M", below, few, unit="m", correlations=part, seed=seed)
     own = assess("I_M", model_inertia, inputs, unit="kg m2", correlations=tied, seed=seed + 1)
-    k = _gyradius(own, gyradius, inputs, tied, seed)
+    _refuse_nothing(own.budget.result)
+    k = assess("k_M", model_gyradius, inputs, unit="m", correlations=tied, seed=seed + 2)
     total = pivot_inertia(loaded.period.value, 1.0, loaded.moment.value, loaded.gravity.value)
     share = own.budget.result.value / total
     return SwingModel(cg, own, k, share, share_flags(share, k.budget.result))
 
 
-def _gyradius(
-    own: Assessment,
-    formula: object,
-    inputs: dict[str, Estimate],
-    tied: Correlations,
-    seed: int,
-) -> Assessment:
-    """Assess the gyradius; where it is ill known the Monte Carlo says so."""
-    from hardware.description.errors import DataError
-
-    low = own.budget.result.value - 2.3 * own.budget.result.uncertainty
-    if low <= 0.0:
-        result = own.budget.result
+def _refuse_nothing(inertia: Estimate) -> None:
+    """Refuse a difference that a gyradius cannot be drawn from."""
+    if inertia.value <= 2.3 * inertia.uncertainty:
         raise DataError(
-            f"model on the swing: inertia {result.value:.3g} +- {result.uncertainty:.2g} kg m2 "
+            f"model on the swing: inertia {inertia.value:.3g} +- {inertia.uncertainty:.2g} kg m2 "
             "cannot be told from none; the swing is too heavy for this model: use a bifilar "
             "suspension, or a lighter cradle"
         )
-    assert callable(formula)  # noqa: S101
-    return assess("k_M", formula, inputs, unit="m", correlations=tied, seed=seed + 2)
 
 
 def share_flags(share: float, gyradius: Estimate) -> tuple[Flag, ...]:

@@ -118,7 +118,8 @@ def _check(one: LeverSeries) -> None:
     if one.weight_kg.size < 3 or not np.ptp(one.weight_kg) > 0.0:
         raise DataError(
             f"series {one.name!r}: {one.weight_kg.size} reading(s), weights from "
-            f"{one.weight_kg.min(initial=np.inf):g} kg; at least 3 with different weights are needed"
+            f"{one.weight_kg.min(initial=np.inf):g} kg; at least 3 with different weights are "
+            "needed"
         )
     if not (np.isfinite(one.tilt_rad).all() and one.tilt_rad.size == one.weight_kg.size):
         raise DataError(f"series {one.name!r}: a tilt is missing; leave that reading out")
@@ -197,8 +198,8 @@ def _flags(
     flags = []
     if len({one.lever_m for one in series}) < 2:
         message = (
-            f"only one lever ({series[0].lever_m:g} m): a series that is wrong as a whole would not "
-            "be seen (one was by 8 %); measure at a second lever"
+            f"only one lever ({series[0].lever_m:g} m): a series that is wrong as a whole would "
+            "not be seen (one was by 8 %); measure at a second lever"
         )
         flags.append(Flag("single_lever", Severity.WARNING, message))
     if disagreeing:

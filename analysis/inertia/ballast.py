@@ -1,0 +1,182 @@
+"""Where to put given weights, so that a model has its target mass, centre of gravity and gyradii."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+from analysis.inertia.parts import Part, _combined
+from hardware.description.errors import ConfigurationError
+
+_STARTS = 12
+_AXES = ("x_m", "y_m", "z_m")
+_TURNS = ("roll_m", "pitch_m", "yaw_m")
+
+
+@dataclass(frozen=True)
+class Weight:
+    """A weight to place.
+
+    Attributes
+    ----------
+    low_m, high_m
+        Corners of the box in which its centre may lie (x, y, z); equal where it is fixed.
+    gyradii_m
+        Of the weight itself; 0 for a small one.
+    """
+
+    name: str
+    mass_kg: float
+    low_m: tuple[float, float, float]
+    high_m: tuple[float, float, float]
+    gyradii_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Target:
+    """What is wanted; ``None`` where anything will do.
+
+    Attributes
+    ----------
+    centre_m
+        x, y, z of the centre of gravity.
+    gyradii_m
+        Roll, pitch, yaw.
+    tolerance_mass_kg, tolerance_m
+        How near is near enough.
+    """
+
+    mass_kg: float | None = None
+    centre_m: tuple[float | None, float | None, float | None] = (None, None, None)
+    gyradii_m: tuple[float | None, float | None, float | None] = (None, None, None)
+    tolerance_mass_kg: float = 0.01
+    tolerance_m: float = 0.001
+
+
+@dataclass(frozen=True)
+class Ballasting:
+    """Where the weights go and what that gives.
+
+    Attributes
+    ----------
+    positions_m
+        Shape ``(weights, 3)``.
+    body
+        The ballasted model's ten parameters, as :class:`analysis.inertia.parts.Part` has them.
+    errors
+        Reached less wanted, by name (``mass_kg``, ``x_m``, ``yaw_m`` ...), for what was asked.
+    feasible
+        Whether all errors are within the tolerances.
+    message
+        Says so, and how near it gets where not.
+    """
+
+    positions_m: FloatArray
+    body: FloatArray
+    errors: dict[str, float]
+    feasible: bool
+    message: str
+
+
+def place_ballast(
+    base: Part, weights: Sequence[Weight], target: Target, *, seed: int = 0
+) -> Ballasting:
+    """Find the weights' places by bounded least squares from several starts.
+
+    Among equal solutions the one nearest to the boxes' middles is taken.
+
+    Raises
+    ------
+    ConfigurationError
+        For no weights, a mass that is not above zero, or a box whose corners are swapped.
+    """
+    from scipy.optimize import least_squares
+
+    _check(weights)
+    low = np.array([one.low_m for one in weights]).ravel()
+    high = np.array([one.high_m for one in weights]).ravel()
+    free = high > low
+    middle = 0.5 * (low + high)
+
+    def full(place: FloatArray) -> FloatArray:
+        everything = middle.copy()
+        everything[free] = place
+        return everything
+
+    def misfit(place: FloatArray) -> FloatArray:
+        errors = _errors(_body(base, weights, full(place)), target)
+        held = 1e-4 * (place - middle[free]) / (high - low)[free]
+        return np.concatenate(
+            [[_scaled(key, value, target) for key, value in errors.items()], held]
+        )
+
+    best = middle
+    if free.any():
+        generator = np.random.default_rng(seed)
+        starts = [middle[free]]
+        starts += [generator.uniform(low[free], high[free]) for _ in range(_STARTS)]
+        solved = [
+            least_squares(misfit, start, bounds=(low[free], high[free]), xtol=1e-14, ftol=1e-14)
+            for start in starts
+        ]
+        best = full(np.asarray(min(solved, key=lambda one: float(one.cost)).x))
+    body = _body(base, weights, best)
+    errors = _errors(body, target)
+    worst = {key: value for key, value in errors.items() if abs(_scaled(key, value, target)) > 1.0}
+    return Ballasting(best.reshape(-1, 3), body, errors, not worst, _message(worst, target))
+
+
+def _check(weights: Sequence[Weight]) -> None:
+    if not weights:
+        raise ConfigurationError("ballast: no weights to place; give at least one")
+    for one in weights:
+        swapped = [axis for axis, a, b in zip("xyz", one.low_m, one.high_m, strict=True) if a > b]
+        if not one.mass_kg > 0.0 or swapped:
+            raise ConfigurationError(
+                f"ballast {one.name!r}: mass {one.mass_kg:g} kg must be above 0 and low_m not "
+                f"above high_m (swapped in: {', '.join(swapped) or 'none'})"
+            )
+
+
+def _body(base: Part, weights: Sequence[Weight], place: FloatArray) -> FloatArray:
+    rows = [base.parameters]
+    for one, where in zip(weights, place.reshape(-1, 3), strict=True):
+        own = one.mass_kg * np.array(one.gyradii_m) ** 2
+        rows.append(np.concatenate([[one.mass_kg], where, own, np.zeros(3)]))
+    return _combined(np.array(rows), np.ones(len(rows)))
+
+
+def _errors(body: FloatArray, target: Target) -> dict[str, float]:
+    errors = {}
+    if target.mass_kg is not None:
+        errors["mass_kg"] = float(body[0] - target.mass_kg)
+    for name, value, wanted in zip(_AXES, body[1:4], target.centre_m, strict=True):
+        if wanted is not None:
+            errors[name] = float(value - wanted)
+    gyradii = np.sqrt(np.maximum(body[4:7], 0.0) / body[0])
+    for name, value, wanted in zip(_TURNS, gyradii, target.gyradii_m, strict=True):
+        if wanted is not None:
+            errors[name] = float(value - wanted)
+    return errors
+
+
+def _scaled(key: str, error: float, target: Target) -> float:
+    return error / (target.tolerance_mass_kg if key == "mass_kg" else target.tolerance_m)
+
+
+def _message(worst: dict[str, float], target: Target) -> str:
+    if not worst:
+        return "all targets are met within their tolerances"
+    parts = [
+        f"mass off by {value:+.4g} kg (tolerance {target.tolerance_mass_kg:g}): other weights"
+        if key == "mass_kg"
+        else f"{key.removesuffix('_m')} off by {1e3 * value:+.4g} mm "
+        f"(tolerance {1e3 * target.tolerance_m:g})"
+        for key, value in worst.items()
+    ]
+    return (
+        "not feasible with these weights within these boxes; the nearest: "
+        + "; ".join(parts)
+        + ". Widen the boxes, split the weights, or change their masses"
+    )

@@ -1,0 +1,136 @@
+"""Yaw on a bifilar suspension: lines of length l, a distance 2d apart (eqs 5 to 8 and 13).
+
+T_y = 2 pi (k/d) sqrt(l/g)        T_s = 2 pi sqrt(l/g)        k = d T_y/T_s
+"""
+
+import math
+
+from analysis.inertia.beats import BeatCount, ratio_from_beats
+from analysis.inertia.budget import Correlations
+from analysis.inertia.estimate import Estimate, require_positive
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value, sqrt
+from hardware.description.flags import Flag, Severity
+
+NEAR_RESONANCE = 0.05
+
+
+def sway_period(line_m: Value, gravity_m_s2: Value) -> Value:
+    """Period of sway (eq 7): the lines' own."""
+    return 2.0 * math.pi * sqrt(line_m / gravity_m_s2)
+
+
+def yaw_period(
+    gyradius_m: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
+) -> Value:
+    """Period of yaw at small angles (eq 5)."""
+    return gyradius_m / half_spacing_m * sway_period(line_m, gravity_m_s2)
+
+
+def yaw_gyradius(
+    period_s: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
+) -> Value:
+    """Gyradius from the period and the lines (eq 6)."""
+    return period_s * half_spacing_m / (2.0 * math.pi) * sqrt(gravity_m_s2 / line_m)
+
+
+def ratio_gyradius(yaw_period_s: Value, sway_period_s: Value, half_spacing_m: Value) -> Value:
+    """Gyradius from the ratio of the periods (eq 8): length and gravity drop out."""
+    return half_spacing_m * yaw_period_s / sway_period_s
+
+
+def yaw_from_period(
+    period: Estimate,
+    half_spacing: Estimate,
+    line: Estimate,
+    gravity: Estimate,
+    *,
+    seed: int = 0,
+) -> Assessment:
+    """Return the yaw gyradius from period and line length.
+
+    Raises
+    ------
+    ConfigurationError
+        For a value that is not above zero.
+    """
+    require_positive(
+        "bifilar yaw",
+        period_s=period.value,
+        half_spacing_m=half_spacing.value,
+        line_m=line.value,
+        gravity_m_s2=gravity.value,
+    )
+    inputs = {
+        "period_s": period,
+        "half_spacing_m": half_spacing,
+        "line_m": line,
+        "gravity_m_s2": gravity,
+    }
+    return assess("k_yaw", yaw_gyradius, inputs, unit="m", seed=seed)
+
+
+def yaw_from_ratio(
+    yaw: Estimate,
+    sway: Estimate,
+    half_spacing: Estimate,
+    *,
+    correlations: Correlations | None = None,
+    seed: int = 0,
+) -> Assessment:
+    """Return the yaw gyradius from the ratio of the periods.
+
+    Parameters
+    ----------
+    correlations
+        By pairs of ``yaw_period_s``, ``sway_period_s``, ``half_spacing_m``: both periods of one
+        record are correlated.
+
+    Raises
+    ------
+    ConfigurationError
+        For a value that is not above zero.
+    """
+    require_positive(
+        "bifilar yaw",
+        yaw_period_s=yaw.value,
+        sway_period_s=sway.value,
+        half_spacing_m=half_spacing.value,
+    )
+    inputs = {"yaw_period_s": yaw, "sway_period_s": sway, "half_spacing_m": half_spacing}
+    return assess("k_yaw", ratio_gyradius, inputs, unit="m", correlations=correlations, seed=seed)
+
+
+def yaw_from_beats(
+    count: BeatCount, half_spacing: Estimate, *, yaw_slower: bool = True, seed: int = 0
+) -> Assessment:
+    """Return the yaw gyradius from counted beats (eq 13).
+
+    Raises
+    ------
+    ConfigurationError
+        For a spacing that is not above zero.
+    DataError
+        If no whole beat was counted.
+    """
+    require_positive("bifilar yaw", half_spacing_m=half_spacing.value)
+
+    def gyradius(oscillations: Value, half_spacing_m: Value) -> Value:
+        return half_spacing_m * ratio_from_beats(oscillations, yaw_slower=yaw_slower)
+
+    inputs = {"oscillations": count.per_beat(), "half_spacing_m": half_spacing}
+    return assess("k_yaw", gyradius, inputs, unit="m", seed=seed)
+
+
+def resonance_flags(yaw_period_s: float, first_pitch_period_s: float) -> tuple[Flag, ...]:
+    """Warn where yaw turns into pitch beats: ``T_y`` within 5 % of ``T_1`` (Kane and Tseng)."""
+    off = yaw_period_s / first_pitch_period_s - 1.0
+    if abs(off) > NEAR_RESONANCE:
+        return ()
+    message = (
+        f"the yaw period {yaw_period_s:.4g} s is {100 * off:+.2g} % from the first pitch mode's "
+        f"{first_pitch_period_s:.4g} s (limit {100 * NEAR_RESONANCE:g} %): yaw and sway together "
+        "turn into pitch and shift the period; change the lines' length or spacing, or excite yaw "
+        "alone"
+    )
+    return (Flag("yaw_pitch_resonance", Severity.WARNING, message),)

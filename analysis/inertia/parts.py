@@ -1,0 +1,177 @@
+"""Bodies put together and taken apart by the parallel axis theorem, covariances and all."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.inertia.estimate import Estimate, require_positive
+from analysis.inertia.numeric import FloatArray, jacobian
+from hardware.description.errors import ConfigurationError, DataError
+
+NAMES = ("mass_kg", "x_m", "y_m", "z_m", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
+_SIZE = len(NAMES)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A rigid body with its covariance.
+
+    Attributes
+    ----------
+    name
+        Unique among the parts put together.
+    parameters
+        Mass, centre of gravity (x forward, y to starboard, z down, from a common datum) and inertia
+        about the own centre of gravity: Ixx, Iyy, Izz and the products ``Ixy = sum m x y`` ...,
+        shape ``(10,)``, kg, m, kg m2.
+    covariance
+        Of these, shape ``(10, 10)``.
+    """
+
+    name: str
+    parameters: FloatArray
+    covariance: FloatArray
+
+    @property
+    def mass(self) -> Estimate:
+        """Mass in kg."""
+        return self._estimate(0, "kg")
+
+    @property
+    def centre_of_gravity(self) -> tuple[Estimate, Estimate, Estimate]:
+        """Forward, to starboard and down of the datum, m."""
+        x, y, z = (self._estimate(k, "m") for k in (1, 2, 3))
+        return x, y, z
+
+    @property
+    def inertia(self) -> tuple[Estimate, Estimate, Estimate]:
+        """Roll, pitch and yaw inertia about the own centre of gravity, kg m2."""
+        roll, pitch, yaw = (self._estimate(k, "kg m2") for k in (4, 5, 6))
+        return roll, pitch, yaw
+
+    @property
+    def gyradii(self) -> tuple[Estimate, Estimate, Estimate]:
+        """Roll, pitch and yaw gyradius, m; the covariance with the mass is in them."""
+        mass = float(self.parameters[0])
+        out = []
+        for k in (4, 5, 6):
+            inertia = max(float(self.parameters[k]), 0.0)
+            gyradius = float(np.sqrt(inertia / mass))
+            slope = np.zeros(_SIZE)
+            if gyradius > 0.0:
+                slope[k] = 0.5 / (mass * gyradius)
+                slope[0] = -0.5 * gyradius / mass
+            spread = float(np.sqrt(max(slope @ self.covariance @ slope, 0.0)))
+            out.append(Estimate(gyradius, spread, "m"))
+        return out[0], out[1], out[2]
+
+    def _estimate(self, k: int, unit: str) -> Estimate:
+        spread = float(np.sqrt(max(self.covariance[k, k], 0.0)))
+        return Estimate(float(self.parameters[k]), spread, unit)
+
+
+def part(
+    name: str,
+    mass: Estimate,
+    position: tuple[Estimate, Estimate, Estimate],
+    gyradii: tuple[Estimate, Estimate, Estimate],
+    products_kg_m2: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Part:
+    """Make a part from mass, centre of gravity and gyradii.
+
+    Parameters
+    ----------
+    gyradii
+        Roll, pitch, yaw; 0 for a point mass. Their products with the mass tie inertia to mass.
+    products_kg_m2
+        ``Ixy``, ``Ixz``, ``Iyz``, without uncertainty.
+
+    Raises
+    ------
+    ConfigurationError
+        For a mass that is not above zero, or a negative gyradius.
+    """
+    require_positive(f"part {name!r}", mass_kg=mass.value)
+    if min(gyradius.value for gyradius in gyradii) < 0.0:
+        raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
+    inputs = (mass, *position, *gyradii)
+    at = np.array([one.value for one in inputs])
+
+    def turn(given: FloatArray) -> FloatArray:
+        inertia = given[0] * given[4:7] ** 2
+        return np.concatenate([given[:4], inertia, np.array(products_kg_m2)])
+
+    slope = jacobian(turn, at)
+    spread = np.array([one.uncertainty for one in inputs])
+    return Part(name, np.asarray(turn(at)), (slope * spread**2) @ slope.T)
+
+
+def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -> Part:
+    """Put parts together and take others away.
+
+    What is taken away is taken to be independent of the whole that it was measured in.
+
+    Parameters
+    ----------
+    without
+        Parts (frame, mount) that are in ``parts`` and shall not be.
+
+    Raises
+    ------
+    ConfigurationError
+        For no parts.
+    DataError
+        If no mass is left.
+    """
+    everything = [*parts, *without]
+    if not parts:
+        raise ConfigurationError(f"{name!r}: no parts to combine; at least one is needed")
+    signs = np.array([1.0] * len(parts) + [-1.0] * len(without))
+    at = np.concatenate([one.parameters for one in everything])
+    left = float(signs @ at[::_SIZE])
+    if left <= 0.0:
+        raise DataError(
+            f"{name!r}: {left:.4g} kg would be left; the parts taken away weigh more than the whole"
+        )
+
+    def put(stacked: FloatArray) -> FloatArray:
+        return _combined(stacked.reshape(-1, _SIZE), signs)
+
+    slope = jacobian(put, at)
+    covariance = np.zeros((at.size, at.size))
+    for k, one in enumerate(everything):
+        block = slice(k * _SIZE, (k + 1) * _SIZE)
+        covariance[block, block] = one.covariance
+    return Part(name, np.asarray(put(at)), slope @ covariance @ slope.T)
+
+
+def _combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
+    """Combine parameter rows, shape ``(parts, 10)``; complex rows carry a derivative."""
+    mass = signs * rows[:, 0]
+    total = mass.sum()
+    centre = (mass @ rows[:, 1:4]) / total
+    own = signs @ rows[:, 4:]
+    return np.concatenate([[total], centre, own + mass @ _shifted(rows[:, 1:4] - centre)])
+
+
+def _shifted(place: FloatArray) -> FloatArray:
+    """Inertia of unit masses at places, shape ``(parts, 6)``."""
+    x, y, z = place[:, 0], place[:, 1], place[:, 2]
+    return np.stack([y * y + z * z, z * z + x * x, x * x + y * y, x * y, x * z, y * z], axis=1)
+
+
+def inertia_about(body: Part, point: tuple[float, float, float]) -> tuple[Estimate, ...]:
+    """Return roll, pitch and yaw inertia about axes through a point, kg m2."""
+
+    def moved(given: FloatArray) -> FloatArray:
+        place = (given[1:4] - np.array(point)).reshape(1, 3)
+        return np.asarray(given[4:7] + given[0] * _shifted(place)[0, :3])
+
+    slope = jacobian(moved, body.parameters)
+    covariance = slope @ body.covariance @ slope.T
+    values = moved(body.parameters)
+    return tuple(
+        Estimate(float(values[k]), float(np.sqrt(max(covariance[k, k], 0.0))), "kg m2")
+        for k in range(3)
+    )

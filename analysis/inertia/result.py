@@ -1,0 +1,200 @@
+"""What a test ends in: mass, centre of gravity, inertia and gyradii with their uncertainties."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from analysis.inertia.budget import Budget
+from analysis.inertia.estimate import Estimate
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag
+from hardware.description.oscillator import Plane
+
+
+@dataclass(frozen=True)
+class InertiaResult:
+    """Mass properties of a model.
+
+    Attributes
+    ----------
+    cg_x, cg_z
+        Centre of gravity from the midpoint between the struts, forward and down positive, m.
+    gyradii
+        About axes through the centre of gravity: some of ``roll``, ``pitch``, ``yaw``, m.
+    budgets
+        Where each number comes from.
+    correlations
+        Between ``mass_kg``, ``cg_x_m``, ``cg_z_m`` and the gyradii, by pairs of names.
+    """
+
+    name: str
+    mass: Estimate
+    cg_x: Estimate
+    cg_z: Estimate
+    gyradii: Mapping[str, Estimate]
+    budgets: tuple[Budget, ...] = ()
+    flags: tuple[Flag, ...] = ()
+    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    def inertia(self, axis: str) -> Estimate:
+        """Return the moment of inertia about the axis through the centre of gravity, kg m2.
+
+        Raises
+        ------
+        ConfigurationError
+            If that axis was not measured.
+        """
+        gyradius = self._gyradius(axis)
+        value = self.mass.value * gyradius.value**2
+        spread = value * math.hypot(self.mass.relative, 2.0 * gyradius.relative)
+        return Estimate(value, spread, "kg m2", gyradius.degrees_of_freedom)
+
+    def about_midpoint(self, plane: Plane) -> Estimate:
+        """Return the inertia that a campaign in this plane needs, about the struts' midpoint.
+
+        Pitch for the vertical plane, yaw for the horizontal one.
+        """
+        own = self.inertia("pitch" if plane is Plane.VERTICAL else "yaw")
+        arms = (self.cg_x, self.cg_z) if plane is Plane.VERTICAL else (self.cg_x,)
+        square = sum(arm.value**2 for arm in arms)
+        # the mass enters both parts: m (k^2 + square)
+        by_mass = (own.value / self.mass.value + square) * self.mass.uncertainty
+        by_gyradius = math.sqrt(
+            max(own.uncertainty**2 - (own.value * self.mass.relative) ** 2, 0.0)
+        )
+        by_arms = [2.0 * self.mass.value * arm.value * arm.uncertainty for arm in arms]
+        spread = math.hypot(by_mass, by_gyradius, *by_arms)
+        value = own.value + self.mass.value * square
+        return Estimate(value, spread, "kg m2", own.degrees_of_freedom)
+
+    def body(self, plane: Plane) -> Body:
+        """Return the model as campaigns, simulator and coefficients know it."""
+        return Body(
+            self.mass.value, self.about_midpoint(plane).value, self.cg_x.value, self.cg_z.value
+        )
+
+    def _gyradius(self, axis: str) -> Estimate:
+        if axis not in self.gyradii:
+            known = ", ".join(self.gyradii) or "none"
+            raise ConfigurationError(
+                f"{self.name}: no {axis} gyradius was measured (have: {known})"
+            )
+        return self.gyradii[axis]
+
+    def numbers(self) -> dict[str, object]:
+        """Return everything as JSON takes it."""
+        quantities = {"mass_kg": self.mass, "cg_x_m": self.cg_x, "cg_z_m": self.cg_z}
+        quantities |= {f"k_{axis}_m": value for axis, value in self.gyradii.items()}
+        quantities |= {f"i_{axis}_kg_m2": self.inertia(axis) for axis in self.gyradii}
+        return {
+            "name": self.name,
+            "quantities": {key: estimate_numbers(value) for key, value in quantities.items()},
+            "correlations": [
+                {"between": list(pair), "coefficient": r} for pair, r in self.correlations.items()
+            ],
+            "budgets": {
+                budget.name: [
+                    {key: _finite(value) for key, value in row.items()} for row in budget.table()
+                ]
+                for budget in self.budgets
+            },
+            "flags": [
+                {"code": flag.code, "severity": str(flag.severity), "message": flag.message}
+                for flag in self.flags
+            ],
+        }
+
+
+def estimate_numbers(estimate: Estimate) -> dict[str, object]:
+    """Return an estimate as JSON takes it; infinite degrees of freedom are ``null``."""
+    low, high = estimate.interval()
+    return {
+        "value": estimate.value,
+        "standard_uncertainty": estimate.uncertainty,
+        "degrees_of_freedom": _finite(estimate.degrees_of_freedom),
+        "interval_95": [low, high],
+        "unit": estimate.unit,
+    }
+
+
+def _finite(value: float | str) -> float | str | None:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def model_toml(result: InertiaResult, plane: Plane) -> str:
+    """Return the ``[model]`` table of a campaign, and its uncertainties beside it.
+
+    ``[model]`` has the keys of :class:`hardware.description.body.Body`; ``[model_uncertainty]`` has
+    the standard uncertainties under the same keys and the inertia's degrees of freedom.
+
+    Raises
+    ------
+    ConfigurationError
+        If the plane's gyradius was not measured.
+    """
+    inertia = result.about_midpoint(plane)
+    axis = "transverse" if plane is Plane.VERTICAL else "vertical"
+    rows = {
+        "mass_kg": result.mass,
+        "inertia_kg_m2": inertia,
+        "cg_x_m": result.cg_x,
+        "cg_z_m": result.cg_z,
+    }
+    lines = [f"# {_one_line(result.name)}: inertia about the {axis} axis through the midpoint"]
+    lines.append("[model]")
+    lines += [f"{key} = {value.value!r}" for key, value in rows.items()]
+    lines += ["", "[model_uncertainty]  # standard uncertainties, one sigma"]
+    lines += [f"{key} = {value.uncertainty!r}" for key, value in rows.items()]
+    freedom = inertia.degrees_of_freedom
+    lines.append(f"inertia_degrees_of_freedom = {freedom if math.isfinite(freedom) else 'inf'}")
+    return "\n".join(lines) + "\n"
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A measured value against a target.
+
+    Attributes
+    ----------
+    verdict
+        ``pass`` where the whole interval of 95 % lies within the tolerance, ``fail`` where none of
+        it does, ``undecided`` between: measure better.
+    """
+
+    name: str
+    measured: Estimate
+    target: float
+    tolerance: float
+    verdict: str
+    message: str
+
+
+def compare_with_target(
+    name: str, measured: Estimate, target: float, tolerance: float
+) -> Comparison:
+    """Compare with the target or a design value, within the uncertainty.
+
+    Raises
+    ------
+    ConfigurationError
+        If the tolerance is not above zero.
+    """
+    if not tolerance > 0.0:
+        raise ConfigurationError(f"{name}: a tolerance of {tolerance:g}; it must be above 0")
+    low, high = measured.interval()
+    if low >= target - tolerance and high <= target + tolerance:
+        verdict = "pass"
+    elif high < target - tolerance or low > target + tolerance:
+        verdict = "fail"
+    else:
+        verdict = "undecided"
+    message = (
+        f"{name}: {measured.value:.5g} ({low:.5g} to {high:.5g}) {measured.unit} against "
+        f"{target:.5g} +- {tolerance:.2g}: {verdict}"
+    )
+    return Comparison(name, measured, target, tolerance, verdict, message)
