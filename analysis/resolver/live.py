@@ -26,6 +26,7 @@ from hardware.description.errors import DataError
 FloatArray = NDArray[np.float64]
 
 _NEIGHBOURS = 7  # periods whose median is the present one
+_SLACK = 1e-6  # samples: a pulse on the very first or last one is stamped so near it
 
 
 @dataclass(frozen=True)
@@ -83,13 +84,17 @@ class LiveResolver:
         self._first = 0  # number of the buffer's first sample
         self._count = 0  # samples received
         self._pulses: deque[float] = deque()  # not yet closed: the opening, then those to come
-        self._intervals: deque[float] = deque(maxlen=_NEIGHBOURS)
+        self._last_pulse_s = -np.inf
+        self._intervals: deque[float] = deque(maxlen=_NEIGHBOURS)  # between any two pulses
         self._done: deque[_Period] = deque(maxlen=periods)
         self._partial: Sums | None = None
         self._partial_to = 0
 
     def push(self, samples: FloatArray) -> list[Harmonics]:
         """Take a block, shape ``(channels, samples)``; return the readings it made final.
+
+        Pulses may come late, but the first one no later than samples of one second after it and the
+        block in which these lie. A gate in which every period has missing samples gives no reading.
 
         Raises
         ------
@@ -100,16 +105,19 @@ class LiveResolver:
             raise DataError(
                 f"a block of shape {samples.shape} does not fit {len(self._run.channels)} channels"
             )
-        self._append(samples)
         if not self._pulses and self._count - self._first > 2.0 * self._run.sample_rate_hz:
             self._keep_from(self._count - int(self._run.sample_rate_hz))
+        self._append(samples)
         return self._close_periods()
 
     def pulse(self, time_s: float) -> list[Harmonics]:
         """Take a photocell pulse; return the readings it made final.
 
-        A pulse too soon after the last is dropped; one so late that pulses were missed closes as
-        many periods as have passed.
+        A pulse too soon after the last is dropped, among them any that leaves too few samples for
+        the highest harmonic; one so late that pulses were missed closes as many periods as have
+        passed. Whether a pulse is stray shows only by those after it: what the batch drops later
+        may have closed a period here, and the first periods of a run that speeds up may be counted
+        wrongly until seven pulses have come.
 
         Raises
         ------
@@ -117,14 +125,18 @@ class LiveResolver:
             If it does not come after the last pulse.
         """
         time_s -= self._latency_s
-        if self._pulses:
-            interval = time_s - self._pulses[-1]
-            if interval <= 0.0:
-                raise DataError(f"pulse at {time_s:.6f} s comes {-interval:.6f} s before the last")
-            for part in self._split(interval):
-                self._pulses.append(part)
-        else:
+        since_last = time_s - self._last_pulse_s
+        if not since_last > 0.0:
+            raise DataError(
+                f"pulse at {time_s:.6f} s does not come after the last at {self._last_pulse_s:.6f} "
+                "s; pulses must be given in order of time, each once"
+            )
+        self._last_pulse_s = time_s
+        if not self._pulses:
             self._pulses.append(time_s)
+        elif since_last * self._run.sample_rate_hz > 2.0 * self._orders[-1]:
+            self._pulses.extend(self._split(time_s - self._pulses[-1]))
+            self._intervals.append(since_last)
         return self._close_periods()
 
     def finish(self) -> list[Harmonics]:
@@ -163,20 +175,26 @@ class LiveResolver:
         if interval < EARLY * usual:
             return []
         turns = 1 if interval < LATE * usual else round(interval / usual)
-        self._intervals.append(interval / turns)
         return [last + interval * k / turns for k in range(1, turns + 1)]
 
     def _close_periods(self, reach: int = REACH) -> list[Harmonics]:
         readings = []
-        while len(self._pulses) > 1 and self._number(self._pulses[1]) + reach <= self._count - 1:
+        while (
+            len(self._pulses) > 1
+            and self._number(self._pulses[1]) + reach <= self._count - 1 + _SLACK
+        ):
             opened_s = self._pulses.popleft()
-            if self._number(opened_s) >= 0.0:
+            if self._number(opened_s) > self._first - _SLACK:
                 self._done.append(self._sum(opened_s, self._pulses[0]))
-                if len(self._done) == self._periods:
+                if len(self._done) == self._periods and self._any_sound():
                     readings.append(self._read())
             self._cycle += 1.0
             self._forget()
         return readings
+
+    def _any_sound(self) -> bool:
+        """Tell whether a period of the gate has all its samples."""
+        return any(np.isfinite(period.sums[1]).all() for period in self._done)
 
     def _number(self, time_s: float) -> float:
         """Fractional sample number of a time, from the run's first sample."""
@@ -184,9 +202,10 @@ class LiveResolver:
 
     def _sum(self, opened_s: float, closed_s: float) -> _Period:
         rate = self._run.sample_rate_hz
-        edges = [self._number(time) - self._first for time in (opened_s, closed_s)]
-        gate = Gates(*np.array([*edges, self._cycle, self._cycle + 1.0])[:, None])
         held = self._buffer[:, : self._count - self._first]
+        edges = np.array([self._number(time) - self._first for time in (opened_s, closed_s)])
+        edges = np.clip(edges, 0.0, held.shape[1] - 1.0)
+        gate = Gates(*np.array([*edges, self._cycle, self._cycle + 1.0])[:, None])
         if edges[0] < REACH - 1 or edges[1] >= held.shape[1] - REACH:  # a run's very ends
             gram, moment, ramp = sum_any(held, gate, gate.cycles_of_first, self._orders)
         else:
