@@ -28,7 +28,7 @@ def run(command: str) -> str:
 def test_the_example_prints_what_the_readme_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(HOUSE)
     (command,) = (block for block in blocks("sh") if "heave.toml" in block)
-    (shown,) = blocks("")
+    (shown,) = blocks("text")
     printed = [line.rstrip() for line in run(command.strip()).splitlines()]
     for line in shown.splitlines():
         assert line in {*printed, "..."}
