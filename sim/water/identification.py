@@ -114,7 +114,7 @@ def _best(target: Target, ladder: Ladder, candidates: Iterable[FloatArray]) -> F
 
 
 def _fades(target: Target, ladder: Ladder, numbers: FloatArray) -> bool:
-    """Tell whether the slowest state fades: one that does not is an artefact between frequencies."""
+    """Tell whether the slowest state fades; one that does not is an artefact of the fit."""
     slowest = np.linalg.eigvals(ladder.matrices(numbers).state).real.max()
     return bool(slowest < -_SLOWEST_FADING * target.omega[0])
 
