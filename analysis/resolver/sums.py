@@ -96,7 +96,7 @@ def whole_periods(
     start, end = recording.start_s, recording.end_s
     low, high = reference.cycles_at(np.array([start, end]))
     low, high = max(low, reference.cycles[0]), min(high, reference.cycles[-1])
-    slack = 1e-9 * max(1.0, abs(high))  # a record that ends on the very edge holds that period
+    slack = _slack(high)
     opening = reference.cycles[0] if first_cycle is None else first_cycle
     opening += np.ceil(low - opening - slack)
     count = int(np.floor(high - opening + slack))
@@ -106,6 +106,11 @@ def whole_periods(
             f"{start:.3f} s and {end:.3f} s; at least one whole period is needed"
         )
     return np.asarray(opening + np.arange(count + 1))
+
+
+def _slack(cycles: float) -> float:
+    """Rounding of a reference, in cycles: a record that ends on the very edge holds that period."""
+    return 1e-9 * max(1.0, abs(cycles))
 
 
 def period_sums(
@@ -132,12 +137,13 @@ def period_sums(
     Raises
     ------
     DataError
-        If a period has too few samples for the highest order, or there is no whole period.
+        If a period has too few samples for the highest order, lies outside the record, or there is
+        no whole period.
     """
     orders = np.arange(1.0, orders + 1.0) if isinstance(orders, int) else orders
     cycles = whole_periods(recording, reference) if edges_cycles is None else edges_cycles
     edges_s = reference.times_at(cycles)
-    numbers = np.clip(recording.sample_number(edges_s), 0.0, recording.sample_count - 1.0)
+    numbers = _sample_numbers(recording, cycles, edges_s)
     gates = Gates(numbers[:-1], numbers[1:], cycles[:-1], cycles[1:])
     _check_sampling(recording, gates, orders)
     general = _General(recording, reference, orders, taper)
@@ -168,6 +174,29 @@ def period_sums(
 def _put(into: Sums, where: NDArray[np.bool_] | np.intp, sums: Sums) -> None:
     for target, part in zip(into, sums, strict=True):
         target[where] = part
+
+
+def _sample_numbers(recording: Recording, cycles: FloatArray, edges_s: FloatArray) -> FloatArray:
+    """Turn the edges' times into sample numbers.
+
+    Raises
+    ------
+    DataError
+        If an edge lies outside the record, or the record is shorter than an edge's weights reach.
+    """
+    if recording.sample_count < 2 * REACH:
+        raise DataError(
+            f"{recording.name}: {recording.sample_count} samples are too few; "
+            f"at least {2 * REACH} are needed"
+        )
+    numbers, last = recording.sample_number(edges_s), recording.sample_count - 1.0
+    slack = 2.0 * _slack(cycles[-1]) * np.diff(numbers).max() + 1e-6
+    if numbers[0] < -slack or numbers[-1] > last + slack:
+        raise DataError(
+            f"{recording.name}: the gate from {edges_s[0]:.3f} s to {edges_s[-1]:.3f} s is not "
+            f"within the record, {recording.start_s:.3f} s to {recording.end_s:.3f} s"
+        )
+    return np.asarray(np.clip(numbers, 0.0, last))
 
 
 def _check_sampling(recording: Recording, gates: Gates, orders: FloatArray) -> None:
@@ -212,13 +241,16 @@ class _General:
             self.orders, np.arange(1.0, len(self.orders) + 1.0)
         ):
             return np.ones(len(gates.opening), dtype=np.bool_)
+        starts_early = gates.opening < REACH - 1
+        ends_late = gates.closing >= self.recording.sample_count - REACH
+        return np.asarray(self._bent(gates) | starts_early | ends_late)
+
+    def _bent(self, gates: Gates) -> NDArray[np.bool_]:
+        """Tell in which periods the phase does not run straight."""
         inside = 1e-9 * (gates.closing_cycle - gates.opening_cycle)
         knots = self.reference.cycles
         after = np.searchsorted(knots, gates.opening_cycle + inside, side="right")
-        bent = np.searchsorted(knots, gates.closing_cycle - inside, side="left") > after
-        starts_early = gates.opening < REACH - 1
-        ends_late = gates.closing >= self.recording.sample_count - REACH
-        return np.asarray(bent | starts_early | ends_late)
+        return np.asarray(np.searchsorted(knots, gates.closing_cycle - inside, side="left") > after)
 
     def empty(self, periods: int) -> Sums:
         """Room for the sums of some periods."""
@@ -237,7 +269,11 @@ class _General:
             since_start_s = (first + numbers) / self.recording.sample_rate_hz
             return self.reference.cycles_at(self.recording.start_s + since_start_s)
 
-        return sum_any(block, gate, cycles, self.orders, self.taper)
+        # The few samples beyond either edge take part in the same line, as in the quick sums.
+        straight = self.taper is None and not self._bent(gate)[0]
+        return sum_any(
+            block, gate, gate.cycles_of_first if straight else cycles, self.orders, self.taper
+        )
 
 
 def sum_any(

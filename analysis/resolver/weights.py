@@ -82,10 +82,10 @@ def gate_weights(opening: float, closing: float, count: int) -> tuple[int, Float
     Parameters
     ----------
     opening, closing
-        Fractional sample numbers, ``0 <= opening < closing <= count - 1``.
+        Fractional sample numbers, ``0 <= opening <= closing - 2``, ``closing <= count - 1``.
     count
-        Number of samples there are. Near either end of a record the samples that an edge would need
-        beyond it are continued by a polynomial through the last six.
+        Number of samples there are, six or more. Near either end of a record the samples that an
+        edge would need beyond it are continued by a polynomial through the last six.
 
     Returns
     -------
