@@ -186,8 +186,7 @@ def _sample_numbers(recording: Recording, cycles: FloatArray, edges_s: FloatArra
     """
     if recording.sample_count < 2 * REACH:
         raise DataError(
-            f"{recording.name}: {recording.sample_count} samples are too few; "
-            f"at least {2 * REACH} are needed"
+            f"{recording.name}: {recording.sample_count} samples are too few; at least {2 * REACH} needed"
         )
     numbers, last = recording.sample_number(edges_s), recording.sample_count - 1.0
     slack = 2.0 * _slack(cycles[-1]) * np.diff(numbers).max() + 1e-6
@@ -271,9 +270,8 @@ class _General:
 
         # The few samples beyond either edge take part in the same line, as in the quick sums.
         straight = self.taper is None and not self._bent(gate)[0]
-        return sum_any(
-            block, gate, gate.cycles_of_first if straight else cycles, self.orders, self.taper
-        )
+        turned = gate.cycles_of_first if straight else cycles
+        return sum_any(block, gate, turned, self.orders, self.taper)
 
 
 def sum_any(
