@@ -186,7 +186,8 @@ def _sample_numbers(recording: Recording, cycles: FloatArray, edges_s: FloatArra
     """
     if recording.sample_count < 2 * REACH:
         raise DataError(
-            f"{recording.name}: {recording.sample_count} samples are too few; at least {2 * REACH} needed"
+            f"{recording.name}: {recording.sample_count} samples are too few; "
+            f"at least {2 * REACH} are needed"
         )
     numbers, last = recording.sample_number(edges_s), recording.sample_count - 1.0
     slack = 2.0 * _slack(cycles[-1]) * np.diff(numbers).max() + 1e-6
