@@ -24,7 +24,7 @@ from sim.water.tables import RadiationTable
 COUPLING_IS_NOISE: Final = 1e-4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FittedMemory:
     """A memory and how well it reproduces the table that it was fitted to.
 
@@ -60,7 +60,7 @@ def fit_memory(
 
     Least squares of the relative deviations from several starting points, drawn around the peak of
     the damping; the best is kept. Where the degrees of freedom are coupled, both are fitted once
-    more together.
+    more together. It takes one to three seconds: keep the result.
 
     Parameters
     ----------

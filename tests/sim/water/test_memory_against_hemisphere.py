@@ -6,13 +6,14 @@ of which the whole is used where it is present.
 
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hardware.description.oscillator import Plane
-from sim.water.memory import fit_memory
+from sim.water.memory import FittedMemory, fit_memory
 from sim.water.table_files import read_heave_csv
 from sim.water.tables import RadiationTable
 
@@ -46,11 +47,16 @@ def hemisphere(rows: slice | list[int] = slice(None)) -> RadiationTable:
     )
 
 
+@cache
+def fitted(states: int = 6) -> FittedMemory:
+    return fit_memory(hemisphere(), states)
+
+
 @pytest.mark.parametrize(("states", "reached"), [(5, 0.0015), (6, 1e-4)])
 def test_five_and_six_states_reach_the_multipole_solution(states: int, reached: float) -> None:
     """0.2 % was asked for; each value relative to itself, not to the peak."""
     table = hemisphere()
-    fit = fit_memory(table, states)
+    fit = fitted(states)
     for found, true in (
         (fit.radiation.added_mass(table.omega_rad_s), table.added_mass),
         (fit.radiation.damping(table.omega_rad_s), table.damping),
@@ -76,17 +82,17 @@ def test_shared_table_reads_the_same_and_fits_as_well() -> None:
 
 def test_infinite_frequency_is_half_the_displaced_mass() -> None:
     """At infinite frequency the hemisphere and its image are a sphere in unbounded fluid: m/2."""
-    added = fit_memory(hemisphere()).radiation.added_mass_infinite
+    added = fitted().radiation.added_mass_infinite
     assert added[0, 0] == pytest.approx(SPHERE_MASS / 2.0, rel=1e-3)
 
 
 def test_zero_frequency_is_the_double_body_limit() -> None:
     """Hulme's limit for long waves, 0.8310 of the displaced mass, far below the table's range."""
-    added = fit_memory(hemisphere()).radiation.added_mass(0.0)
+    added = fitted().radiation.added_mass(0.0)
     assert added[0, 0] == pytest.approx(0.8310 * SPHERE_MASS, rel=0.02)
 
 
-@pytest.mark.parametrize("left_out", [1, 3, 5, 7, 9, 10])
+@pytest.mark.parametrize("left_out", [1, 4, 8])
 def test_predicts_a_frequency_that_it_has_not_seen(left_out: int) -> None:
     """The memory does not bend between the points: a tenth of a percent of the peak, or so."""
     others = [i for i in range(len(VALUES)) if i != left_out]
@@ -104,7 +110,5 @@ def test_known_infinite_frequency_is_kept() -> None:
 
 
 def test_the_same_seed_gives_the_same_memory() -> None:
-    assert (
-        fit_memory(hemisphere(), 4, seed=3).radiation
-        == fit_memory(hemisphere(), 4, seed=3).radiation
-    )
+    one, two = (fit_memory(hemisphere(), 4, starts=2).radiation for _ in range(2))
+    assert one == two
