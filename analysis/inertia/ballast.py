@@ -1,4 +1,4 @@
-"""Where to put given weights, so that a model has its target mass, centre of gravity and gyradii."""
+"""Where to put given weights for a target mass, centre of gravity and gyradii."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.numeric import FloatArray
-from analysis.inertia.parts import Part, _combined
+from analysis.inertia.parts import Part, combined
 from hardware.description.errors import ConfigurationError
 
 _STARTS = 12
@@ -100,7 +100,7 @@ def place_ballast(
     middle = 0.5 * (low + high)
 
     def full(place: FloatArray) -> FloatArray:
-        everything = middle.copy()
+        everything: FloatArray = middle.copy()
         everything[free] = place
         return everything
 
@@ -144,7 +144,7 @@ def _body(base: Part, weights: Sequence[Weight], place: FloatArray) -> FloatArra
     for one, where in zip(weights, place.reshape(-1, 3), strict=True):
         own = one.mass_kg * np.array(one.gyradii_m) ** 2
         rows.append(np.concatenate([[one.mass_kg], where, own, np.zeros(3)]))
-    return _combined(np.array(rows), np.ones(len(rows)))
+    return combined(np.array(rows), np.ones(len(rows)))
 
 
 def _errors(body: FloatArray, target: Target) -> dict[str, float]:

@@ -1,5 +1,6 @@
 """Bodies put together and taken apart by the parallel axis theorem, covariances and all."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -56,8 +57,7 @@ class Part:
         mass = float(self.parameters[0])
         out = []
         for k in (4, 5, 6):
-            inertia = max(float(self.parameters[k]), 0.0)
-            gyradius = float(np.sqrt(inertia / mass))
+            gyradius = math.sqrt(max(float(self.parameters[k]), 0.0) / mass)
             slope = np.zeros(_SIZE)
             if gyradius > 0.0:
                 slope[k] = 0.5 / (mass * gyradius)
@@ -93,7 +93,7 @@ def part(
         For a mass that is not above zero, or a negative gyradius.
     """
     require_positive(f"part {name!r}", mass_kg=mass.value)
-    if min(gyradius.value for gyradius in gyradii) < 0.0:
+    if any(gyradius.value < 0.0 for gyradius in gyradii):
         raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
     inputs = (mass, *position, *gyradii)
     at = np.array([one.value for one in inputs])
@@ -136,7 +136,7 @@ def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -
         )
 
     def put(stacked: FloatArray) -> FloatArray:
-        return _combined(stacked.reshape(-1, _SIZE), signs)
+        return combined(stacked.reshape(-1, _SIZE), signs)
 
     slope = jacobian(put, at)
     covariance = np.zeros((at.size, at.size))
@@ -146,8 +146,8 @@ def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -
     return Part(name, np.asarray(put(at)), slope @ covariance @ slope.T)
 
 
-def _combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
-    """Combine parameter rows, shape ``(parts, 10)``; complex rows carry a derivative."""
+def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
+    """Combine parameters, shape ``(parts, 10)``, by the signs of the parts; complex ones too."""
     mass = signs * rows[:, 0]
     total = mass.sum()
     centre = (mass @ rows[:, 1:4]) / total

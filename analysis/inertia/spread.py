@@ -1,12 +1,13 @@
-"""One body, several suspensions: do the gyradii agree, and if not, what would make them?
+"""One body on several suspensions: whether the gyradii agree, and what would make them.
 
 Each possible cause is one number that all geometries share. It is fitted with the gyradius to the
 periods' gyradii; the cause that leaves least over is the likeliest.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -20,7 +21,7 @@ DISAGREE = 0.01
 
 @dataclass(frozen=True)
 class Geometry:
-    """One suspension of the body: its gyradius as it came out, half spacing and line length in m."""
+    """One suspension: the gyradius that came out, half spacing and line length in m."""
 
     name: str
     gyradius: Estimate
@@ -30,23 +31,35 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Cause:
-    """A possible cause of the spread.
+    """A possible cause of the spread, or two of them together.
 
     Attributes
     ----------
-    size
-        In ``unit``.
+    names, sizes, units
+        What, how much, in which unit.
     gyradius_m
         The body's, if that is the cause.
-    chi_squared
-        What it leaves over; the degrees of freedom are geometries less 2.
+    chi_squared, degrees_of_freedom
+        What it leaves over.
     """
 
-    name: str
-    size: float
-    unit: str
+    names: tuple[str, ...]
+    sizes: tuple[float, ...]
+    units: tuple[str, ...]
     gyradius_m: float
     chi_squared: float
+    degrees_of_freedom: int
+
+    @property
+    def explains(self) -> bool:
+        """Whether what it leaves over can be chance (1 %)."""
+        from scipy.stats import chi2
+
+        return float(chi2.sf(self.chi_squared, self.degrees_of_freedom)) >= DISAGREE
+
+    def __str__(self) -> str:
+        parts = zip(self.names, self.sizes, self.units, strict=True)
+        return " and ".join(f"{name}, {size:.3g} {unit}" for name, size, unit in parts)
 
 
 @dataclass(frozen=True)
@@ -99,56 +112,48 @@ def compare_geometries(geometries: Sequence[Geometry]) -> Spread:
     )
 
 
-def _shapes() -> dict[str, tuple[str, Callable[[FloatArray, FloatArray, float], FloatArray]]]:
+def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, FloatArray]]:
     """Relative change of the gyradius squared per unit of each cause."""
     return {
-        "the lines swing about points further apart than measured (length, each pair)": (
-            "m",
-            lambda d, line, k: np.asarray(1.0 / line),
-        ),
-        "the spacing is another than measured (full spacing 2d)": (
-            "m",
-            lambda d, line, k: np.asarray(-1.0 / d),
-        ),
-        "clamps move with the lines (their mass over the body's)": (
-            "1",
-            lambda d, line, k: np.asarray((d / k) ** 2 - 1.0),
-        ),
-        "the lines twist stiffly (stiffness over m g)": (
-            "m",
-            lambda d, line, k: np.asarray(-line / d**2),
-        ),
+        "the lines are longer than measured (knots, clamps, stretch)": ("m", 1.0 / line),
+        "the lines' spacing is wider than measured": ("m", -1.0 / d),
+        "clamps move with the lines (their mass over the body's)": ("1", (d / k) ** 2 - 1.0),
+        "the lines twist stiffly (stiffness over m g)": ("m", -line / d**2),
     }
 
 
 def _causes(geometries: Sequence[Geometry]) -> tuple[Cause, ...]:
-    """Fit each cause, to first order in its size, with the gyradius."""
+    """Fit each cause, and each pair where enough geometries are there, with the gyradius."""
     d = np.array([one.half_spacing_m for one in geometries])
     line = np.array([one.line_m for one in geometries])
     values = np.array([one.gyradius.value for one in geometries])
     weight = values / np.array([one.gyradius.uncertainty for one in geometries])
     k = float(values.mean())
-    relative = np.log(values / k)
+    shapes = _shapes(d, line, k)
     found = []
-    for name, (unit, shape) in _shapes().items():
-        matrix = np.column_stack([np.ones(d.size), 0.5 * shape(d, line, k)])
-        solved, *_ = np.linalg.lstsq(matrix * weight[:, None], relative * weight, rcond=None)
-        left = weight * (relative - matrix @ solved)
-        found.append(
-            Cause(name, float(solved[1]), unit, k * math.exp(float(solved[0])), float(left @ left))
-        )
-    return tuple(sorted(found, key=lambda cause: cause.chi_squared))
+    for size in (1, 2):
+        freedom = d.size - 1 - size
+        for names in combinations(shapes, size) if freedom > 0 else ():
+            matrix = np.column_stack([np.ones(d.size), *(0.5 * shapes[n][1] for n in names)])
+            target = np.log(values / k) * weight
+            solved, *_ = np.linalg.lstsq(matrix * weight[:, None], target, rcond=None)
+            left = target - (matrix * weight[:, None]) @ solved
+            units = tuple(shapes[n][0] for n in names)
+            sizes = tuple(solved[1:].tolist())
+            own = k * math.exp(float(solved[0]))
+            found.append(Cause(names, sizes, units, own, float(left @ left), freedom))
+    # a second cause has to pay for itself (Akaike)
+    return tuple(sorted(found, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
 
 
 def _flag(values: FloatArray, misfit: float, causes: tuple[Cause, ...], scatter: float) -> Flag:
     why = ""
     if causes:
         best = causes[0]
-        freedom = values.size - 2
-        rest = "which explains it" if best.chi_squared < 3.0 * freedom else "which leaves a rest"
+        rest = "which explains it" if best.explains else "which leaves a rest"
         why = (
-            f"; the likeliest single cause: {best.name}, {best.size:.3g} {best.unit}, {rest} "
-            f"(chi-squared {best.chi_squared:.3g} over {freedom})"
+            f"; the likeliest cause: {best}, {rest} (chi-squared {best.chi_squared:.3g} over "
+            f"{best.degrees_of_freedom}, gyradius then {best.gyradius_m:.4f} m)"
         )
     message = (
         f"the gyradii range from {values.min():.4f} to {values.max():.4f} m, beyond their "
