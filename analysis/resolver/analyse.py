@@ -13,6 +13,7 @@ from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
 from analysis.resolver.reference import PhaseReference
+from analysis.resolver.saturation import saturation_flags
 from analysis.resolver.steady import Stretch, find_steady
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from analysis.resolver.weights import REACH
@@ -118,7 +119,10 @@ def analyse(
         sums,
         stretch,
         readings,
-        recording.flags + reference.flags + flags,
+        recording.flags
+        + reference.flags
+        + flags
+        + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
 
 
