@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
+from analysis.resolver.general import sum_any
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.photocell import EARLY, LATE
 from analysis.resolver.straight import Gates, Sums, sum_straight
-from analysis.resolver.sums import PeriodSums, sum_any
+from analysis.resolver.sums import PeriodSums
 from analysis.resolver.template import straight_template
 from analysis.resolver.weights import REACH
 from hardware.description.channels import Channel

@@ -12,25 +12,22 @@ between them gives the uncertainty, and a drift shows in their means. Live and b
 the same functions on the same samples, so their final values are the same.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.recording import Recording
+from analysis.resolver.general import General, Taper
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight import Gates, Sums, sum_straight
-from analysis.resolver.template import template
-from analysis.resolver.weights import REACH, gate_weights
+from analysis.resolver.weights import REACH
 from hardware.description.errors import DataError
 
 FloatArray = NDArray[np.float64]
 
 _READ_SAMPLES = 200_000  # read at a time from a file: large enough to be quick, small in memory
-
-Taper = Callable[[FloatArray], FloatArray]
-"""Extra weight of samples as a function of their cycles."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +143,7 @@ def period_sums(
     numbers = _sample_numbers(recording, cycles, edges_s)
     gates = Gates(numbers[:-1], numbers[1:], cycles[:-1], cycles[1:])
     _check_sampling(recording, gates, orders)
-    general = _General(recording, reference, orders, taper)
+    general = General(recording, reference, orders, taper)
     bent = general.needed(gates)
     parts = []
     for first, last, chosen in _stretches(recording, gates):
@@ -224,77 +221,3 @@ def _stretches(recording: Recording, gates: Gates) -> Iterator[tuple[int, int, s
         stop = max(stop, start + 1)
         yield first, int(gates.closing[stop - 1]) + REACH + 1, slice(start, stop)
         start = stop
-
-
-@dataclass(frozen=True)
-class _General:
-    """Sums of any period: bent phase, any orders, a taper, the ends of the record."""
-
-    recording: Recording
-    reference: PhaseReference
-    orders: FloatArray
-    taper: Taper | None
-
-    def needed(self, gates: Gates) -> NDArray[np.bool_]:
-        """Tell which periods the quick sums cannot take."""
-        if self.taper is not None or not np.array_equal(
-            self.orders, np.arange(1.0, len(self.orders) + 1.0)
-        ):
-            return np.ones(len(gates.opening), dtype=np.bool_)
-        starts_early = gates.opening < REACH - 1
-        ends_late = gates.closing >= self.recording.sample_count - REACH
-        return np.asarray(self._bent(gates) | starts_early | ends_late)
-
-    def _bent(self, gates: Gates) -> NDArray[np.bool_]:
-        """Tell in which periods the phase does not run straight."""
-        inside = 1e-9 * (gates.closing_cycle - gates.opening_cycle)
-        knots = self.reference.cycles
-        after = np.searchsorted(knots, gates.opening_cycle + inside, side="right")
-        return np.asarray(np.searchsorted(knots, gates.closing_cycle - inside, side="left") > after)
-
-    def empty(self, periods: int) -> Sums:
-        """Room for the sums of some periods."""
-        size = 2 * len(self.orders) + 1
-        channels = len(self.recording.channels)
-        return (
-            np.empty((periods, size, size)),
-            np.empty((periods, channels, size)),
-            np.empty((periods, size)),
-        )
-
-    def sum(self, block: FloatArray, first: int, gate: Gates) -> Sums:
-        """Sum one period, given in sample numbers of a block that starts at ``first``."""
-
-        def cycles(numbers: FloatArray) -> FloatArray:
-            since_start_s = (first + numbers) / self.recording.sample_rate_hz
-            return self.reference.cycles_at(self.recording.start_s + since_start_s)
-
-        # The few samples beyond either edge take part in the same line, as in the quick sums.
-        straight = self.taper is None and not self._bent(gate)[0]
-        turned = gate.cycles_of_first if straight else cycles
-        return sum_any(block, gate, turned, self.orders, self.taper)
-
-
-def sum_any(
-    samples: FloatArray,
-    gate: Gates,
-    cycles: Callable[[FloatArray], FloatArray],
-    orders: FloatArray,
-    taper: Taper | None = None,
-) -> Sums:
-    """Sum one period of any phase, at the ends of the record too; the ramp counts samples.
-
-    Parameters
-    ----------
-    cycles
-        Revolutions at some sample numbers.
-    """
-    start, weights = gate_weights(gate.opening[0], gate.closing[0], samples.shape[1])
-    numbers = np.arange(start, start + len(weights), dtype=np.float64)
-    turned = cycles(numbers)
-    if taper is not None:
-        weights = weights * taper(turned)
-    basis = template(turned, orders)
-    weighted = basis * weights
-    values = samples[:, start : start + len(weights)]
-    return weighted @ basis.T, values @ weighted.T, weighted @ numbers
