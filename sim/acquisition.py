@@ -1,5 +1,6 @@
-"""The acquisition: noise, drift and conversion of each channel that the rig records."""
+"""The acquisition: filter, sampling, noise and conversion of each channel that the rig records."""
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -7,8 +8,12 @@ import numpy as np
 
 from hardware.description import channels
 from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError
 from sim import signals
+from sim.amplifier import Carrier, LowPass, delay_weights
+from sim.linear import ComplexArray
 from sim.noise import NoiseState, draw_normal, start_stream
+from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -16,6 +21,9 @@ from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 @dataclass(frozen=True)
 class Digitiser:
     """How one channel is sampled; all values in the channel's unit.
+
+    The signal passes the low-pass and the carrier, is sampled, gets drift and noise, and is limited
+    and rounded.
 
     Attributes
     ----------
@@ -28,14 +36,59 @@ class Digitiser:
     full_scale
         Converter's range to either side of zero; beyond it the samples stay at it. ``None`` for no
         limit.
+    walk_per_sqrt_s
+        The drift part of the noise: a random walk whose standard deviation after t seconds is this
+        times the root of t.
+    offset
+        Added to the signal: a zero offset, or the mounting angle of an encoder.
+    gain
+        Factor of the amplifier.
+    low_pass
+        Amplifier filter; ``None`` for none.
+    carrier
+        ``None`` for a direct-current bridge.
+    delay_s
+        The sample at time t shows the signal at t less this: skew of a scanned channel.
+    hum, hum_hz, hum_phase_rad
+        Amplitude, frequency and phase of a disturbance from the mains; it is sampled as it is, so
+        that it folds.
+
+    Raises
+    ------
+    ConfigurationError
+        If the delay is negative.
     """
 
     noise_rms: float = 0.0
     drift_per_s: float = 0.0
     resolution: float = 0.0
     full_scale: float | None = None
+    walk_per_sqrt_s: float = 0.0
+    offset: float = 0.0
+    gain: float = 1.0
+    low_pass: LowPass | None = None
+    carrier: Carrier | None = None
+    delay_s: float = 0.0
+    hum: float = 0.0
+    hum_hz: float = 50.0
+    hum_phase_rad: float = 0.0
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def __post_init__(self) -> None:
+        if not self.delay_s >= 0.0:
+            raise ConfigurationError(
+                f"delay_s = {self.delay_s:g} must not be negative; delay the other channels instead"
+            )
+
+    def response(self, s: ComplexArray) -> ComplexArray:
+        """Return what filter, carrier, gain and delay make of harmonics at ``s``."""
+        factor: ComplexArray = self.gain * np.exp(-s * self.delay_s)
+        if self.low_pass is not None:
+            factor = factor * self.low_pass.response(s)
+        if self.carrier is not None:
+            factor = factor * math.cos(self.carrier.phase_error_rad)
+        return factor
 
 
 class Line(NamedTuple):
@@ -44,6 +97,27 @@ class Line(NamedTuple):
     channel: Channel
     source: Signal
     digitiser: Digitiser
+
+
+class LineState(NamedTuple):
+    """What a channel remembers.
+
+    Attributes
+    ----------
+    walk, level
+        Stream and present value of the random walk.
+    filtered
+        States of the low-pass; ``None`` before the first sample.
+    before, after
+        The last values before and after the low-pass, newest last.
+    """
+
+    noise: NoiseState
+    walk: NoiseState
+    level: float = 0.0
+    filtered: tuple[float, ...] | None = None
+    before: tuple[float, ...] | None = None
+    after: tuple[float, ...] | None = None
 
 
 # Field of Acquisition (and name of the channel) -> the signal behind it.
@@ -61,7 +135,7 @@ _SOURCES = {
 class Acquisition:
     """The recorded channels, under their standard names; ``None`` where the rig has no such sensor.
 
-    The samples are those of the chain: all channels at the same instants.
+    The samples are those of the chain: all channels at the same instants, but for their delays.
     """
 
     shaft_angle: Digitiser | None = None
@@ -90,34 +164,113 @@ class Acquisition:
         """The recorded channels."""
         return tuple(signals.recorded(line.channel) for line in self.lines)
 
-    def start(self, sample_rate_hz: float, seed: int) -> tuple[NoiseState, ...]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[LineState, ...]:  # noqa: ARG002
         """Return the beginning of each channel's own noise."""
-        return tuple(start_stream(seed, self.name, line.channel.name) for line in self.lines)
+        return tuple(
+            LineState(
+                start_stream(seed, self.name, line.channel.name),
+                start_stream(seed, self.name, line.channel.name, "walk"),
+            )
+            for line in self.lines
+        )
 
     def run(
-        self, state: tuple[NoiseState, ...], block: Block, inputs: Signals
-    ) -> tuple[tuple[NoiseState, ...], Signals]:
+        self, state: tuple[LineState, ...], block: Block, inputs: Signals
+    ) -> tuple[tuple[LineState, ...], Signals]:
         """Return the recorded samples of each channel over the block."""
-        after: list[NoiseState] = []
+        after: list[LineState] = []
         written: dict[str, FloatArray] = {}
         for line, before, out in zip(self.lines, state, self.writes, strict=True):
-            noise, samples = _digitise(line.digitiser, before, block, inputs[line.source.name])
-            after.append(noise)
+            kept, samples = _digitise(line.digitiser, before, block, inputs[line.source.name])
+            after.append(kept)
             written[out.name] = samples
         return tuple(after), written
 
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics that the channels record.
+
+        Noise, drift, rounding and hum, which are not periodic, are left out.
+        """
+        written: dict[str, ComplexArray] = {}
+        for line, out in zip(self.lines, self.writes, strict=True):
+            how = line.digitiser
+            values = inputs[line.source.name]
+            factor = how.response(period.s)
+            recorded = values * factor + period.constant(how.offset * factor[0].real)
+            if line.source is signals.SHAFT_ANGLE:
+                recorded[0] -= period.omega_rad_s * how.delay_s
+            elif how.full_scale is not None and np.abs(recorded).sum() > how.full_scale:
+                limited = np.clip(period.values(recorded), -how.full_scale, how.full_scale)
+                recorded = period.harmonics(limited)
+            written[out.name] = recorded
+        return period, written
+
 
 def _digitise(
-    how: Digitiser, noise: NoiseState, block: Block, values: FloatArray
-) -> tuple[NoiseState, FloatArray]:
-    """Add drift and noise, then limit and round, as the converter does."""
+    how: Digitiser, state: LineState, block: Block, values: FloatArray
+) -> tuple[LineState, FloatArray]:
+    """Filter and delay, add drift and noise, then limit and round, as the converter does."""
+    if not block.count:
+        return state, values
+    state, values = _analog(how, state, block, values)
     if how.drift_per_s:
         values = values + how.drift_per_s * block.time_s
+    if how.hum:
+        turned = 2.0 * math.pi * how.hum_hz * block.time_s + how.hum_phase_rad
+        values = values + how.hum * np.sin(turned)
     if how.noise_rms:
-        noise, deviates = draw_normal(noise, block.count)
-        values = values + how.noise_rms * deviates
+        noise, deviates = draw_normal(state.noise, block.count)
+        state, values = state._replace(noise=noise), values + how.noise_rms * deviates
+    if how.walk_per_sqrt_s:
+        walk, deviates = draw_normal(state.walk, block.count)
+        size = how.walk_per_sqrt_s / math.sqrt(block.sample_rate_hz)
+        levels = np.cumsum(np.concatenate([[state.level], size * deviates]))[1:]
+        state, values = state._replace(walk=walk, level=float(levels[-1])), values + levels
     if how.full_scale is not None:
         values = np.clip(values, -how.full_scale, how.full_scale)
     if how.resolution:
         values = np.round(values / how.resolution) * how.resolution
-    return noise, values
+    return state, values
+
+
+def _analog(
+    how: Digitiser, state: LineState, block: Block, values: FloatArray
+) -> tuple[LineState, FloatArray]:
+    """Do what happens before the converter: offset, filter, delay, carrier and gain."""
+    if how.offset:
+        values = values + how.offset
+    if how.low_pass is not None:
+        state, values = _filtered(how.low_pass, state, block, values)
+    if how.delay_s:
+        state, values = _delayed(how.delay_s, state, block, values)
+    factor = how.gain if how.carrier is None else how.gain * how.carrier.modulation(block.time_s)
+    return state, values if how.carrier is None and how.gain == 1.0 else values * factor
+
+
+def _filtered(
+    low_pass: LowPass, state: LineState, block: Block, values: FloatArray
+) -> tuple[LineState, FloatArray]:
+    hold = low_pass.hold(1.0 / block.sample_rate_hz)
+    if state.before is None or state.filtered is None:
+        first = float(values[0])
+        # As if the signal had been at its first value all the time: one step changes nothing.
+        state = state._replace(
+            before=(first,) * hold.past, filtered=tuple(low_pass.settled(first).tolist())
+        )
+    joined = np.concatenate([state.before or (), values])
+    states = hold.run(np.array(state.filtered), joined[:, np.newaxis])
+    state = state._replace(
+        before=tuple(joined[-hold.past :].tolist()), filtered=tuple(states[-1].tolist())
+    )
+    return state, states[:, 0].copy()
+
+
+def _delayed(
+    delay_s: float, state: LineState, block: Block, values: FloatArray
+) -> tuple[LineState, FloatArray]:
+    weights = delay_weights(delay_s, block.sample_rate_hz)
+    past = weights.size - 1
+    earlier = state.after if state.after is not None else (float(values[0]),) * past
+    joined = np.concatenate([earlier, values])
+    state = state._replace(after=tuple(joined[-past:].tolist()))
+    return state, np.convolve(joined, weights, mode="valid")

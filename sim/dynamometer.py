@@ -1,36 +1,82 @@
 """The dynamometers: what the gauges make of the forces in the struts."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
+
+import numpy as np
 
 from sim import signals
-from sim.signals import Signal, Signals
+from sim.hysteresis import LoopState, loop
+from sim.period import Period, Spectra
+from sim.sampled import steady_by_samples
+from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
 
 
 @dataclass(frozen=True)
 class Gauge:
-    """One dynamometer: reading = gain * force + offset.
+    """One dynamometer: reading = gain * (force + curvature * force^2 + hysteresis) + offset.
 
     Attributes
     ----------
     full_scale_n
         Largest force that it is made for; ``None`` if unknown. Beyond it a run is flagged.
+    curvature_1_n
+        Quadratic part of the characteristic.
+    hysteresis_1_n
+        beta of a Rayleigh loop: between the extremes F1 and F2 the reading lags by
+        (beta/2) (F2 - F)(F - F1), which is (beta/2) (F_m^2 - F^2) between -F_m and F_m.
+    zero_drift_n_s
+        Slope of the zero, which is right at time 0.
+    lowest_n, highest_n
+        Where the reading stops: a mechanical stop, or an amplifier that saturates.
     """
 
     gain: float = 1.0
     offset_n: float = 0.0
     full_scale_n: float | None = None
+    curvature_1_n: float = 0.0
+    hysteresis_1_n: float = 0.0
+    zero_drift_n_s: float = 0.0
+    lowest_n: float | None = None
+    highest_n: float | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def read(
+        self, state: LoopState | None, block: Block, force: FloatArray
+    ) -> tuple[LoopState | None, FloatArray]:
+        """Return the reading over the block, and what the hysteresis remembers."""
+        true = force
+        if self.curvature_1_n:
+            force = force + self.curvature_1_n * true**2
+        if self.hysteresis_1_n and block.count:
+            state, lag = loop(state, true)
+            force = force - (self.hysteresis_1_n / 2.0) * lag
+        reading = self.gain * force + self.offset_n
+        if self.zero_drift_n_s:
+            reading = reading + self.zero_drift_n_s * block.time_s
+        if self.lowest_n is not None or self.highest_n is not None:
+            reading = np.clip(reading, self.lowest_n, self.highest_n)
+        return state, reading
 
 
 @dataclass(frozen=True)
 class Dynamometers:
-    """The dynamometer at each strut, stiff and without lag."""
+    """The dynamometer at each strut; its stiffness is that of :class:`sim.mounting.Mounting`.
+
+    Attributes
+    ----------
+    cross_talk_aft, cross_talk_fore
+        What the gauge at that strut feels of the other strut's force.
+    """
 
     aft: Gauge = Gauge()
     fore: Gauge = Gauge()
+    cross_talk_aft: float = 0.0
+    cross_talk_fore: float = 0.0
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
     name: ClassVar[str] = "dynamometers"
@@ -40,14 +86,35 @@ class Dynamometers:
         signals.DYNAMOMETER_FORCE_FORE,
     )
 
-    def start(self, sample_rate_hz: float, seed: int) -> None:
-        """Return no state: the gauges follow at once."""
+    def start(self, sample_rate_hz: float, seed: int) -> DynamometerState:  # noqa: ARG002
+        """Return the state before the first sample."""
+        return (None, None)
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:  # noqa: ARG002
+    def run(
+        self, state: DynamometerState, block: Block, inputs: Signals
+    ) -> tuple[DynamometerState, Signals]:
         """Return the readings of both dynamometers over the block."""
-        return state, {
-            out.name: gauge.gain * inputs[force.name] + gauge.offset_n
-            for gauge, force, out in zip(
-                (self.aft, self.fore), self.reads, self.writes, strict=True
-            )
-        }
+        aft, fore = (inputs[signal.name] for signal in self.reads)
+        if self.cross_talk_aft or self.cross_talk_fore:
+            aft, fore = aft + self.cross_talk_aft * fore, fore + self.cross_talk_fore * aft
+        aft_state, aft_reading = self.aft.read(state[0], block, aft)
+        fore_state, fore_reading = self.fore.read(state[1], block, fore)
+        names = (signal.name for signal in self.writes)
+        return (aft_state, fore_state), dict(zip(names, (aft_reading, fore_reading), strict=True))
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics of the readings; the drift of the zero is left out."""
+        steady = Dynamometers(
+            _without_drift(self.aft),
+            _without_drift(self.fore),
+            self.cross_talk_aft,
+            self.cross_talk_fore,
+        )
+        remembers = bool(self.aft.hysteresis_1_n or self.fore.hysteresis_1_n)
+        return steady_by_samples(steady, period, inputs, settling=1 if remembers else 0)
+
+
+def _without_drift(gauge: Gauge) -> Gauge:
+    from dataclasses import replace
+
+    return replace(gauge, zero_drift_n_s=0.0) if gauge.zero_drift_n_s else gauge

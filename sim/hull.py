@@ -1,68 +1,69 @@
-"""Model and water: from the motion of the struts to the forces that the struts have to exert."""
+"""Model, water and mounting: from the motion of the struts to the forces that they exert."""
 
-from dataclasses import dataclass
-from typing import ClassVar, TypeAlias
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
 
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
-from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim import signals
-from sim.signals import FloatArray, Signal, Signals
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.hull_blocks import BlockForces, HullState
+from sim.hull_coefficients import HullCoefficients, mass_matrix, weight_matrix
+from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_harmonics
+from sim.hull_system import HullSystem
+from sim.laws import Acting
+from sim.linear import ComplexArray, Hold
+from sim.mounting import Mounting
+from sim.period import Period, Spectra
+from sim.relaxation import relax
+from sim.signals import Signal, Signals
+from sim.stage import Block
+from sim.water.radiation import Radiation, constant
 
-# Rows are force and moment, columns translation and rotation about the midpoint of the struts.
-Matrix: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
-Pair: TypeAlias = tuple[FloatArray, FloatArray]
-
-_NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
-
-
-@dataclass(frozen=True)
-class HullCoefficients:
-    """Linear reaction of the water, constant over frequency.
-
-    Each matrix has the rows force (N) and moment (N m) and the columns translation and rotation, in
-    SI units, about the midpoint: heave and pitch (bow up), or sway and yaw (bow to starboard).
-    Positive values are those of a force that the struts have to exert.
-
-    Attributes
-    ----------
-    added_mass
-        Per acceleration of the model through the water: kg and kg m; kg m and kg m^2.
-    damping
-        Per velocity of the model through the water, the translation being that of the angle of
-        attack (see :class:`Hull`): N s/m and N s; N s and N m s.
-    restoring
-        Per displacement: the change of buoyancy, without the model's weight: N/m and N; N and N m.
-    """
-
-    added_mass: Matrix = _NONE
-    damping: Matrix = _NONE
-    restoring: Matrix = _NONE
-
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+__all__ = ["Hull", "HullCoefficients"]
 
 
 @dataclass(frozen=True)
 class Hull:
-    """A rigid model in water, or in air where the water has no coefficients.
+    """A rigid model in water, or in air where the water has no coefficients, on its mounting.
 
     With the motion q = (translation, rotation) of the midpoint and carriage speed U, the velocity
     of the model through the water is v = q' + U (s rotation, 0), where s = +1 in the vertical plane
     (w = z' + U pitch) and s = -1 in the horizontal plane (v = y' - U yaw). The struts exert
 
-        (force, moment) = M q'' + A v' + B v + (C + G) q
+        (force, moment) = M q'' + A v' + mu + B v + (C + G) q + laws
 
-    with the model's mass matrix M and its weight G (pitch only: m g z_G). Loads at rest, weight
-    less buoyancy at zero displacement, are left out: dynamometers are tared with the model in
-    place. U is taken as steady within v'.
+    with the model's mass matrix M, its weight G (pitch only: m g z_G) and the memory mu of the
+    water. Loads at rest, weight less buoyancy at zero displacement, are left out: dynamometers are
+    tared with the model in place. U is taken as steady within v'.
+
+    On a rigid mounting q is the motion of the struts. Else gauges and frame give way, and model,
+    water and mounting are solved together: the linear part exactly between the samples (see
+    :mod:`sim.hull_system`), the laws by sweeps over the block until nothing changes any more.
+
+    Attributes
+    ----------
+    radiation
+        The water's memory, and its added mass at infinite frequency, besides ``water``; ``None``
+        where constant coefficients say all.
+    laws, cross_flow
+        Forces that depend on the motion at once.
+    carriage_speed_m_s
+        Mean carriage speed, about which the memory is linear. The speed itself is a signal.
     """
 
     plane: Plane
     half_spacing_m: float
     body: Body
-    water: HullCoefficients = HullCoefficients()
+    water: HullCoefficients = field(default_factory=HullCoefficients)
+    radiation: Radiation | None = None
+    mounting: Mounting = field(default_factory=Mounting)
+    laws: tuple[Acting, ...] = ()
+    cross_flow: CrossFlow | None = None
+    carriage_speed_m_s: float = 0.0
 
     name: ClassVar[str] = "hull"
     reads: ClassVar[tuple[Signal, ...]] = (
@@ -76,71 +77,101 @@ class Hull:
     )
     writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
 
-    def start(self, sample_rate_hz: float, seed: int) -> None:
-        """Return no state: constant coefficients leave no memory in the water."""
+    @property
+    def system(self) -> HullSystem:
+        """The linear part at the mean carriage speed."""
+        return _system(self)
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> HullState:  # noqa: ARG002
+        """Return the state before the first sample: calm water, a mounting that is at rest."""
+        return HullState()
+
+    def run(self, state: HullState, block: Block, inputs: Signals) -> tuple[HullState, Signals]:
         """Return the force of each strut on the model over the block."""
-        aft_fore = [inputs[signal.name] for signal in self.reads[:6]]
-        position, velocity, acceleration = (
-            to_motion(aft_fore[i], aft_fore[i + 1], self.half_spacing_m, self.plane)
-            for i in (0, 2, 4)
+        if not block.count:
+            return state, {signal.name: np.empty(0) for signal in self.writes}
+        columns = [inputs[signal.name] for signal in self.reads[:6]]
+        struts = np.column_stack(columns)
+        instants = Instants(
+            block.time_s, 1.0 / block.sample_rate_hz, inputs[signals.CARRIAGE_SPEED.name]
         )
-        drift = inputs[signals.CARRIAGE_SPEED.name] * (1 if self.plane is Plane.VERTICAL else -1)
-        through_water = (velocity[0] + drift * position[1], velocity[1])
-        water_acceleration = (acceleration[0] + drift * velocity[1], acceleration[1])
-        force, moment = _sum(
-            _times(mass_matrix(self.body, self.plane), acceleration),
-            _times(weight_matrix(self.body, self.plane), position),
-            _times(self.water.added_mass, water_acceleration),
-            _times(self.water.damping, through_water),
-            _times(self.water.restoring, position),
-        )
-        aft, fore = strut_forces(force, moment, self.half_spacing_m, self.plane)
-        return state, {signals.FORCE_AFT.name: aft, signals.FORCE_FORE.name: fore}
+        block_forces = BlockForces(self.laws, self.cross_flow, self.system, instants)
+        if not self.system.states:
+            force = block_forces.on_rigid_mounting(struts)
+        else:
+            holds = _holds(self, instants.step_s)
+            state, force = block_forces.with_memory(state, struts, holds)
+        return state, {"force_aft": force[:, 0].copy(), "force_fore": force[:, 1].copy()}
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics of the forces: exact, the laws by harmonic balance."""
+        speed = float(inputs[signals.CARRIAGE_SPEED.name][0].real)
+        system = replace(self, carriage_speed_m_s=speed).system
+        y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
+        impedance, _ = system.impedance(period.s)
+        give = _mounting_gain(system, impedance, period)
+
+        def model(laws: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+            load = _apply(impedance, y) + laws
+            h = y if give is None else y + _apply(give, load)
+            return h, _apply(impedance, h)
+
+        def balance(laws: ComplexArray) -> ComplexArray:
+            h, linear = model(laws)
+            column = period.s[:, np.newaxis]
+            waves = np.hstack([h, h * column, h * column**2, linear])
+            motion = ModelMotion(*np.split(period.values(waves), 4, axis=1))
+            return law_harmonics(self.laws, self.cross_flow, system, motion, period, speed)
+
+        laws = np.zeros_like(y)
+        if self.laws or self.cross_flow is not None:
+            laws = balance(laws) if give is None else relax(balance, balance(laws), "hull")
+        force = model(laws)[1] + laws
+        return period, {"force_aft": force[:, 0], "force_fore": force[:, 1]}
 
 
-def mass_matrix(body: Body, plane: Plane) -> Matrix:
-    """Return the model's mass matrix about the midpoint, in kg, kg m and kg m^2.
-
-    A centre of gravity ahead of the midpoint moves up with the bow and to starboard with it, so the
-    coupling is -m x_G for heave and pitch and +m x_G for sway and yaw.
-    """
-    coupling = body.mass_kg * body.cg_x_m * (-1.0 if plane is Plane.VERTICAL else 1.0)
-    return ((body.mass_kg, coupling), (coupling, body.inertia_kg_m2))
-
-
-def weight_matrix(body: Body, plane: Plane) -> Matrix:
-    """Return the stiffness that the model's weight gives: m g z_G against pitch, else nothing."""
-    if plane is Plane.HORIZONTAL:
-        return _NONE
-    return ((0.0, 0.0), (0.0, body.mass_kg * STANDARD_GRAVITY_M_S2 * body.cg_z_m))
+def _mounting_gain(
+    system: HullSystem, impedance: ComplexArray, period: Period
+) -> ComplexArray | None:
+    """Return E p per rigid load, ``(orders + 1, 2, 2)``; ``None`` for a rigid mounting."""
+    if not system.elastic_count:
+        return None
+    shape = system.elastic.shape
+    whole = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
+    pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
+    gain: ComplexArray = -shape @ np.linalg.solve(whole, pull)
+    return gain
 
 
-def strut_forces(
-    force: FloatArray, moment: FloatArray, half_spacing_m: float, plane: Plane
-) -> tuple[FloatArray, FloatArray]:
-    """Turn force and moment on the model into the force of each strut, ``(aft, fore)``.
-
-    The force is the sum of both; the moment about the midpoint is (aft - fore) l for pitch, bow up,
-    and (fore - aft) l for yaw, bow to starboard.
-    """
-    couple = moment / half_spacing_m
-    if plane is Plane.HORIZONTAL:
-        couple = -couple
-    return (force + couple) / 2.0, (force - couple) / 2.0
+def _apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
+    return product
 
 
-def _times(matrix: Matrix, vector: Pair) -> Pair:
-    first, second = matrix
-    return (
-        first[0] * vector[0] + first[1] * vector[1],
-        second[0] * vector[0] + second[1] * vector[1],
+@lru_cache(maxsize=256)
+def _system(hull: Hull) -> HullSystem:
+    to = np.array(
+        [to_motion(a, f, hull.half_spacing_m, hull.plane) for a, f in ((1.0, 0.0), (0.0, 1.0))]
+    ).T
+    radiation = constant(np.zeros((2, 2))) if hull.radiation is None else hull.radiation
+    added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
+    damping = np.array(hull.water.damping)
+    restoring = np.array(hull.water.restoring) + np.array(weight_matrix(hull.body, hull.plane))
+    turn = np.array([[0.0, 1.0 if hull.plane is Plane.VERTICAL else -1.0], [0.0, 0.0]]) @ to
+    incidence = hull.carriage_speed_m_s * turn
+    return HullSystem(
+        mass=to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to,
+        damping=to.T @ (damping @ to + added @ incidence),
+        stiffness=to.T @ (restoring @ to + damping @ incidence),
+        speed_m_s=hull.carriage_speed_m_s,
+        turn=turn,
+        speed_loads=(to.T @ damping @ turn, to.T @ added @ turn),
+        to_motion=to,
+        radiation=radiation,
+        elastic=hull.mounting.elastic,
     )
 
 
-def _sum(*terms: Pair) -> Pair:
-    force, moment = terms[0]
-    for more in terms[1:]:
-        force, moment = force + more[0], moment + more[1]
-    return force, moment
+@lru_cache(maxsize=64)
+def _holds(hull: Hull, step_s: float) -> tuple[Hold, Hold]:
+    return hull.system.holds(step_s)

@@ -81,7 +81,7 @@ class Hold:
             Shape ``(samples, n)``.
         """
         count = len(inputs) - self.past
-        total = inputs[:count] @ self.weights[0].T
+        total: FloatArray = inputs[:count] @ self.weights[0].T
         for j in range(1, len(self.weights)):
             total += inputs[j : j + count] @ self.weights[j].T
         return total
@@ -93,10 +93,11 @@ class Hold:
     def response(self, z: ComplexArray) -> ComplexArray:
         """Return the discrete transfer matrices from input to state at ``z``: ``(k, n, p)``."""
         column = z[:, np.newaxis, np.newaxis]
-        powers = [column ** (j - self.past) * w for j, w in enumerate(self.weights)]
-        driven: ComplexArray = sum(powers[1:], start=powers[0])
-        found: ComplexArray = np.linalg.solve(np.eye(len(self.step)) - self.step / column, driven)
-        return found
+        driven = np.zeros((z.size, *self.weights.shape[1:]), dtype=np.complex128)
+        for j, weight in enumerate(self.weights):
+            driven += column ** (j - self.past) * weight
+        kept = np.eye(len(self.step)) - self.step / column
+        return np.linalg.solve(kept, driven).astype(np.complex128)
 
 
 def causal_hold(system: LinearSystem, step_s: float, degree: int) -> Hold:

@@ -1,19 +1,56 @@
 """The mechanism: from the shaft's rotation to the motion of the two struts."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from sim import signals
+from sim.linear import ComplexArray
+from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
-from sim.stage import Block
+from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
-_WRITES = {
-    "aft": (signals.DISPLACEMENT_AFT, signals.VELOCITY_AFT, signals.ACCELERATION_AFT),
-    "fore": (signals.DISPLACEMENT_FORE, signals.VELOCITY_FORE, signals.ACCELERATION_FORE),
-}
+_WRITES = (
+    (
+        signals.DISPLACEMENT_AFT,
+        signals.VELOCITY_AFT,
+        signals.ACCELERATION_AFT,
+        signals.LEVER_AFT,
+    ),
+    (
+        signals.DISPLACEMENT_FORE,
+        signals.VELOCITY_FORE,
+        signals.ACCELERATION_FORE,
+        signals.LEVER_FORE,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How the linkage of one strut differs from what was set.
+
+    Attributes
+    ----------
+    eccentricity_error_m
+        Added to the eccentricity.
+    phase_error_rad
+        Added to the strut's crank angle.
+    slot_tilt_rad
+        Tilt of a yoke's slot: turns the motion by as much, and makes it 1/cos as large.
+    rod_offset_m
+        By how much a rod's guide misses the crank's centre: first-harmonic phase, third harmonic.
+    """
+
+    eccentricity_error_m: float = 0.0
+    phase_error_rad: float = 0.0
+    slot_tilt_rad: float = 0.0
+    rod_offset_m: float = 0.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -33,6 +70,8 @@ class Mechanism:
     ----------
     rod_length_m
         ``L``; ``None`` for a scotch yoke.
+    aft, fore
+        How each strut's linkage differs from what was set.
 
     Raises
     ------
@@ -43,6 +82,8 @@ class Mechanism:
     eccentricity_m: float
     strut_phase_rad: float = 0.0
     rod_length_m: float | None = None
+    aft: Setting = Setting()
+    fore: Setting = Setting()
 
     name: ClassVar[str] = "mechanism"
     reads: ClassVar[tuple[Signal, ...]] = (
@@ -50,7 +91,7 @@ class Mechanism:
         signals.SHAFT_SPEED,
         signals.SHAFT_ACCELERATION,
     )
-    writes: ClassVar[tuple[Signal, ...]] = _WRITES["aft"] + _WRITES["fore"]
+    writes: ClassVar[tuple[Signal, ...]] = _WRITES[0] + _WRITES[1]
 
     def __post_init__(self) -> None:
         if self.rod_length_m is not None and self.rod_length_m <= self.eccentricity_m:
@@ -68,19 +109,52 @@ class Mechanism:
         speed = inputs[signals.SHAFT_SPEED.name]
         acceleration = inputs[signals.SHAFT_ACCELERATION.name]
         written: dict[str, FloatArray] = {}
-        for strut, phase_rad in (("aft", 0.0), ("fore", self.strut_phase_rad)):
-            d, slope, curvature = self.displacement(angle + phase_rad)
-            values = (d, slope * speed, curvature * speed**2 + slope * acceleration)
-            written |= {one.name: v for one, v in zip(_WRITES[strut], values, strict=True)}
+        for strut, names in zip(self._struts, _WRITES, strict=True):
+            d, slope, curvature = self._strut(strut, angle)
+            values = (d, slope * speed, curvature * speed**2 + slope * acceleration, slope)
+            written |= {one.name: v for one, v in zip(names, values, strict=True)}
         return state, written
 
-    def displacement(self, angle: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics of motion and levers over a period."""
+        beyond = period.values(inputs[signals.SHAFT_ANGLE.name])
+        angle = period.omega_rad_s * period.time_s + beyond
+        written: dict[str, ComplexArray] = {}
+        for strut, names in zip(self._struts, _WRITES, strict=True):
+            d, slope, _ = self._strut(strut, angle)
+            motion, lever = period.harmonics(np.column_stack([d, slope])).T
+            values = (motion, period.s * motion, period.s**2 * motion, lever)
+            written |= {one.name: v for one, v in zip(names, values, strict=True)}
+        return period, written
+
+    @property
+    def _struts(self) -> tuple[tuple[Setting, float], tuple[Setting, float]]:
+        return (self.aft, 0.0), (self.fore, self.strut_phase_rad)
+
+    def _strut(
+        self, strut: tuple[Setting, float], angle: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        setting, phase_rad = strut
+        if setting == _AS_SET:
+            return self.displacement(angle + phase_rad)
+        eccentricity = self.eccentricity_m + setting.eccentricity_error_m
+        real = replace(
+            self, eccentricity_m=eccentricity / math.cos(setting.slot_tilt_rad), aft=_AS_SET
+        )
+        turned = angle + (phase_rad + setting.phase_error_rad + setting.slot_tilt_rad)
+        return real.displacement(turned, setting.rod_offset_m)
+
+    def displacement(
+        self, angle: FloatArray, rod_offset_m: float = 0.0
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return a strut's displacement and its first two derivatives by the crank angle.
 
         Parameters
         ----------
         angle
             Crank angle of this strut in radians, any shape.
+        rod_offset_m
+            By how much a rod's guide misses the crank's centre.
 
         Returns
         -------
@@ -92,11 +166,18 @@ class Mechanism:
         yoke = (e * sine, e * cosine, -e * sine)
         if self.rod_length_m is None:
             return yoke
-        rod = np.sqrt(self.rod_length_m**2 - (e * cosine) ** 2)
-        rod_slope = e**2 * sine * cosine / rod
-        rod_curvature = (e**2 * (cosine**2 - sine**2) - rod_slope**2) / rod
+        beside = e * cosine + rod_offset_m
+        rod = np.sqrt(self.rod_length_m**2 - beside**2)
+        rod_slope = e * sine * beside / rod
+        rod_curvature = (e * (cosine * beside - e * sine**2) - rod_slope**2) / rod
+        middle = (
+            math.sqrt(self.rod_length_m**2 - rod_offset_m**2) if rod_offset_m else self.rod_length_m
+        )
         return (
-            yoke[0] + (rod - self.rod_length_m),
+            yoke[0] + (rod - middle),
             yoke[1] + rod_slope,
             yoke[2] + rod_curvature,
         )
+
+
+_AS_SET = Setting()

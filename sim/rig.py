@@ -63,6 +63,7 @@ class SimulatedRig:
                 self.oscillator.half_spacing_m,
                 self.body,
                 self.water if in_water else HullCoefficients(),
+                carriage_speed_m_s=set_point.carriage_speed_m_s,
             ),
             self.dynamometers,
             self.acquisition,

@@ -1,0 +1,74 @@
+"""How the model hangs: the stiffness of the gauges, and of the frame that holds the struts."""
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from sim.signals import FloatArray
+from sim.stage import UNKNOWN_KEYS_REFUSED
+
+
+class Elastic(NamedTuple):
+    """What gives way, as r coordinates: ``model at the struts = strut motion + shape p``.
+
+    ``mass p'' + damping p' + stiffness p = - shape^T (force of the struts on the model)``.
+    """
+
+    shape: FloatArray  # (2, r)
+    mass: FloatArray  # (r, r), as the others
+    damping: FloatArray
+    stiffness: FloatArray
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """Springs between the model and what moves it.
+
+    The gauge of each strut, a set of flexures, is a spring and a damper along the strut's motion;
+    so the model, with the water, is what resonates on both. The frame carries both struts: it
+    yields to the sum of their forces, and has a mass of its own.
+
+    Attributes
+    ----------
+    gauge_stiffness_n_m, gauge_damping_n_s_m
+        Of each strut's gauge; a stiffness of ``None`` for rigid ones.
+    frame_stiffness_n_m, frame_damping_n_s_m, frame_mass_kg
+        Of the frame; a stiffness of ``None`` for a rigid one.
+
+    Raises
+    ------
+    ConfigurationError
+        If a stiffness or the frame's mass is not positive.
+    """
+
+    gauge_stiffness_n_m: float | None = None
+    gauge_damping_n_s_m: float = 0.0
+    frame_stiffness_n_m: float | None = None
+    frame_damping_n_s_m: float = 0.0
+    frame_mass_kg: float = 500.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def __post_init__(self) -> None:
+        for key in ("gauge_stiffness_n_m", "frame_stiffness_n_m", "frame_mass_kg"):
+            value = getattr(self, key)
+            if value is not None and not value > 0.0:
+                raise ConfigurationError(
+                    f"{key} = {value:g} must be positive; leave it out for a rigid part"
+                )
+
+    @property
+    def elastic(self) -> Elastic:
+        """The coordinates of what gives way: two gauges, and the frame."""
+        shapes: list[tuple[float, float]] = []
+        properties: list[tuple[float, float, float]] = []
+        if self.gauge_stiffness_n_m is not None:
+            shapes += [(1.0, 0.0), (0.0, 1.0)]
+            properties += [(0.0, self.gauge_damping_n_s_m, self.gauge_stiffness_n_m)] * 2
+        if self.frame_stiffness_n_m is not None:
+            shapes += [(1.0, 1.0)]
+            properties += [(self.frame_mass_kg, self.frame_damping_n_s_m, self.frame_stiffness_n_m)]
+        diagonal = [np.diag([one[i] for one in properties]) for i in range(3)]
+        return Elastic(np.array(shapes).reshape(-1, 2).T, *diagonal)
