@@ -1,0 +1,241 @@
+"""Force channels on a CiA 404-style amplifier: which objects, types and scales is configuration."""
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError
+from hardware.dictionary import Entry, default_mapping, entry, load
+from hardware.driver import Driver, NodePlan, Services, join
+from hardware.errors import (
+    BridgeSaturatedError,
+    HardwareError,
+    NotReadyError,
+    SensorInvalidError,
+    StuckSensorError,
+)
+from hardware.node import Values
+from hardware.roles import Block, Cycle, Role, rows
+
+_INVALID, _OVERLOADS = 0x01, 0x06  # bits of the analogue input's status (6150)
+_TARE_S = 1.0  # tare takes the mean of the samples since then
+
+
+@dataclass(frozen=True)
+class AmplifierChannel:
+    """One channel of an amplifier.
+
+    Attributes
+    ----------
+    object
+        Where its value is, for example ``"9130:1"``; it has to be in a TPDO.
+    scale, offset
+        Value in ``unit`` = raw value times ``scale`` plus ``offset``; a negative scale turns the
+        sign of a gauge that is mounted the other way.
+    full_scale
+        Largest magnitude before tare, in ``unit``; at or above it the bridge is saturated.
+    status
+        Where its status byte (6150) is, if it has one.
+    """
+
+    name: str
+    object: str
+    scale: float
+    full_scale: float
+    offset: float = 0.0
+    unit: str = "N"
+    status: str | None = None
+
+
+@dataclass(frozen=True)
+class AmplifierSettings:
+    """Settings of an amplifier.
+
+    Attributes
+    ----------
+    tpdos
+        Objects of each TPDO; the EDS's own mapping where none is given.
+    settings
+        Objects to write before operation, for example sensor type or filter: ``"6110:1" = 71``.
+    stuck_s
+        A channel that repeats one raw value for so long is stuck; 0 does not look.
+    """
+
+    node: int
+    channels: tuple[AmplifierChannel, ...]
+    eds: str = "cia404-amplifier.eds"
+    tpdos: tuple[tuple[str, ...], ...] = ()
+    settings: dict[str, int | float] = field(default_factory=dict)
+    stuck_s: float = 0.0
+
+
+class Amplifier:
+    """A :class:`hardware.roles.ForceChannels`."""
+
+    def __init__(self, name: str, settings: AmplifierSettings, services: Services) -> None:
+        self.name = name
+        self.sample_rate_hz = services.sample_rate_hz
+        self.channels = tuple(
+            Channel(one.name, one.unit, one.full_scale) for one in settings.channels
+        )
+        self._settings = settings
+        self._node = join(nodes(name, settings)[0], services)
+        self._channels = settings.channels
+        self._values = tuple(entry(one.object) for one in settings.channels)
+        self._status = tuple(entry(one.status) if one.status else None for one in settings.channels)
+        self._zero = [0.0] * len(self.channels)
+        self._recent: deque[tuple[float, ...]] = deque(
+            maxlen=max(1, round(_TARE_S * self.sample_rate_hz))
+        )
+        self._blocks: list[Block] = []
+        self._told: set[tuple[str, str]] = set()
+        self._repeats = [0] * len(self.channels)
+        self._raw: tuple[int | float, ...] = ()
+
+    def prepare(self) -> None:
+        """Write the settings of the configuration to the amplifier."""
+        for text, value in self._settings.settings.items():
+            self._node.sdo.write(entry(text), value)
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Take the cycle's values.
+
+        Raises
+        ------
+        BridgeSaturatedError, SensorInvalidError, StuckSensorError
+            Once, until the channel is in order again.
+        """
+        samples = self._samples()
+        if not samples:
+            return
+        found = [self._look(i) for i in range(len(self._channels))]
+        valid = [not isinstance(one, SensorInvalidError) for one in found]
+        taken = [self._scaled(raw, valid) for _, raw in samples]
+        self._recent.extend(taken)
+        tared = [tuple(v - z for v, z in zip(one, self._zero, strict=True)) for one in taken]
+        self._blocks.append(rows(samples[0][0], tared, len(self._channels)))
+        self._tell([one for one in found if one is not None])
+
+    def tare(self) -> None:
+        """Take the mean of the last second for zero.
+
+        Raises
+        ------
+        NotReadyError
+            If no sample has come yet, or one of them was not valid.
+        """
+        if not self._recent:
+            raise NotReadyError(self.name, "no samples yet; let the loop run before the tare")
+        mean = np.mean(np.array(self._recent), axis=0)
+        if not np.all(np.isfinite(mean)):
+            raise NotReadyError(
+                self.name, "cannot tare: a channel was not valid in the last second"
+            )
+        self._zero = [float(one) for one in mean]
+
+    @property
+    def zero(self) -> tuple[float, ...]:
+        """What the tare takes off each channel, in the channels' units."""
+        return tuple(self._zero)
+
+    def take(self) -> tuple[Block, ...]:
+        """Return the samples since the last call; shape of each: ``(channels, samples)``."""
+        taken, self._blocks = tuple(self._blocks), []
+        return taken
+
+    def reset_fault(self) -> None:
+        """Let findings that persist be told again."""
+        self._told.clear()
+
+    def close(self) -> None:
+        """Nothing to let go of: the bus is the master's."""
+
+    def _samples(self) -> list[tuple[int, tuple[int | float, ...]]]:
+        """Return the cycle's raw values over the channels, gathered from all TPDOs."""
+        by_number: dict[int, dict[Entry, int | float]] = {}
+        for stream in self._node.streams:
+            for number, values in stream.samples:
+                found: Values = values
+                by_number.setdefault(number, {}).update(
+                    zip(stream.layout.entries, found, strict=True)
+                )
+        return [
+            (number, tuple(values.get(at, math.nan) for at in self._values))
+            for number, values in sorted(by_number.items())
+        ]
+
+    def _scaled(self, raw: tuple[int | float, ...], valid: list[bool]) -> tuple[float, ...]:
+        return tuple(
+            value * one.scale + one.offset if good else math.nan
+            for value, one, good in zip(raw, self._channels, valid, strict=True)
+        )
+
+    def _look(self, i: int) -> HardwareError | None:
+        """Return what is wrong with a channel now."""
+        one, raw = self._channels[i], self._node.values[self._values[i]]
+        at = self._status[i]
+        status = int(self._node.values[at]) if at is not None else 0
+        value = raw * one.scale + one.offset
+        if status & _INVALID or not math.isfinite(value):
+            return SensorInvalidError(
+                self.name, f"{one.name} is not valid (status 0x{status:02X}); check the gauge"
+            )
+        if status & _OVERLOADS or abs(value) >= one.full_scale:
+            return BridgeSaturatedError(
+                self.name,
+                f"{one.name} = {value:g} {one.unit} (status 0x{status:02X}); "
+                f"full scale {one.full_scale:g} {one.unit}; reduce amplitude or frequency",
+            )
+        return self._stuck(i, raw)
+
+    def _stuck(self, i: int, raw: int | float) -> HardwareError | None:
+        if len(self._raw) != len(self._channels):
+            self._raw = (math.nan,) * len(self._channels)
+        self._repeats[i] = self._repeats[i] + 1 if raw == self._raw[i] else 0
+        self._raw = (*self._raw[:i], raw, *self._raw[i + 1 :])
+        limit = self._settings.stuck_s * self.sample_rate_hz
+        if not limit or self._repeats[i] < limit:
+            return None
+        return StuckSensorError(
+            self.name,
+            f"{self._channels[i].name} repeats the raw value {raw} for {self._repeats[i]} samples "
+            f"(limit {limit:.0f})",
+        )
+
+    def _tell(self, found: list[HardwareError]) -> None:
+        """Raise the first finding that was not told; forget those that are over."""
+        keys = {(type(one).__name__, str(one).split(" ")[1]): one for one in found}
+        self._told &= set(keys)
+        for key, one in keys.items():
+            if key not in self._told:
+                self._told.add(key)
+                raise one
+
+
+def nodes(name: str, settings: AmplifierSettings) -> tuple[NodePlan, ...]:
+    """Return what the amplifier wants of the bus.
+
+    Raises
+    ------
+    ConfigurationError
+        If a channel's object is in no TPDO, or the EDS is unknown.
+    """
+    tpdos = tuple(tuple(entry(text) for text in one) for one in settings.tpdos)
+    if not tpdos:
+        dictionary = load(settings.eds, settings.node, name)
+        tpdos = tuple(one for one in default_mapping(dictionary, 0x1A00) if one)
+    mapped = {at for one in tpdos for at in one}
+    for one in settings.channels:
+        for text in (one.object, *((one.status,) if one.status else ())):
+            if entry(text) not in mapped:
+                raise ConfigurationError(
+                    f"{name}: channel {one.name}: object {entry(text)} is in no TPDO; "
+                    f"mapped are {', '.join(map(str, sorted(mapped)))}"
+                )
+    return (NodePlan(name, settings.node, settings.eds, tpdos),)
+
+
+DRIVER = Driver(Role.FORCES, AmplifierSettings, Amplifier, nodes)

@@ -1,0 +1,290 @@
+"""Eccentricity and strut phase on a CiA 402 drive: profile position and homing."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Literal
+
+from hardware.cia402 import Control, Goal, Mode, Status
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Range
+from hardware.dictionary import Entry
+from hardware.drive import (
+    CONTROL_WORD,
+    MODE,
+    POSITION,
+    STATE_PDOS,
+    STEP_CYCLES,
+    TARGET_POSITION,
+    Drive,
+)
+from hardware.driver import Driver, NodePlan, Services, join
+from hardware.errors import HomingError, LimitError, NotReadyError
+from hardware.roles import Cycle, Reading, Role
+
+_MARGIN = 1.5  # a move may take so much longer than its profile
+
+
+@dataclass(frozen=True)
+class PositionAxisSettings:
+    """Settings of an eccentricity (``unit = "m"``) or phase axis (``unit = "rad"``).
+
+    Attributes
+    ----------
+    counts_per_unit
+        Increments of 6064 per metre or radian; negative if the drive counts the other way.
+    low, high
+        Limits of the position, also written to the drive (607D).
+    speed, acceleration, quick_stop
+        In units per second and per second squared.
+    tolerance, standard_uncertainty
+        How near a move has to come, and what is believed of the position afterwards.
+    homing_method
+        Of 6098; 35 takes the present position for ``home_position``.
+    velocity_per_count
+        Units of 6081, 6083 and so on for one count per second.
+    """
+
+    node: int
+    counts_per_unit: float
+    low: float
+    high: float
+    speed: float
+    acceleration: float
+    quick_stop: float
+    tolerance: float
+    standard_uncertainty: float
+    unit: Literal["m", "rad"] = "m"
+    following_error: float = 1e-3
+    following_error_ms: int = 20
+    homing_method: int = 17
+    homing_speed: float = 1e-3
+    homing_timeout_s: float = 120.0
+    home_position: float = 0.0
+    velocity_per_count: float = 1.0
+    eds: str = "cia402-drive.eds"
+
+    def __post_init__(self) -> None:
+        keys = ("speed", "acceleration", "quick_stop", "tolerance", "homing_speed")
+        for key in keys:
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        if not self.low < self.high:
+            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
+        furthest = max(abs(self.low), abs(self.high)) * abs(self.counts_per_unit)
+        if not 0.0 < furthest < 2**31:
+            raise ConfigurationError(
+                f"counts_per_unit = {self.counts_per_unit:g} makes {furthest:g} counts of the "
+                "furthest limit; it has to be between 0 and 2147483648"
+            )
+
+
+class _Step(Enum):
+    """Where a move or homing stands."""
+
+    IDLE = "idle"
+    MODE = "waiting for the mode of operation"
+    CLEAR = "waiting for the set-point acknowledge to fall"
+    START = "waiting for the drive to take the command"
+    UNDER_WAY = "on its way"
+
+
+class DriveAxis:
+    """A :class:`hardware.roles.PositionAxis`."""
+
+    def __init__(self, name: str, settings: PositionAxisSettings, services: Services) -> None:
+        self.name = name
+        self.unit = settings.unit
+        self.limits = Range(settings.low, settings.high)
+        self.homed = False
+        self.settled = False
+        self.drive = Drive(
+            join(nodes(name, settings)[0], services), (Mode.PROFILE_POSITION, Mode.HOMING)
+        )
+        self._settings = settings
+        self._rate_hz = services.sample_rate_hz
+        self._step = _Step.IDLE
+        self._target = 0
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds or moves under power."""
+        return self.drive.enabled
+
+    @property
+    def moving(self) -> bool:
+        """Whether a move, a homing or a stop is under way."""
+        return self._step is not _Step.IDLE
+
+    @property
+    def position(self) -> float:
+        """The drive's position in the axis's unit."""
+        return self.drive.node.values[POSITION] / self._settings.counts_per_unit
+
+    @property
+    def reading(self) -> Reading | None:
+        """Where the axis is; ``None`` before homing."""
+        if not self.homed:
+            return None
+        return Reading(self.position, self._settings.standard_uncertainty, "encoder")
+
+    def enable(self) -> None:
+        """Put the axis under power at rest."""
+        self._abandon()
+        self.drive.head_for(Goal.ENABLED)
+
+    def disable(self) -> None:
+        """Take the power off."""
+        self._abandon()
+        self.drive.head_for(Goal.DISABLED)
+
+    def home(self) -> None:
+        """Find the reference position.
+
+        Raises
+        ------
+        NotReadyError
+            If the axis is not enabled.
+        """
+        self._begin(Mode.HOMING, self._settings.homing_timeout_s, "homing")
+        self.homed = False
+
+    def move_to(self, position: float) -> None:
+        """Go to a position.
+
+        Raises
+        ------
+        LimitError
+            If it lies outside the limits (or is no number).
+        NotReadyError
+            If the axis is not enabled or not homed.
+        """
+        if position not in self.limits:
+            raise LimitError(
+                self.name,
+                f"{position:g} {self.unit} is outside {self.limits.low:g} to "
+                f"{self.limits.high:g} {self.unit}",
+            )
+        if not self.homed:
+            raise NotReadyError(self.name, "is not homed; home it before it moves")
+        speed, way = self._settings.speed, abs(position - self.position)
+        time_s = way / speed + 2.0 * speed / self._settings.acceleration
+        self._begin(Mode.PROFILE_POSITION, time_s, f"move to {position:g} {self.unit}")
+        self._target = round(position * self._settings.counts_per_unit)
+        self.drive.node.put(TARGET_POSITION, self._target)
+
+    def stop(self) -> None:
+        """Decelerate along the profile, then stand under power."""
+        if self._step is not _Step.IDLE:
+            self._abandon()
+            self.drive.extra = Control.HALT
+
+    def quick_stop(self) -> None:
+        """Decelerate on the quick-stop ramp."""
+        self._abandon()
+        self.drive.head_for(Goal.QUICK_STOPPED)
+
+    def reset_fault(self) -> None:
+        """Reset the drive's fault; it stays disabled."""
+        self._abandon()
+        self.drive.reset_fault()
+
+    def prepare(self) -> None:
+        """Write limits, ramps and the homing's settings to the drive."""
+        one, per_count = self._settings, abs(self._settings.counts_per_unit)
+        per_unit = per_count * one.velocity_per_count
+        ends = sorted(round(end * one.counts_per_unit) for end in (one.low, one.high))
+        self.drive.prepare(
+            (
+                (Entry(0x607D, 1), ends[0]),
+                (Entry(0x607D, 2), ends[1]),
+                (Entry(0x6081), round(per_unit * one.speed)),
+                (Entry(0x6083), round(per_unit * one.acceleration)),
+                (Entry(0x6084), round(per_unit * one.acceleration)),
+                (Entry(0x6085), round(per_unit * one.quick_stop)),
+                (Entry(0x6065), round(per_count * one.following_error)),
+                (Entry(0x6066), one.following_error_ms),
+                (Entry(0x6067), round(per_count * one.tolerance)),
+                (Entry(0x607C), round(one.counts_per_unit * one.home_position)),
+                (Entry(0x6098), one.homing_method),
+                (Entry(0x6099, 1), round(per_unit * one.homing_speed)),
+                (Entry(0x6099, 2), round(per_unit * one.homing_speed)),
+                (Entry(0x609A), round(per_unit * one.acceleration)),
+            )
+        )
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Pursue the move or the homing, one step a cycle.
+
+        Raises
+        ------
+        HomingError
+            If the drive reports one; other faults as in :meth:`hardware.drive.Drive.tick`.
+        """
+        if self.moving and not self.enabled:
+            self._abandon()
+        try:
+            if self.moving:
+                self._pursue(self.drive.status)
+        finally:
+            self.drive.tick()
+
+    def close(self) -> None:
+        """Nothing to let go of: the bus is the master's."""
+
+    def _begin(self, mode: Mode, time_s: float, what: str) -> None:
+        if not self.enabled:
+            raise NotReadyError(self.name, "is not enabled; enable it first")
+        self.settled = False
+        self.drive.mode, self.drive.extra = mode, Control(0)
+        self.drive.within(4 * STEP_CYCLES + _MARGIN * time_s * self._rate_hz, what)
+        self._step = _Step.MODE
+
+    def _abandon(self) -> None:
+        self._step, self.drive.extra = _Step.IDLE, Control(0)
+        self.drive.done()
+
+    def _pursue(self, status: Status) -> None:
+        if self._step is _Step.MODE and self.drive.in_mode:
+            self._step = _Step.CLEAR
+        homing = self.drive.mode is Mode.HOMING
+        if self._step is _Step.CLEAR:
+            if homing or Status.SET_POINT_ACKNOWLEDGED not in status:
+                self._step = _Step.START
+                self.drive.extra = Control.NEW_SET_POINT | (
+                    Control(0) if homing else Control.CHANGE_AT_ONCE
+                )
+        elif homing:
+            self._home(status)
+        else:
+            self._move(status)
+
+    def _home(self, status: Status) -> None:
+        """Wait until the drive has begun (attained falls), then until it has finished."""
+        if Status.HOMING_ERROR in status:
+            self._abandon()
+            raise HomingError(self.name, f"homing failed (status word 0x{int(status):04X})")
+        attained = Status.HOMING_ATTAINED in status and Status.TARGET_REACHED in status
+        if self._step is _Step.START:
+            self._step = _Step.UNDER_WAY
+        elif self._step is _Step.UNDER_WAY and attained:
+            self.homed = self.settled = True
+            self._abandon()
+
+    def _move(self, status: Status) -> None:
+        if self._step is _Step.START and Status.SET_POINT_ACKNOWLEDGED in status:
+            self._step, self.drive.extra = _Step.UNDER_WAY, Control(0)
+        elif self._step is _Step.UNDER_WAY and Status.SET_POINT_ACKNOWLEDGED not in status:
+            off = abs(int(self.drive.node.values[POSITION]) - self._target)
+            near = off <= self._settings.tolerance * abs(self._settings.counts_per_unit)
+            if near and Status.TARGET_REACHED in status:
+                self.settled = True
+                self._abandon()
+
+
+def nodes(name: str, settings: PositionAxisSettings) -> tuple[NodePlan, ...]:
+    """Return what the axis's drive wants of the bus."""
+    rpdo = (CONTROL_WORD, MODE, TARGET_POSITION)
+    return (NodePlan(name, settings.node, settings.eds, STATE_PDOS, (rpdo,)),)
+
+
+DRIVER = Driver(Role.POSITION_AXIS, PositionAxisSettings, DriveAxis, nodes)

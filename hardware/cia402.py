@@ -1,0 +1,258 @@
+"""The state machine of CiA 402: states, commands, transitions, and a walk towards a goal.
+
+Nothing here waits, sends or asks for the time. :class:`Walk` is ticked once per SYNC with the
+status word and returns the control word to send; its deadlines are counted in ticks.
+"""
+
+from enum import Enum, IntEnum, IntFlag
+from typing import Final
+
+from hardware.errors import DriveFaultError, DriveStateError, TransitionTimeoutError
+
+
+class State(Enum):
+    """The states of the power drive system; the value is (mask, bits) of the status word."""
+
+    NOT_READY_TO_SWITCH_ON = (0x4F, 0x00)
+    SWITCH_ON_DISABLED = (0x4F, 0x40)
+    READY_TO_SWITCH_ON = (0x6F, 0x21)
+    SWITCHED_ON = (0x6F, 0x23)
+    OPERATION_ENABLED = (0x6F, 0x27)
+    QUICK_STOP_ACTIVE = (0x6F, 0x07)
+    FAULT_REACTION_ACTIVE = (0x4F, 0x0F)
+    FAULT = (0x4F, 0x08)
+
+
+class Command(IntEnum):
+    """The commands; the value is bits 0 to 3 and 7 of the control word."""
+
+    DISABLE_VOLTAGE = 0x00
+    QUICK_STOP = 0x02
+    SHUTDOWN = 0x06
+    SWITCH_ON = 0x07  # from OPERATION ENABLED the same bits are "disable operation"
+    ENABLE_OPERATION = 0x0F
+    FAULT_RESET = 0x80  # acts on the rising edge of bit 7
+
+
+class Control(IntFlag):
+    """Bits of the control word (6040) beyond the commands."""
+
+    NEW_SET_POINT = 0x0010  # profile position
+    CHANGE_AT_ONCE = 0x0020  # profile position
+    START_HOMING = 0x0010  # homing
+    HALT = 0x0100
+
+
+class Status(IntFlag):
+    """Bits of the status word (6041) beyond the state."""
+
+    VOLTAGE_ENABLED = 0x0010
+    WARNING = 0x0080
+    REMOTE = 0x0200
+    TARGET_REACHED = 0x0400
+    INTERNAL_LIMIT = 0x0800
+    SET_POINT_ACKNOWLEDGED = 0x1000  # profile position
+    STANDSTILL = 0x1000  # profile velocity
+    HOMING_ATTAINED = 0x1000  # homing
+    FOLLOWING_ERROR = 0x2000  # profile position; maximal slippage in profile velocity
+    HOMING_ERROR = 0x2000  # homing
+
+
+class Mode(IntEnum):
+    """Modes of operation (6060, 6061) used here."""
+
+    NONE = 0
+    PROFILE_POSITION = 1
+    PROFILE_VELOCITY = 3
+    HOMING = 6
+
+    @property
+    def supported_bit(self) -> int:
+        """The mode's bit in the supported drive modes (6502)."""
+        return 1 << (self.value - 1)
+
+
+class Goal(Enum):
+    """Where a drive is to be."""
+
+    DISABLED = "disabled"  # no torque: SWITCH ON DISABLED
+    ENABLED = "enabled"  # OPERATION ENABLED
+    QUICK_STOPPED = "quick stopped"  # QUICK STOP ACTIVE, or without power already
+
+
+# The transitions of CiA 402 by number: 0, 1, 13 and 14 are the drive's own.
+TRANSITIONS: Final[dict[tuple[State, Command], tuple[int, State]]] = {
+    (State.SWITCH_ON_DISABLED, Command.SHUTDOWN): (2, State.READY_TO_SWITCH_ON),
+    (State.READY_TO_SWITCH_ON, Command.SWITCH_ON): (3, State.SWITCHED_ON),
+    (State.SWITCHED_ON, Command.ENABLE_OPERATION): (4, State.OPERATION_ENABLED),
+    (State.OPERATION_ENABLED, Command.SWITCH_ON): (5, State.SWITCHED_ON),
+    (State.SWITCHED_ON, Command.SHUTDOWN): (6, State.READY_TO_SWITCH_ON),
+    (State.READY_TO_SWITCH_ON, Command.QUICK_STOP): (7, State.SWITCH_ON_DISABLED),
+    (State.READY_TO_SWITCH_ON, Command.DISABLE_VOLTAGE): (7, State.SWITCH_ON_DISABLED),
+    (State.OPERATION_ENABLED, Command.SHUTDOWN): (8, State.READY_TO_SWITCH_ON),
+    (State.OPERATION_ENABLED, Command.DISABLE_VOLTAGE): (9, State.SWITCH_ON_DISABLED),
+    (State.SWITCHED_ON, Command.QUICK_STOP): (10, State.SWITCH_ON_DISABLED),
+    (State.SWITCHED_ON, Command.DISABLE_VOLTAGE): (10, State.SWITCH_ON_DISABLED),
+    (State.OPERATION_ENABLED, Command.QUICK_STOP): (11, State.QUICK_STOP_ACTIVE),
+    (State.QUICK_STOP_ACTIVE, Command.DISABLE_VOLTAGE): (12, State.SWITCH_ON_DISABLED),
+    (State.FAULT, Command.FAULT_RESET): (15, State.SWITCH_ON_DISABLED),
+    (State.QUICK_STOP_ACTIVE, Command.ENABLE_OPERATION): (16, State.OPERATION_ENABLED),
+}
+
+_FAULTS: Final = (State.FAULT, State.FAULT_REACTION_ACTIVE)
+_AT: Final[dict[Goal, tuple[State, ...]]] = {
+    Goal.DISABLED: (State.SWITCH_ON_DISABLED, State.NOT_READY_TO_SWITCH_ON),
+    Goal.ENABLED: (State.OPERATION_ENABLED,),
+    Goal.QUICK_STOPPED: (
+        State.QUICK_STOP_ACTIVE,
+        State.SWITCH_ON_DISABLED,
+        State.NOT_READY_TO_SWITCH_ON,
+    ),
+}
+_UP: Final[dict[State, Command]] = {
+    State.NOT_READY_TO_SWITCH_ON: Command.DISABLE_VOLTAGE,
+    State.SWITCH_ON_DISABLED: Command.SHUTDOWN,
+    State.READY_TO_SWITCH_ON: Command.SWITCH_ON,
+    State.SWITCHED_ON: Command.ENABLE_OPERATION,
+    State.OPERATION_ENABLED: Command.ENABLE_OPERATION,
+    State.QUICK_STOP_ACTIVE: Command.DISABLE_VOLTAGE,  # transition 16 is optional in a drive
+}
+
+
+def _decoded() -> tuple[State, ...]:
+    """Return the state of each pattern of the status word's low seven bits."""
+    table = []
+    for word in range(0x80):
+        found = [state for state in State if word & state.value[0] == state.value[1]]
+        table.append(found[0] if found else State.NOT_READY_TO_SWITCH_ON)
+    return tuple(table)
+
+
+_STATES: Final = _decoded()
+
+
+def state_of(status_word: int) -> State:
+    """Return the state that a status word (6041) shows."""
+    return _STATES[status_word & 0x7F]
+
+
+def next_command(state: State, goal: Goal) -> Command:
+    """Return the command that leads from ``state`` one step towards ``goal``."""
+    if goal is Goal.ENABLED:
+        return _UP.get(state, Command.DISABLE_VOLTAGE)
+    if goal is Goal.QUICK_STOPPED:
+        return Command.QUICK_STOP
+    return Command.DISABLE_VOLTAGE
+
+
+class Walk:
+    """Walks a drive from state to state, one control word a tick.
+
+    Parameters
+    ----------
+    name
+        The axis, for messages.
+    step_cycles
+        Ticks that one transition may take.
+    """
+
+    def __init__(self, name: str, step_cycles: int) -> None:
+        self._name = name
+        self._step_cycles = step_cycles
+        self._waited = 0
+        self._arrived = False
+        self._reset: int | None = None
+        self._quiet = False
+        self.goal = Goal.DISABLED
+        self.state = State.NOT_READY_TO_SWITCH_ON
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the last status word showed the goal."""
+        return self.state in _AT[self.goal]
+
+    @property
+    def faulty(self) -> bool:
+        """Whether the drive is in FAULT or on its way there."""
+        return self.state in _FAULTS
+
+    def head_for(self, goal: Goal) -> None:
+        """Change the goal; the next tick takes the first step.
+
+        An arrival at the old goal is forgotten, so that leaving it is no surprise.
+        """
+        self.goal = goal
+        self._waited = 0
+        self._arrived = False
+
+    def reset_fault(self) -> None:
+        """Send a rising edge of the reset bit in the next two ticks, then stay disabled."""
+        self.head_for(Goal.DISABLED)
+        self._reset = 0
+        self._quiet = False
+
+    def tick(self, status_word: int) -> int:
+        """Take a status word and return the control word for it.
+
+        Raises
+        ------
+        DriveFaultError
+            Once per fault, when the drive shows one that no reset is under way for.
+        DriveStateError
+            If the drive left the goal by itself; the goal becomes ``DISABLED``.
+        TransitionTimeoutError
+            If a step takes longer than its cycles; the goal becomes ``DISABLED``.
+        """
+        before, self.state = self.state, state_of(status_word)
+        if self._reset is not None:
+            return self._resetting(status_word)
+        if self.faulty:
+            return self._in_fault(status_word)
+        self._quiet = False
+        if self.arrived:
+            self._waited, self._arrived = 0, True
+        else:
+            self._under_way(before, status_word)
+        return next_command(self.state, self.goal)
+
+    def _under_way(self, before: State, status_word: int) -> None:
+        wanted = self.goal
+        if self._arrived:
+            self.head_for(Goal.DISABLED)
+            raise DriveStateError(
+                self._name,
+                f"left {wanted.value} for {self.state.name} by itself "
+                f"(status word 0x{status_word:04X})",
+            )
+        self._waited = 0 if self.state is not before else self._waited + 1
+        if self._waited > self._step_cycles:
+            self.head_for(Goal.DISABLED)
+            raise TransitionTimeoutError(
+                self._name,
+                f"still {self.state.name} (status word 0x{status_word:04X}) after "
+                f"{self._step_cycles} cycles on the way to {wanted.value}",
+            )
+
+    def _in_fault(self, status_word: int) -> int:
+        if not self._quiet:
+            self._quiet = True
+            self.head_for(Goal.DISABLED)
+            raise DriveFaultError(
+                self._name, f"{self.state.name} (status word 0x{status_word:04X}); reset it"
+            )
+        return Command.DISABLE_VOLTAGE
+
+    def _resetting(self, status_word: int) -> int:
+        """Return 0 once, then bit 7, until the drive has left FAULT."""
+        sent, self._reset = self._reset or 0, (self._reset or 0) + 1
+        if sent and not self.faulty:
+            self._reset = None
+            return Command.DISABLE_VOLTAGE
+        if sent > self._step_cycles:
+            self._reset, self._quiet = None, True
+            raise TransitionTimeoutError(
+                self._name,
+                f"still {self.state.name} (status word 0x{status_word:04X}) "
+                f"{self._step_cycles} cycles after a fault reset",
+            )
+        return Command.FAULT_RESET if sent else Command.DISABLE_VOLTAGE

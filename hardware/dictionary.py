@@ -1,0 +1,163 @@
+"""Object dictionaries from EDS files, and PDO mappings checked against them."""
+
+import re
+import struct
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import canopen
+from canopen.objectdictionary import ODVariable, datatypes, import_od
+
+from hardware.description.errors import ConfigurationError
+
+_CODES: Final = {
+    datatypes.BOOLEAN: "B",
+    datatypes.INTEGER8: "b",
+    datatypes.INTEGER16: "h",
+    datatypes.INTEGER32: "i",
+    datatypes.INTEGER64: "q",
+    datatypes.UNSIGNED8: "B",
+    datatypes.UNSIGNED16: "H",
+    datatypes.UNSIGNED32: "I",
+    datatypes.UNSIGNED64: "Q",
+    datatypes.REAL32: "f",
+    datatypes.REAL64: "d",
+}
+_ENTRY: Final = re.compile(r"^(?:0x)?([0-9A-Fa-f]{4})(?::([0-9]{1,3}))?$")
+
+
+class Entry(NamedTuple):
+    """An object's address in the dictionary; written ``6041`` or ``9130:1`` in configurations."""
+
+    index: int
+    subindex: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.index:04X}:{self.subindex}"
+
+
+def entry(text: str) -> Entry:
+    """Turn ``"6041"`` or ``"9130:1"`` (index in hexadecimal, sub-index in decimal) into an entry.
+
+    Raises
+    ------
+    ConfigurationError
+        If the text is neither.
+    """
+    found = _ENTRY.match(text.strip())
+    if not found:
+        raise ConfigurationError(f"{text!r} is no object: write it as '6041' or '9130:1'")
+    return Entry(int(found[1], 16), int(found[2] or 0))
+
+
+def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
+    """Read an EDS file: a path, or the name of one that comes with this package.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such file, or it is no EDS; the message lists the package's own.
+    """
+    own = files("hardware").joinpath("eds")
+    path = Path(str(own / eds)) if (own / eds).is_file() else Path(eds)
+    if not path.is_file():
+        known = ", ".join(sorted(one.name for one in own.iterdir() if one.name.endswith(".eds")))
+        raise ConfigurationError(
+            f"{where}.eds = {eds!r}: no such file; give a path, or one of {known}"
+        )
+    try:
+        dictionary = import_od(str(path), node_id)
+    except Exception as error:  # a parser meets everything in a broken file
+        raise ConfigurationError(f"{where}.eds = {eds!r} cannot be read as EDS: {error}") from error
+    if 0x1000 not in dictionary:
+        raise ConfigurationError(f"{where}.eds = {eds!r} is no EDS: it has no object 1000")
+    return dictionary
+
+
+def variable(dictionary: canopen.ObjectDictionary, at: Entry) -> ODVariable | None:
+    """Return the variable at an address, or ``None`` if the dictionary has none there."""
+    return dictionary.get_variable(at.index, at.subindex)
+
+
+def has(dictionary: canopen.ObjectDictionary, at: Entry) -> bool:
+    """Tell whether the dictionary has a variable at an address."""
+    return variable(dictionary, at) is not None
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a PDO carries: numbers one behind the other, little end first."""
+
+    cob_id: int
+    entries: tuple[Entry, ...]
+    code: struct.Struct
+
+    @property
+    def size(self) -> int:
+        """Data bytes."""
+        return self.code.size
+
+    @property
+    def bits(self) -> tuple[int, ...]:
+        """Bits of each entry."""
+        formats = self.code.format.lstrip("<")
+        return tuple(8 * struct.calcsize(f"<{one}") for one in formats)
+
+
+def layout(
+    dictionary: canopen.ObjectDictionary, entries: tuple[Entry, ...], cob_id: int, where: str
+) -> Layout:
+    """Lay a PDO out after the types in the dictionary.
+
+    Raises
+    ------
+    ConfigurationError
+        If an object is not in the EDS, cannot be mapped or is no number, or if the PDO would be
+        longer than 8 bytes.
+    """
+    code = "<"
+    for at in entries:
+        code += _code(dictionary, at, where)
+    packed = struct.Struct(code)
+    if packed.size > 8:
+        raise ConfigurationError(
+            f"{where}: {', '.join(map(str, entries))} take {packed.size} bytes; "
+            "the limit of a PDO is 8"
+        )
+    return Layout(cob_id, entries, packed)
+
+
+def _code(dictionary: canopen.ObjectDictionary, at: Entry, where: str) -> str:
+    found = variable(dictionary, at)
+    if found is None:
+        raise ConfigurationError(f"{where}: object {at} is not in the EDS")
+    if not found.pdo_mappable:
+        raise ConfigurationError(f"{where}: object {at} ({found.name}) cannot be mapped to a PDO")
+    code = _CODES.get(found.data_type or 0)
+    if code is None:
+        raise ConfigurationError(
+            f"{where}: object {at} ({found.name}) is no number (data type {found.data_type})"
+        )
+    return code
+
+
+def default_mapping(
+    dictionary: canopen.ObjectDictionary, first_index: int
+) -> tuple[tuple[Entry, ...], ...]:
+    """Return the mappings that an EDS states from ``first_index`` (1A00 or 1600) on."""
+    found = []
+    for index in range(first_index, first_index + 4):
+        count = variable(dictionary, Entry(index, 0))
+        if count is None:
+            break
+        number = int(count.value if count.value is not None else count.default or 0)
+        found.append(tuple(_mapped(dictionary, index, sub) for sub in range(1, number + 1)))
+    return tuple(found)
+
+
+def _mapped(dictionary: canopen.ObjectDictionary, index: int, sub: int) -> Entry:
+    at = variable(dictionary, Entry(index, sub))
+    word = 0 if at is None else int(at.value if at.value is not None else at.default or 0)
+    return Entry(word >> 16, word >> 8 & 0xFF)

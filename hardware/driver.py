@@ -1,0 +1,205 @@
+"""How a driver presents itself, and how drivers are found: entry points of ``pmm.drivers``."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+
+from hardware.description.errors import ConfigurationError
+from hardware.dictionary import Entry, Layout, layout, load
+from hardware.roles import Device, Role
+
+if TYPE_CHECKING:
+    from hardware.master import Master
+    from hardware.node import Node
+    from hardware.roles import Shaft
+
+GROUP: Final = "pmm.drivers"
+T = TypeVar("T")
+Prompt = Callable[[str], str | None]
+
+
+@dataclass(frozen=True)
+class NodePlan:
+    """What a driver wants of the bus: a node id, an EDS and the objects of its PDOs."""
+
+    name: str
+    node_id: int
+    eds: str
+    tpdos: tuple[tuple[Entry, ...], ...] = ()
+    rpdos: tuple[tuple[Entry, ...], ...] = ()
+
+    def layouts(self) -> tuple[tuple[Layout, ...], tuple[Layout, ...]]:
+        """Return the layouts of TPDOs and RPDOs with their identifiers.
+
+        Raises
+        ------
+        ConfigurationError
+            If the EDS is unknown, an object cannot be mapped, or there are more than four PDOs.
+        """
+        dictionary = load(self.eds, self.node_id, self.name)
+        both = []
+        for what, base, pdos in (("tpdo", 0x180, self.tpdos), ("rpdo", 0x200, self.rpdos)):
+            if len(pdos) > 4:
+                raise ConfigurationError(f"{self.name}: {len(pdos)} {what}s; the limit is 4")
+            both.append(
+                tuple(
+                    layout(dictionary, one, base + 0x100 * n + self.node_id, f"{self.name} {what}")
+                    for n, one in enumerate(pdos)
+                )
+            )
+        return both[0], both[1]
+
+
+@dataclass(frozen=True)
+class Services:
+    """What a driver may use.
+
+    Attributes
+    ----------
+    clock
+        Monotonic seconds, for time-outs.
+    prompt
+        Shows a question and returns the operator's answer, or ``None`` as long as there is none.
+        It is asked again in every cycle, because the loop must not wait.
+    sample_rate_hz
+        Cycles per second.
+    master
+        The bus; ``None`` in a rig without one.
+    shaft
+        The rig's shaft, for a photocell that is wired to its drive.
+    """
+
+    clock: Callable[[], float]
+    prompt: Prompt
+    sample_rate_hz: float
+    master: "Master | None" = None
+    shaft: "Shaft | None" = None
+
+
+def join(plan: NodePlan, services: Services) -> "Node":
+    """Add a driver's node to the bus.
+
+    Raises
+    ------
+    ConfigurationError
+        If the rig has no bus, or the plan is wrong (see :meth:`NodePlan.layouts`).
+    """
+    if services.master is None:
+        raise ConfigurationError(f"{plan.name}: needs a CAN bus, and the rig has no [bus] table")
+    dictionary = load(plan.eds, plan.node_id, plan.name)
+    return services.master.add(plan.name, plan.node_id, dictionary, *plan.layouts())
+
+
+def _no_nodes(name: str, settings: Any) -> tuple[NodePlan, ...]:  # noqa: ARG001
+    return ()
+
+
+@dataclass(frozen=True)
+class Driver:
+    """A driver, as its entry point presents it.
+
+    Attributes
+    ----------
+    settings
+        A frozen dataclass: the keys of the driver's table in ``rig.toml``.
+    open
+        Makes the device from its name, its settings and the services.
+    nodes
+        What the device wants of the CAN bus, without opening anything.
+    """
+
+    role: Role
+    settings: type
+    open: Callable[[str, Any, Services], Device]
+    nodes: Callable[[str, Any], tuple[NodePlan, ...]] = _no_nodes
+
+
+def find_driver(name: str, where: str, among: Iterable[EntryPoint] | None = None) -> Driver:
+    """Return the driver with a name.
+
+    Parameters
+    ----------
+    where
+        The place in the configuration, for messages.
+    among
+        Entry points to look through; all installed ones by default.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is none, or its package cannot be loaded.
+    """
+    found = {one.name: one for one in (entry_points(group=GROUP) if among is None else among)}
+    if name not in found:
+        near = get_close_matches(name, found, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(sorted(found))}"
+        raise ConfigurationError(f"{where}.driver = {name!r} is not installed; {hint}")
+    try:
+        driver = found[name].load()
+    except Exception as error:  # a foreign package may raise anything while it is imported
+        raise ConfigurationError(
+            f"{where}.driver = {name!r}: {found[name].value} cannot be loaded: {error}"
+        ) from error
+    if not isinstance(driver, Driver):
+        raise ConfigurationError(
+            f"{where}.driver = {name!r}: {found[name].value} is no hardware.driver.Driver"
+        )
+    return driver
+
+
+def read_settings(kind: type[T], table: Mapping[str, object], where: str) -> T:
+    """Make a driver's settings from its table.
+
+    Numbers have to be numbers: text and booleans are not taken for any.
+
+    Raises
+    ------
+    ConfigurationError
+        With a line for every wrong, missing or unknown key.
+    """
+    import json
+
+    from pydantic import ValidationError
+
+    known = _keys(kind)
+    faults = [
+        f"{where}.{key} is not a known key; {_hint(key, known)}"
+        for key in table
+        if key not in known
+    ]
+    given = {key: value for key, value in table.items() if key in known}
+    settings: T | None = None
+    try:
+        settings = _adapter(cast("Any", kind)).validate_json(json.dumps(given), strict=True)
+    except ValidationError as error:
+        for one in error.errors(include_url=False):
+            place = ".".join(map(str, (where, *one["loc"])))
+            shown = "" if one["type"] == "missing" else f" = {one['input']!r}"
+            faults.append(f"{place}{shown}: {one['msg']}")
+    except ConfigurationError as error:
+        faults.append(f"{where}: {error}")
+    if faults or settings is None:
+        raise ConfigurationError("\n".join(faults))
+    return settings
+
+
+def _keys(kind: type) -> dict[str, None]:
+    from dataclasses import fields
+
+    return {one.name: None for one in fields(kind)}
+
+
+def _hint(key: str, known: Iterable[str]) -> str:
+    names = list(known)
+    near = get_close_matches(key, names, n=1, cutoff=0.5)
+    return f"did you mean {near[0]}?" if near else f"known: {', '.join(names)}"
+
+
+@cache
+def _adapter(kind: type) -> Any:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(kind)

@@ -1,0 +1,206 @@
+"""What can go wrong with a rig: one type per situation, each with the reaction that it asks for.
+
+Every class names the situations that raise it. :attr:`HardwareError.reaction` is the row of the
+safety table: what has to happen to the rig, whoever notices.
+"""
+
+from enum import IntEnum
+from typing import ClassVar
+
+from hardware.description.errors import PmmError
+
+
+class Reaction(IntEnum):
+    """What a fault asks for, from mild to severe; a higher one includes the lower ones."""
+
+    REFUSE = 0  # the command is refused; nothing moves differently
+    VOID_GATE = 1  # the measurement in progress is void and flagged
+    PROFILE_STOP = 2  # decelerate along the profile, then stand
+    QUICK_STOP = 3  # quick stop of all axes
+    END_RUN = 4  # the bus is lost: stop the heartbeat, so that the drives stop by themselves
+
+
+class HardwareError(PmmError):
+    """Base of what a device or a bus raises. ``device`` names it as the configuration does."""
+
+    reaction: ClassVar[Reaction] = Reaction.QUICK_STOP
+
+    def __init__(self, device: str, message: str) -> None:
+        super().__init__(f"{device}: {message}")
+        self.device = device
+
+
+class BusOpenError(HardwareError):
+    """The bus cannot be opened: unknown interface, no such channel, adapter in use."""
+
+    reaction = Reaction.REFUSE
+
+
+class BusOffError(HardwareError):
+    """The controller went bus-off (too many transmit errors), or a frame cannot be sent."""
+
+    reaction = Reaction.END_RUN
+
+
+class ErrorFramesError(HardwareError):
+    """Error frames come faster than good cycles wear them off: a cable or a termination."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class DeadReceiveThreadError(HardwareError):
+    """The thread that receives from the bus ended: the adapter raised, or it was stopped."""
+
+    reaction = Reaction.END_RUN
+
+
+class HeartbeatLostError(HardwareError):
+    """A node's heartbeat stayed away for its period and more than the allowed cycles."""
+
+
+class NodeStateError(HardwareError):
+    """A node left the operational state, or booted, while it should operate."""
+
+
+class ProcessDataLostError(HardwareError):
+    """A node answered no SYNC with its process data for more than the allowed cycles."""
+
+
+class EmergencyError(HardwareError):
+    """A node sent an emergency message (EMCY) with an error code other than reset.
+
+    ``code`` and ``register`` are those of the message.
+    """
+
+    def __init__(self, device: str, code: int, register: int, vendor: bytes = b"") -> None:
+        super().__init__(
+            device,
+            f"emergency 0x{code:04X} (register 0x{register:02X}, vendor {vendor.hex() or '-'}); "
+            "clear its cause, then reset the fault",
+        )
+        self.code = code
+        self.register = register
+
+
+class FollowingError(HardwareError):
+    """An axis is further from its demand than its window: blocked, overloaded, badly tuned."""
+
+
+class DriveFaultError(HardwareError):
+    """A drive went to FAULT (or FAULT REACTION ACTIVE) by itself."""
+
+
+class DriveStateError(HardwareError):
+    """A drive left the state that it was commanded to: power lost, quick stop input, local key."""
+
+
+class TransitionTimeoutError(HardwareError):
+    """A drive did not reach the commanded state, position or speed within its cycles."""
+
+
+class HomingError(HardwareError):
+    """A drive reports that homing failed."""
+
+
+class InterlockError(HardwareError):
+    """Eccentricity or phase was to change while the shaft turns, or the shaft while they move."""
+
+    reaction = Reaction.REFUSE
+
+
+class LimitError(HardwareError):
+    """A command lies outside the limits of the configuration."""
+
+    reaction = Reaction.REFUSE
+
+
+class NotReadyError(HardwareError):
+    """A command came before the device was enabled, homed or read, or in a fault."""
+
+    reaction = Reaction.REFUSE
+
+
+class SdoTimeoutError(HardwareError):
+    """A node does not answer an SDO request: not powered, wrong node id, wrong bit rate."""
+
+
+class SdoAbortError(HardwareError):
+    """A node refuses an SDO request; ``code`` is CiA 301's abort code."""
+
+    reaction = Reaction.REFUSE
+
+    def __init__(self, device: str, message: str, code: int) -> None:
+        super().__init__(device, message)
+        self.code = code
+
+
+class SdoInCallbackError(HardwareError):
+    """An SDO was asked for while frames are being delivered; waiting there would never end."""
+
+    reaction = Reaction.REFUSE
+
+
+class PortOpenError(HardwareError):
+    """A serial port cannot be opened: no such port, in use, no permission."""
+
+    reaction = Reaction.REFUSE
+
+
+class UnpluggedError(HardwareError):
+    """A serial port failed while open: unplugged, the device server closed, write timed out."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class SilentPortError(HardwareError):
+    """A serial device that talks by itself has said nothing readable for its time."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class LineError(HardwareError):
+    """A line from a serial device is no line: wrong checksum, missing field, not a number."""
+
+    reaction = Reaction.VOID_GATE
+
+
+class PhotocellMissedError(HardwareError):
+    """A photocell pulse stayed away: its counter, sequence or the shaft's angle shows it."""
+
+    reaction = Reaction.VOID_GATE
+
+
+class PhotocellExtraError(HardwareError):
+    """A photocell pulse came where none belongs: chatter, stray light, a second slot."""
+
+    reaction = Reaction.VOID_GATE
+
+
+class PhotocellDeadError(HardwareError):
+    """No photocell pulse for several turns: the lamp, the cable or the input is dead."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class BridgeSaturatedError(HardwareError):
+    """A force channel is at its full scale, or its amplifier reports overload."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class SensorInvalidError(HardwareError):
+    """A sensor reports its value as not valid, or delivers none: broken wire, NaN."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class StuckSensorError(HardwareError):
+    """A channel repeats one value bit for bit for longer than its noise could."""
+
+    reaction = Reaction.VOID_GATE
+
+
+class DialReadingError(HardwareError):
+    """An operator's dial reading is no number, or too far from what was asked for."""
+
+    reaction = Reaction.REFUSE

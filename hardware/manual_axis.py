@@ -1,0 +1,318 @@
+"""Axes that an operator sets by hand, as in 1963: micrometer, phase drum, speed knob.
+
+The operator is asked through :attr:`hardware.driver.Services.prompt`, once per cycle until there is
+an answer, so that the loop (and with it the heartbeat) never waits for a person.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Range
+from hardware.driver import Driver, Services
+from hardware.errors import DialReadingError, LimitError, NotReadyError
+from hardware.roles import Block, Cycle, Reading, Role
+
+
+class _Question:
+    """One question to the operator, asked until a number comes."""
+
+    def __init__(self, name: str, services: Services) -> None:
+        self._name = name
+        self._prompt = services.prompt
+        self._text: str | None = None
+
+    @property
+    def open(self) -> bool:
+        """Whether an answer is waited for."""
+        return self._text is not None
+
+    def ask(self, text: str) -> None:
+        """Begin to ask."""
+        self._text = text
+
+    def withdraw(self) -> None:
+        """Wait for no answer any more."""
+        self._text = None
+
+    def answer(self) -> float | None:
+        """Return the answer once it is there.
+
+        Raises
+        ------
+        DialReadingError
+            If it is no finite number; the question stays open.
+        """
+        given = None if self._text is None else self._prompt(self._text)
+        if given is None:
+            return None
+        try:
+            value = float(given.strip().replace(",", "."))
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise DialReadingError(self._name, f"{given!r} is no number; {self._text}")
+        self._text = None
+        return value
+
+
+@dataclass(frozen=True)
+class ManualAxisSettings:
+    """Settings of an axis that is set by hand.
+
+    Attributes
+    ----------
+    dial
+        What the operator reads: "micrometer", "phase drum".
+    dial_unit, dial_per_unit
+        Unit on the dial, and its divisions per metre or radian (1000 for millimetres).
+    standard_uncertainty
+        Of a reading, in the axis's unit.
+    tolerance
+        How far a reading may be from what was asked for, in the axis's unit.
+    """
+
+    low: float
+    high: float
+    standard_uncertainty: float
+    tolerance: float
+    dial_unit: str
+    dial_per_unit: float
+    dial: str = "dial"
+    unit: Literal["m", "rad"] = "m"
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
+        for key in ("standard_uncertainty", "tolerance", "dial_per_unit"):
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+
+
+class ManualAxis:
+    """A :class:`hardware.roles.PositionAxis` whose motor is the operator."""
+
+    def __init__(self, name: str, settings: ManualAxisSettings, services: Services) -> None:
+        self.name = name
+        self.unit = settings.unit
+        self.limits = Range(settings.low, settings.high)
+        self.enabled = False
+        self.settled = False
+        self.reading: Reading | None = None
+        self._settings = settings
+        self._question = _Question(name, services)
+        self._target: float | None = None
+
+    @property
+    def homed(self) -> bool:
+        """Whether a reading has been taken."""
+        return self.reading is not None
+
+    @property
+    def moving(self) -> bool:
+        """Whether the operator has been asked and has not answered."""
+        return self._question.open
+
+    def prepare(self) -> None:
+        """Nothing to write."""
+
+    def enable(self) -> None:
+        """Let the axis be set."""
+        self.enabled = True
+
+    def disable(self) -> None:
+        """Let the axis be set no more."""
+        self.stop()
+        self.enabled = False
+
+    def stop(self) -> None:
+        """Withdraw the question."""
+        self._question.withdraw()
+
+    def quick_stop(self) -> None:
+        """Withdraw the question and let the axis be set no more."""
+        self.disable()
+
+    def reset_fault(self) -> None:
+        """Withdraw the question."""
+        self.disable()
+
+    def home(self) -> None:
+        """Ask what the dial reads.
+
+        Raises
+        ------
+        NotReadyError
+            If the axis is not enabled.
+        """
+        self._target = None
+        self._ask(f"{self.name}: read the {self._settings.dial}")
+
+    def move_to(self, position: float) -> None:
+        """Ask the operator to set a position and to read the dial.
+
+        Raises
+        ------
+        LimitError
+            If it lies outside the limits (or is no number).
+        NotReadyError
+            If the axis is not enabled or was never read.
+        """
+        if position not in self.limits:
+            raise LimitError(
+                self.name,
+                f"{position:g} {self.unit} is outside {self.limits.low:g} to "
+                f"{self.limits.high:g} {self.unit}",
+            )
+        if not self.homed:
+            raise NotReadyError(self.name, "was never read; home it before it moves")
+        dial = f"{position * self._settings.dial_per_unit:.6g} {self._settings.dial_unit}"
+        self._target = position
+        self._ask(f"{self.name}: set the {self._settings.dial} to {dial} and read it")
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Look for an answer.
+
+        Raises
+        ------
+        DialReadingError
+            If it is no number, outside the limits, or further from the set-point than the
+            tolerance; the operator is asked again.
+        """
+        asked = self._question
+        answer = asked.answer()
+        if answer is not None:
+            self._take(answer)
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+    def _ask(self, text: str) -> None:
+        if not self.enabled:
+            raise NotReadyError(self.name, "is not enabled; enable it first")
+        self.settled = False
+        self._question.ask(f"{text} [{self._settings.dial_unit}]")
+
+    def _take(self, dial: float) -> None:
+        value = dial / self._settings.dial_per_unit
+        wanted = value if self._target is None else self._target
+        if value not in self.limits or abs(value - wanted) > self._settings.tolerance:
+            low, high = self.limits.low, self.limits.high
+            self._ask(f"{self.name}: that reading does not fit; set and read again")
+            raise DialReadingError(
+                self.name,
+                f"the {self._settings.dial} reads {dial:g} {self._settings.dial_unit} = {value:g} "
+                f"{self.unit}; wanted {wanted:g} within {self._settings.tolerance:g} and "
+                f"{low:g} to {high:g} {self.unit}",
+            )
+        self.reading = Reading(value, self._settings.standard_uncertainty, self._settings.dial)
+        self.settled = True
+
+
+DRIVER = Driver(Role.POSITION_AXIS, ManualAxisSettings, ManualAxis)
+
+
+@dataclass(frozen=True)
+class ManualShaftSettings:
+    """Settings of a shaft whose speed is set by hand and read off a tachometer."""
+
+    lowest_frequency_hz: float
+    highest_frequency_hz: float
+    tolerance_share: float = 0.1
+
+
+class ManualShaft:
+    """A :class:`hardware.roles.Shaft` whose knob is the operator's; it has no encoder."""
+
+    channels: tuple[Channel, ...] = ()
+
+    def __init__(self, name: str, settings: ManualShaftSettings, services: Services) -> None:
+        self.name = name
+        self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
+        self.sample_rate_hz = services.sample_rate_hz
+        self.enabled = False
+        self.measured_frequency_hz = math.nan
+        self._tolerance_share = settings.tolerance_share
+        self._question = _Question(name, services)
+        self._wanted_hz = 0.0
+
+    @property
+    def moving(self) -> bool:
+        """Whether the shaft turns as far as anyone has said; unknown counts as turning."""
+        return self._question.open or self.measured_frequency_hz > 0.0
+
+    @property
+    def at_speed(self) -> bool:
+        """Whether the operator has read the commanded speed."""
+        off = abs(self.measured_frequency_hz - self._wanted_hz)
+        return self._wanted_hz > 0.0 and off <= self._tolerance_share * self._wanted_hz
+
+    def prepare(self) -> None:
+        """Nothing to write."""
+
+    def enable(self) -> None:
+        """Let the shaft be started."""
+        self.enabled = True
+
+    def disable(self) -> None:
+        """Have the shaft stopped and let it be started no more."""
+        self.stop()
+        self.enabled = False
+
+    def turn(self, frequency_hz: float) -> None:
+        """Ask the operator to set a speed and to read it; raises as the driven shaft does."""
+        low, high = self.frequency_hz.low, self.frequency_hz.high
+        if not (frequency_hz > 0.0 and frequency_hz in self.frequency_hz):
+            raise LimitError(
+                self.name, f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0)"
+            )
+        if not self.enabled:
+            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        self._wanted_hz = frequency_hz
+        self._question.ask(f"{self.name}: set {frequency_hz:g} Hz and read the speed [Hz]")
+
+    def stop(self) -> None:
+        """Ask the operator to stop the shaft, unless it stands."""
+        self._wanted_hz = 0.0
+        if self.moving:
+            self._question.ask(f"{self.name}: stop the shaft, then enter 0 [Hz]")
+
+    def quick_stop(self) -> None:
+        """Ask for a stop: a hand-set shaft has no other way than its emergency stop."""
+        self.disable()
+
+    def reset_fault(self) -> None:
+        """Nothing to reset."""
+        self.disable()
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Look for an answer.
+
+        Raises
+        ------
+        DialReadingError
+            If it is no number or not the speed that was asked for; the operator is asked again.
+        """
+        answer = self._question.answer()
+        if answer is None:
+            return
+        self.measured_frequency_hz = abs(answer)
+        wanted = self._wanted_hz
+        if abs(answer - wanted) > self._tolerance_share * wanted:
+            self._question.ask(f"{self.name}: set {wanted:g} Hz and read the speed [Hz]")
+            raise DialReadingError(
+                self.name,
+                f"reads {answer:g} Hz; wanted {wanted:g} Hz within {self._tolerance_share:.0%}",
+            )
+
+    def take(self) -> tuple[Block, ...]:
+        """Return nothing: there is no encoder."""
+        return ()
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+
+SHAFT_DRIVER = Driver(Role.SHAFT, ManualShaftSettings, ManualShaft)

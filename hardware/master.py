@@ -1,0 +1,230 @@
+"""The CANopen master: one exchange per cycle, and nothing behind the caller's back."""
+
+import threading
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import can
+import canopen
+
+from hardware.bus import BusConfiguration, Pumped, Receiver, Sender, Threaded, open_bus
+from hardware.dictionary import Entry, Layout
+from hardware.errors import HardwareError
+from hardware.node import Node, Stream
+from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
+
+Clock = Callable[[], float]
+Observer = Callable[[can.Message], None]
+_NMT, _SYNC, _EMCY, _HEARTBEAT = 0x000, 0x080, 0x080, 0x700
+_START, _PRE_OPERATIONAL = 0x01, 0x80
+_REPEAT_CYCLES: Final = 10  # RPDOs go out when they change, and again so often
+_FRAMES_A_CYCLE: Final = 4096  # a babbling node must not keep the loop for ever
+_RESPONSE_SHARE: Final = 0.8  # of the period, for all nodes to answer a SYNC
+
+
+class _Network(canopen.Network):
+    """canopen's network without its thread: it sends through the guarded sender."""
+
+    def __init__(self, send: Callable[[int, bytes], None]) -> None:
+        super().__init__()
+        self._send = send
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:  # noqa: ARG002
+        self._send(can_id, bytes(data))
+
+
+class Master:
+    """Owns a bus: sends SYNC and heartbeat, collects process data, watches the nodes.
+
+    Parameters
+    ----------
+    clock
+        Monotonic seconds: the host's in real time, the simulated bus's otherwise. It only limits
+        waiting; samples are numbered by SYNC.
+    observers
+        Called with every frame sent and received, for a raw log.
+
+    Raises
+    ------
+    BusOpenError
+        If the bus cannot be opened.
+    """
+
+    def __init__(
+        self, configuration: BusConfiguration, clock: Clock, observers: Sequence[Observer] = ()
+    ) -> None:
+        self.configuration = configuration
+        self.clock = clock
+        self.lock = threading.RLock()
+        self.delivering = False
+        self.healthy = True
+        self.nodes: list[Node] = []
+        self.error_frames = ErrorFrames()
+        self._observers = tuple(observers)
+        self._bus = open_bus(configuration)
+        self._sender = Sender(self._bus)
+        receiver = Threaded if configuration.receive_thread else Pumped
+        self._receiver: Receiver = receiver(self._bus)
+        self.network = _Network(self._send)
+        self._streams: dict[int, Stream] = {}
+        self._supervisor = Supervisor(configuration, ())
+        self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
+        self._number = 0
+        self._operating = False
+        beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
+        self._beat_every = max(1, int(beat_cycles))
+
+    def add(
+        self,
+        name: str,
+        node_id: int,
+        dictionary: canopen.ObjectDictionary,
+        tpdos: tuple[Layout, ...] = (),
+        rpdos: tuple[Layout, ...] = (),
+    ) -> Node:
+        """Add a node; it is configured and started by :meth:`start`."""
+        node = Node(name, node_id, dictionary, tpdos, rpdos, self)
+        self.nodes.append(node)
+        self._streams |= {stream.layout.cob_id: stream for stream in node.streams}
+        return node
+
+    def prepare(self) -> None:
+        """Bring all nodes to pre-operational and configure them.
+
+        Raises
+        ------
+        SdoTimeoutError, SdoAbortError
+            If a node does not answer or refuses.
+        """
+        self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
+        for node in self.nodes:
+            node.configure(self.configuration)
+
+    def start(self) -> None:
+        """Start all nodes and the supervision."""
+        self._drain()
+        self._supervisor = Supervisor(self.configuration, self.nodes)
+        self._supervisor.start(self._number)
+        for node in self.nodes:
+            self._supervised[_HEARTBEAT + node.node_id] = (self._heartbeat, node.node_id)
+            self._supervised[_EMCY + node.node_id] = (self._emergency, node.node_id)
+        self._send(_NMT, bytes((_START, 0)))
+        self._operating = True
+
+    def exchange(self, number: int) -> list[HardwareError]:
+        """Run the bus part of cycle ``number``: heartbeat, SYNC, answers; return what was found.
+
+        The heartbeat goes out here only, and only while :attr:`healthy`: a loop that hangs or has
+        lost its bus falls silent, and the drives stop by themselves.
+        """
+        with self.lock:
+            self._number = number
+            try:
+                self._announce(number)
+                faults = self._collect()
+            except HardwareError as error:
+                faults = [error]
+            for stream in self._streams.values():
+                stream.close(number)
+            faults += self.error_frames.check(self._bus.state)
+            return faults + (self._supervisor.check(number) if self._operating else [])
+
+    def flush(self) -> list[HardwareError]:
+        """Send the process data that the devices have set; return what went wrong."""
+        repeat = self._number % _REPEAT_CYCLES == 0
+        try:
+            for node in self.nodes:
+                for identifier, data in node.outputs(repeat=repeat):
+                    self._send(identifier, data)
+        except HardwareError as error:
+            return [error]
+        return []
+
+    def reset(self) -> None:
+        """Let findings be told again and the heartbeat run: the operator has reset the faults."""
+        self._supervisor.reset()
+        self.healthy = True
+
+    def receive(self, timeout_s: float) -> can.Message | None:
+        """Return the next frame, or ``None``; for SDO transfers."""
+        return self._receiver.receive(timeout_s)
+
+    def deliver(self, frame: can.Message) -> None:
+        """Hand a frame to the stream, the supervision or the SDO client that it concerns."""
+        self.delivering = True
+        try:
+            for observe in self._observers:
+                observe(frame)
+            self._dispatch(frame)
+        finally:
+            self.delivering = False
+
+    def close(self) -> None:
+        """Bring the nodes to pre-operational if possible, and let go of the bus."""
+        try:
+            self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
+        except HardwareError:
+            pass  # a lost bus cannot be told anything
+        finally:
+            self._receiver.close()
+            self._bus.shutdown()
+
+    def _dispatch(self, frame: can.Message) -> None:
+        identifier = frame.arbitration_id
+        if frame.is_error_frame:
+            self.error_frames.take(frame)
+        elif frame.is_remote_frame or frame.is_extended_id:
+            return
+        elif (stream := self._streams.get(identifier)) is not None:
+            stream.take(frame.data)
+        elif (found := self._supervised.get(identifier)) is not None:
+            found[0](found[1], frame.data)
+        else:
+            self.network.notify(identifier, frame.data, frame.timestamp)
+
+    def _heartbeat(self, node_id: int, data: bytearray) -> None:
+        self._supervisor.heartbeat(node_id, data, self._number)
+
+    def _emergency(self, node_id: int, data: bytearray) -> None:
+        self._supervisor.emergency(node_id, data)
+
+    def _announce(self, number: int) -> None:
+        if self.healthy and number % self._beat_every == 0:
+            beat = _HEARTBEAT + self.configuration.master_node
+            self._send(beat, bytes((OPERATIONAL,)))
+        overflow = self.configuration.sync_overflow
+        self._send(_SYNC, bytes(((number - 1) % overflow + 1,)) if overflow else b"")
+
+    def _collect(self) -> list[HardwareError]:
+        """Deliver frames until every TPDO has come or its time is over, and whatever is there."""
+        faults: list[HardwareError] = []
+        end = self.clock() + _RESPONSE_SHARE * self.configuration.period_s
+        missing = len(self._streams) if self._operating else 0
+        for _ in range(_FRAMES_A_CYCLE):
+            left = end - self.clock() if missing else 0.0
+            frame = self._receiver.receive(max(left, 0.0))
+            if frame is None:
+                return faults
+            try:
+                self.deliver(frame)
+            except HardwareError as error:
+                faults.append(error)
+            missing = sum(not stream.fresh for stream in self._streams.values()) if missing else 0
+        return faults
+
+    def _drain(self) -> None:
+        while (frame := self._receiver.receive(0.0)) is not None:
+            self.deliver(frame)
+
+    def _send(self, identifier: int, data: bytes) -> None:
+        frame = self._sender.send(identifier, data)
+        for observe in self._observers:
+            observe(frame)
+
+
+def read_identity(node: Node) -> tuple[int, int, int]:
+    """Return a node's device type (1000), vendor id and product code (1018), by SDO."""
+    device, vendor, product = (
+        int(node.sdo.read(at)) for at in (Entry(0x1000), Entry(0x1018, 1), Entry(0x1018, 2))
+    )
+    return device, vendor, product

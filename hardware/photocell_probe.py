@@ -1,0 +1,141 @@
+"""The photocell on the shaft drive's touch probe: latched position and edge counter, no clock."""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from hardware.dictionary import Entry, has
+from hardware.driver import Driver, Services
+from hardware.errors import PhotocellDeadError, PhotocellExtraError, PhotocellMissedError
+from hardware.lines import Unwrapped
+from hardware.roles import Cycle, Pulse, Role
+from hardware.shaft import DriveShaft
+
+_FUNCTION, _SOURCE = Entry(0x60B8), Entry(0x60D0, 1)
+# Touch probe 1 on, every event, input of touch probe 1, positive edge.
+ARMED: Final = 0x0013
+_INPUT_1: Final = 1
+_MISSED_TURNS, _DEAD_TURNS, _EXTRA_TURNS = 1.5, 3.5, 0.5
+
+
+@dataclass(frozen=True)
+class ProbeSettings:
+    """Settings of a photocell on the touch probe: its input (60D0) of the drive."""
+
+    source: int = _INPUT_1
+
+
+class ProbePhotocell:
+    """A :class:`hardware.roles.Photocell` that knows the shaft's position at each pulse."""
+
+    def __init__(self, name: str, settings: ProbeSettings, services: Services) -> None:
+        if not isinstance(services.shaft, DriveShaft) or not services.shaft.settings.touch_probe:
+            raise ConfigurationError(
+                f"{name}: a touch probe needs a shaft on a CiA 402 drive with touch_probe = true"
+            )
+        self.name = name
+        self._shaft = services.shaft
+        self._settings = settings
+        self._period_s = 1.0 / services.sample_rate_hz
+        self._edges: int | None = None
+        self._count = Unwrapped(2**16)
+        self._last: int | None = None
+        self._told: type | None = None
+        self._pulses: list[Pulse] = []
+
+    def prepare(self) -> None:
+        """Arm the probe; a drive takes a new function only after a zero."""
+        node = self._shaft.drive.node
+        node.sdo.write(_FUNCTION, 0)
+        if has(node.dictionary, _SOURCE):
+            node.sdo.write(_SOURCE, self._settings.source)
+        node.sdo.write(_FUNCTION, ARMED)
+
+    def expect(self, frequency_hz: float | None) -> None:
+        """Begin to count turns anew; the shaft's own position says how far it turned."""
+        if frequency_hz is None:
+            self._last, self._told = None, None
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Take the edges of the cycle.
+
+        Raises
+        ------
+        PhotocellMissedError
+            If the shaft has turned one and a half times without a pulse.
+        PhotocellDeadError
+            If it has turned three and a half times.
+        PhotocellExtraError
+            If a pulse comes before half a turn.
+        """
+        for number, (latched, edges, _status) in self._shaft.drive.node.streams[2].samples:
+            self._look(number, int(latched), int(edges))
+
+    def take(self) -> tuple[Pulse, ...]:
+        """Return the pulses since the last call."""
+        taken, self._pulses = tuple(self._pulses), []
+        return taken
+
+    def reset_fault(self) -> None:
+        """Count turns from here."""
+        self._last, self._told = self._shaft.counts, None
+
+    def close(self) -> None:
+        """Nothing to let go of: the bus is the master's."""
+
+    def _look(self, number: int, latched: int, edges: int) -> None:
+        before, self._edges = self._edges, self._count.take(edges)
+        if self._last is None:
+            self._last = self._shaft.counts
+            if before is None or before == self._edges:
+                return
+            before = None  # the first pulse of a run has no neighbour to be compared with
+        elif before == self._edges:
+            self._absent()
+            return
+        at = self._shaft.position_near(latched)
+        turns = self._turns(at - self._last)
+        self._last = at
+        angle = 2.0 * math.pi * at / self._shaft.settings.counts_per_turn
+        self._pulses.append(Pulse(self._edges, self._time_s(number, at), angle))
+        if before is not None:
+            self._compare(turns, self._edges - before)
+
+    def _turns(self, counts: int) -> float:
+        return abs(counts / self._shaft.settings.counts_per_turn)
+
+    def _absent(self) -> None:
+        turns = self._turns(self._shaft.counts - (self._last or 0))
+        if turns > _DEAD_TURNS and self._told is not PhotocellDeadError:
+            self._told = PhotocellDeadError
+            raise PhotocellDeadError(
+                self.name, f"no pulse for {turns:.2f} turns (limit {_DEAD_TURNS}); check the lamp"
+            )
+        if turns > _MISSED_TURNS and self._told is None:
+            self._told = PhotocellMissedError
+            raise PhotocellMissedError(
+                self.name, f"no pulse for {turns:.2f} turns (limit {_MISSED_TURNS})"
+            )
+
+    def _compare(self, turns: float, edges: int) -> None:
+        missed, self._told = self._told, None
+        if edges > 1 or turns < _EXTRA_TURNS:
+            raise PhotocellExtraError(
+                self.name, f"{edges} pulses within {turns:.3f} turns (one in about 1 expected)"
+            )
+        if turns > _MISSED_TURNS and missed is None:
+            raise PhotocellMissedError(
+                self.name, f"{turns:.3f} turns between pulses (limit {_MISSED_TURNS})"
+            )
+
+    def _time_s(self, number: int, at: int) -> float:
+        """Return when the shaft was at ``at``: between this SYNC and the one before."""
+        (earlier, start), (later, end) = self._shaft.last_two(number)
+        if end == start:
+            return number * self._period_s
+        share = min(max((end - at) / (end - start), 0.0), 1.0)
+        return (later - share * (later - earlier)) * self._period_s
+
+
+DRIVER = Driver(Role.PHOTOCELL, ProbeSettings, ProbePhotocell)

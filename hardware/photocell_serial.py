@@ -1,0 +1,170 @@
+"""The photocell on a small microcontroller that stamps its pulses and sends them by serial line."""
+
+from dataclasses import dataclass
+
+from hardware.clock_fit import ClockFit
+from hardware.driver import Driver, Services
+from hardware.errors import (
+    HardwareError,
+    LineError,
+    PhotocellDeadError,
+    PhotocellExtraError,
+    PhotocellMissedError,
+    SilentPortError,
+)
+from hardware.lines import TICK_MODULUS, Kind, Line, Unwrapped, decode
+from hardware.roles import Cycle, Pulse, Role
+from hardware.serial_port import PortSettings, SerialPort
+
+_MISSED_PERIODS, _DEAD_PERIODS, _EXTRA_PERIODS = 1.5, 3.5, 0.5
+
+
+@dataclass(frozen=True)
+class TimestamperSettings:
+    """Settings of a serial timestamper.
+
+    Attributes
+    ----------
+    silent_s
+        It sends a mark every second or more often; after so long without a line it is silent.
+    """
+
+    port: PortSettings
+    silent_s: float = 3.0
+
+
+class SerialPhotocell:
+    """A :class:`hardware.roles.Photocell` that knows the time of each pulse to a microsecond.
+
+    Attributes
+    ----------
+    fit
+        Drift of its clock against the bus.
+    """
+
+    def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:  # noqa: ARG002
+        self.name = name
+        self.fit = ClockFit()
+        self._settings = settings
+        self._port = SerialPort(name, settings.port)
+        self._ticks = Unwrapped(TICK_MODULUS)
+        self._pulses: list[Pulse] = []
+        self._count: int | None = None
+        self._at_s: float | None = None  # of the last pulse, in the rig's time
+        self._period_s: float | None = None
+        self._heard_s: float | None = None
+        self._told: set[type] = set()
+
+    def prepare(self) -> None:
+        """Nothing to write: the device talks by itself."""
+
+    def expect(self, frequency_hz: float | None) -> None:
+        """Say how fast the shaft turns; ``None``: it is idle, a lost port is opened again."""
+        self._period_s = 1.0 / frequency_hz if frequency_hz else None
+        self._at_s = None
+        self._told.clear()
+
+    def tick(self, cycle: Cycle) -> None:
+        """Take the lines of the cycle.
+
+        Raises
+        ------
+        PhotocellMissedError, PhotocellExtraError, PhotocellDeadError
+            As the pulses show; ``expect`` says how many belong.
+        UnpluggedError, SilentPortError, LineError
+            As the line does.
+        """
+        if self._period_s is None:
+            self._port.recover(cycle.time_s)
+        faults: list[HardwareError] = []
+        for raw in self._port.lines():
+            try:
+                self._take(decode(raw, self.name), cycle)
+            except HardwareError as error:
+                faults.append(error)
+        self._absent(cycle.time_s, faults)
+        if faults:
+            raise faults[0]
+
+    def take(self) -> tuple[Pulse, ...]:
+        """Return the pulses since the last call."""
+        taken, self._pulses = tuple(self._pulses), []
+        return taken
+
+    def reset_fault(self) -> None:
+        """Open a lost port again and begin anew.
+
+        Raises
+        ------
+        PortOpenError
+            If the port is still not there.
+        """
+        self._port.open()
+        self._heard_s, self._at_s, self._count = None, None, None
+        self._told.clear()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+    def _take(self, line: Line, cycle: Cycle) -> None:
+        if line.kind is Kind.ANGLE:
+            raise LineError(self.name, "an angle on the photocell's line; swap the ports")
+        self._heard_s = cycle.time_s
+        device_s = self._ticks.take(line.ticks_us) * 1e-6
+        self.fit.add(device_s, cycle.time_s)
+        before, self._count = self._count, int(line.value)
+        if line.kind is Kind.PULSE:
+            at_s, since = self.fit.rig_time_s(device_s), self._at_s
+            self._at_s = at_s
+            self._pulses.append(Pulse(self._count, at_s))
+            self._compare(since, at_s)
+            before = None if before is None else before + 1
+        lost = 0 if before is None else self._count - before
+        if lost:
+            raise PhotocellMissedError(
+                self.name, f"{lost} pulses were counted but their lines did not arrive"
+            )
+
+    def _compare(self, since_s: float | None, at_s: float) -> None:
+        if since_s is None or self._period_s is None:
+            return
+        periods = (at_s - since_s) / self._period_s
+        told = PhotocellMissedError in self._told
+        self._told -= {PhotocellMissedError, PhotocellDeadError}
+        if periods < _EXTRA_PERIODS:
+            raise PhotocellExtraError(
+                self.name, f"two pulses {periods:.3f} periods apart (limit {_EXTRA_PERIODS})"
+            )
+        if periods > _MISSED_PERIODS and not told:
+            raise PhotocellMissedError(
+                self.name, f"{periods:.3f} periods between pulses (limit {_MISSED_PERIODS})"
+            )
+
+    def _absent(self, now_s: float, faults: list[HardwareError]) -> None:
+        """Add what is missing by now: pulses, or any line at all."""
+        if self._heard_s is None:
+            self._heard_s = now_s
+        silent_s = now_s - self._heard_s
+        if silent_s > self._settings.silent_s and SilentPortError not in self._told:
+            self._told.add(SilentPortError)
+            limit = f"{self._settings.silent_s:g} s"
+            faults.append(
+                SilentPortError(self.name, f"no line for {silent_s:.2f} s (limit {limit})")
+            )
+        if self._period_s is None:
+            return
+        if self._at_s is None:
+            self._at_s = now_s
+        periods = (now_s - self._at_s) / self._period_s
+        for kind, limit_periods in (
+            (PhotocellDeadError, _DEAD_PERIODS),
+            (PhotocellMissedError, _MISSED_PERIODS),
+        ):
+            if periods > limit_periods and kind not in self._told:
+                self._told |= {kind, PhotocellMissedError}
+                what = f"no pulse for {periods:.2f} periods (limit {limit_periods})"
+                faults.append(kind(self.name, what))
+
+
+DRIVER = Driver(Role.PHOTOCELL, TimestamperSettings, SerialPhotocell)

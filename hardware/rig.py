@@ -1,0 +1,244 @@
+"""A rig in operation: its devices, its loop, its latched faults.
+
+The control code sees :meth:`Rig.cycle` only. In simulated time it is pumped as fast as it returns;
+in real time a pacer keeps it to the clock. Nothing else differs.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import cast
+
+from hardware.description.errors import ConfigurationError
+from hardware.driver import Prompt, Services
+from hardware.errors import HardwareError, Reaction, TransitionTimeoutError
+from hardware.interlock import guard_axis, guard_shaft
+from hardware.master import Clock, Master, Observer
+from hardware.pacing import Pacer
+from hardware.rig_configuration import Part, RigConfiguration, check
+from hardware.roles import (
+    PROTOCOLS,
+    Cycle,
+    Device,
+    ForceChannels,
+    Inclinometer,
+    Photocell,
+    PositionAxis,
+    Powered,
+    Shaft,
+)
+
+
+class Rig:
+    """Opens a rig; use it in a ``with`` block.
+
+    Parameters
+    ----------
+    clock
+        Monotonic seconds; only limits waiting.
+    pacer
+        When cycles begin.
+    prompt
+        How the operator is asked (see :class:`hardware.driver.Services`).
+    observers
+        Called with every CAN frame sent and received.
+
+    Attributes
+    ----------
+    shaft, eccentricity, phase, photocell, inclinometer, forces
+        The devices by role, behind the interlock; absent ones are ``None``.
+    faults
+        What is latched: nothing moves before :meth:`reset`.
+
+    Raises
+    ------
+    ConfigurationError
+        If the configuration does not fit together.
+    BusOpenError, PortOpenError
+        If a bus or port cannot be opened; what was open is closed again.
+    """
+
+    def __init__(
+        self,
+        configuration: RigConfiguration,
+        clock: Clock,
+        pacer: Pacer,
+        prompt: Prompt,
+        observers: Sequence[Observer] = (),
+    ) -> None:
+        check(configuration)
+        self.configuration = configuration
+        self.faults: list[HardwareError] = []
+        self.number = 0
+        self._pacer = pacer
+        self._devices: list[Device] = []
+        self._period_s = 1.0 / configuration.sample_rate_hz
+        self.master: Master | None = None
+        try:
+            if configuration.bus is not None:
+                self.master = Master(configuration.bus, clock, observers)
+            self._open(Services(clock, prompt, configuration.sample_rate_hz, self.master))
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> "Rig":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def prepare(self) -> None:
+        """Configure all devices and start the bus; the drives stay without power.
+
+        Raises
+        ------
+        ConfigurationError, SdoTimeoutError, SdoAbortError
+            If a device does not answer, refuses, or cannot do what its role needs.
+        """
+        if self.master is not None:
+            self.master.prepare()
+        for device in self._devices:
+            device.prepare()
+        if self.master is not None:
+            self.master.start()
+
+    def cycle(self) -> Cycle:
+        """Run one cycle: bus, devices, outputs.
+
+        Raises
+        ------
+        HardwareError
+            The most severe of what was found in this cycle, after the cycle is complete and what it
+            asks for (quick stop, profile stop, silence) is on its way; the others are its notes.
+            Each fault is raised once and latched; a lost bus is raised in every cycle.
+        """
+        late = self._pacer.wait()
+        self.number += 1
+        cycle = Cycle(self.number, self.number * self._period_s, late)
+        found = self.master.exchange(self.number) if self.master else []
+        for device in self._devices:
+            try:
+                device.tick(cycle)
+            except HardwareError as error:
+                found.append(error)
+        fresh = [error for error in found if self._latch(error)]
+        self._react(fresh)
+        if self.master is not None:
+            lost = [error for error in self.master.flush() if self._latch(error)]
+            self._react(lost)
+            fresh += lost
+        if fresh:
+            raise _worst(fresh)
+        return cycle
+
+    def run_until(self, condition: Callable[[], bool], within_cycles: int, what: str) -> int:
+        """Cycle until a condition holds; return how many cycles it took.
+
+        Raises
+        ------
+        TransitionTimeoutError
+            If it does not hold in time; ``what`` says what was waited for.
+        HardwareError
+            As :meth:`cycle` does.
+        """
+        for count in range(within_cycles + 1):
+            if condition():
+                return count
+            self.cycle()
+        raise TransitionTimeoutError("rig", f"{what}: not within {within_cycles} cycles")
+
+    def stop(self) -> None:
+        """Profile stop of all axes."""
+        for one in self.powered():
+            one.stop()
+
+    def quick_stop(self) -> None:
+        """Quick stop of all axes."""
+        for one in self.powered():
+            one.quick_stop()
+
+    def reset(self) -> None:
+        """Forget the latched faults and reset those of the devices: on the operator's demand.
+
+        Raises
+        ------
+        HardwareError
+            If a device cannot be reset (a port is still unplugged); its fault stays latched.
+        """
+        for device in self._devices:
+            device.reset_fault()
+        if self.master is not None:
+            self.master.reset()
+        self.faults.clear()
+
+    def powered(self) -> tuple[Powered, ...]:
+        """Return the axes that the rig has."""
+        axes = (self.shaft, self.eccentricity, self.phase)
+        return tuple(one for one in axes if one is not None)
+
+    def close(self) -> None:
+        """Close devices and bus; may be called twice."""
+        for device in self._devices:
+            device.close()
+        self._devices = []
+        if self.master is not None:
+            self.master.close()
+            self.master = None
+
+    def _open(self, services: Services) -> None:
+        one = self.configuration
+        shaft = cast("Shaft | None", self._device(one.shaft, services))
+        services = replace(services, shaft=shaft)
+        axes = [
+            cast("PositionAxis | None", self._device(part, services))
+            for part in (one.eccentricity, one.phase)
+        ]
+        self.forces = tuple(
+            cast("ForceChannels", self._device(part, services)) for part in one.forces
+        )
+        self.photocell = cast("Photocell | None", self._device(one.photocell, services))
+        self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
+        present = [axis for axis in axes if axis is not None]
+        self.shaft = guard_shaft(shaft, present, lambda: self.faults) if shaft else None
+        self.eccentricity, self.phase = (
+            guard_axis(axis, shaft, lambda: self.faults) if axis else None for axis in axes
+        )
+
+    def _device(self, part: Part | None, services: Services) -> Device | None:
+        if part is None:
+            return None
+        device = part.driver.open(part.name, part.settings, services)
+        self._devices.append(device)
+        if not isinstance(device, PROTOCOLS[part.driver.role]):
+            raise ConfigurationError(
+                f"{part.name}: {type(device).__name__} is no {part.driver.role}; "
+                "see docs/adding-a-driver.md for what the role needs"
+            )
+        return device
+
+    def _latch(self, error: HardwareError) -> bool:
+        """Keep a fault that stops the rig; tell whether it is to be raised."""
+        if error.reaction < Reaction.PROFILE_STOP:
+            return True
+        known = {(type(one), one.device) for one in self.faults}
+        new = (type(error), error.device) not in known
+        if new:
+            self.faults.append(error)
+        return new or error.reaction is Reaction.END_RUN
+
+    def _react(self, found: Sequence[HardwareError]) -> None:
+        reaction = max((error.reaction for error in found), default=Reaction.REFUSE)
+        if reaction is Reaction.END_RUN and self.master is not None:
+            self.master.healthy = False
+        if reaction >= Reaction.QUICK_STOP:
+            self.quick_stop()
+        elif reaction is Reaction.PROFILE_STOP:
+            self.stop()
+
+
+def _worst(found: Sequence[HardwareError]) -> HardwareError:
+    worst = max(found, key=lambda error: error.reaction)
+    for other in found:
+        if other is not worst:
+            worst.add_note(f"also: {other}")
+    return worst

@@ -1,0 +1,210 @@
+"""What a rig is made of, read from the tables of ``rig.toml`` and checked as a whole."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint
+from typing import Final
+
+from hardware.bus import BusConfiguration, bus_load, check_load
+from hardware.description.errors import ConfigurationError
+from hardware.driver import Driver, NodePlan, find_driver, read_settings
+from hardware.roles import Role
+
+ROLES: Final = {
+    "shaft": Role.SHAFT,
+    "eccentricity": Role.POSITION_AXIS,
+    "phase": Role.POSITION_AXIS,
+    "photocell": Role.PHOTOCELL,
+    "inclinometer": Role.INCLINOMETER,
+    "forces": Role.FORCES,
+}
+_SYNC_BYTES, _BEAT_BYTES = 1, 1
+
+
+@dataclass(frozen=True)
+class Part:
+    """One device of a rig: where it belongs, its driver and the driver's settings."""
+
+    name: str
+    driver: Driver
+    settings: object
+
+    def nodes(self) -> tuple[NodePlan, ...]:
+        """Return what it wants of the bus."""
+        return self.driver.nodes(self.name, self.settings)
+
+
+@dataclass(frozen=True)
+class RigConfiguration:
+    """A whole rig; each part may be absent.
+
+    Attributes
+    ----------
+    cycle_rate_hz
+        Cycles per second of a rig without a bus; with one, the bus's SYNC rate holds.
+    """
+
+    bus: BusConfiguration | None = None
+    shaft: Part | None = None
+    eccentricity: Part | None = None
+    phase: Part | None = None
+    photocell: Part | None = None
+    inclinometer: Part | None = None
+    forces: tuple[Part, ...] = ()
+    cycle_rate_hz: float = 100.0
+
+    @property
+    def sample_rate_hz(self) -> float:
+        """Cycles per second."""
+        return self.bus.sync_rate_hz if self.bus else self.cycle_rate_hz
+
+    def parts(self) -> Iterator[Part]:
+        """Yield the parts, the shaft first."""
+        for one in (self.shaft, self.eccentricity, self.phase, *self.forces):
+            if one is not None:
+                yield one
+        for one in (self.photocell, self.inclinometer):
+            if one is not None:
+                yield one
+
+
+def read_rig(
+    tables: Mapping[str, object], among: Iterable[EntryPoint] | None = None
+) -> RigConfiguration:
+    """Read the tables of a rig: ``bus``, one per part, ``forces`` as an array of tables.
+
+    Raises
+    ------
+    ConfigurationError
+        With a line for every error of the whole configuration.
+    """
+    faults: list[str] = []
+    known = [*ROLES, "bus", "cycle_rate_hz"]
+    faults += [f"{key} is not a known table; known: {', '.join(known)}" for key in tables if
+               key not in known]  # fmt: skip
+    found = {
+        role: _parts(role, tables[role], faults, None if among is None else tuple(among))
+        for role in ROLES
+        if role in tables
+    }
+    bus = _read(BusConfiguration, tables.get("bus"), "bus", faults)
+    if faults:
+        raise ConfigurationError("\n".join(faults))
+    single = {role: parts[0] for role, parts in found.items() if role != "forces" and parts}
+    rate = tables.get("cycle_rate_hz", 100.0)
+    if isinstance(rate, bool) or not isinstance(rate, int | float) or not rate > 0:
+        raise ConfigurationError(f"cycle_rate_hz = {rate!r} has to be a number above 0")
+    rig = RigConfiguration(bus=bus, forces=tuple(found.get("forces", ())), cycle_rate_hz=rate,
+                           **single)  # fmt: skip
+    check(rig)
+    return rig
+
+
+def check(rig: RigConfiguration) -> None:
+    """Check a rig as a whole: EDS files, mappings, node ids, channel names, bus load.
+
+    Raises
+    ------
+    ConfigurationError
+        With a line for every error, each with the object, the value and the limit.
+    """
+    faults: list[str] = []
+    plans: list[NodePlan] = []
+    frames: Counter[int] = Counter()
+    for part in rig.parts():
+        try:
+            mine = part.nodes()
+            plans += mine
+            for plan in mine:
+                for layouts in plan.layouts():
+                    frames.update(one.size for one in layouts)
+        except ConfigurationError as error:
+            faults.append(str(error))
+    faults += _node_faults(plans, rig.bus)
+    faults += _channel_faults(rig)
+    if rig.bus is not None:
+        try:
+            check_load(load_of(rig.bus, frames, len(plans)), rig.bus)
+        except ConfigurationError as error:
+            faults.append(str(error))
+    if faults:
+        raise ConfigurationError("\n".join(faults))
+
+
+def load_of(bus: BusConfiguration, pdo_sizes: Mapping[int, int], node_count: int) -> float:
+    """Return the bus load: SYNC and every PDO in each cycle, and everyone's heartbeat."""
+    per_s: Counter[int] = Counter()
+    for size, count in pdo_sizes.items():
+        per_s[size] += round(count * bus.sync_rate_hz)
+    per_s[_SYNC_BYTES] += round(bus.sync_rate_hz)
+    per_s[_BEAT_BYTES] += round((node_count + 1) * 1000.0 / bus.heartbeat_ms)
+    return bus_load(per_s, bus.bit_rate)
+
+
+def _parts(
+    role: str, table: object, faults: list[str], among: tuple[EntryPoint, ...] | None
+) -> list[Part]:
+    many = role == "forces"
+    tables = table if many and isinstance(table, list) else [table]
+    parts = []
+    for i, one in enumerate(tables):
+        where = f"{role}[{i}]" if many else role
+        if not isinstance(one, Mapping):
+            faults.append(f"{where} = {one!r} has to be a table")
+            continue
+        try:
+            parts.append(_part(where, ROLES[role], one, among))
+        except ConfigurationError as error:
+            faults.append(str(error))
+    return parts
+
+
+def _part(
+    where: str, role: Role, table: Mapping[str, object], among: tuple[EntryPoint, ...] | None
+) -> Part:
+    rest = dict(table)
+    name = rest.pop("driver", None)
+    if not isinstance(name, str):
+        raise ConfigurationError(f"{where}.driver is missing: it names the driver")
+    driver = find_driver(name, where, among)
+    if driver.role is not role:
+        raise ConfigurationError(f"{where}.driver = {name!r} is for {driver.role}, not {role}")
+    return Part(where, driver, read_settings(driver.settings, rest, where))
+
+
+def _read(
+    kind: type[BusConfiguration], table: object, where: str, faults: list[str]
+) -> BusConfiguration | None:
+    if table is None:
+        return None
+    if not isinstance(table, Mapping):
+        faults.append(f"{where} = {table!r} has to be a table")
+        return None
+    try:
+        return read_settings(kind, table, where)
+    except ConfigurationError as error:
+        faults.append(str(error))
+        return None
+
+
+def _node_faults(plans: list[NodePlan], bus: BusConfiguration | None) -> Iterator[str]:
+    taken = {} if bus is None else {bus.master_node: "the controller (bus.master_node)"}
+    for plan in plans:
+        if bus is None:
+            yield f"{plan.name}: needs a CAN bus, and the rig has no [bus] table"
+        if not 1 <= plan.node_id <= 127:
+            yield f"{plan.name}.node = {plan.node_id}; a node id is 1 to 127"
+        if plan.node_id in taken:
+            yield f"{plan.name}.node = {plan.node_id} is taken by {taken[plan.node_id]}"
+        taken.setdefault(plan.node_id, plan.name)
+
+
+def _channel_faults(rig: RigConfiguration) -> Iterator[str]:
+    names: Counter[str] = Counter()
+    for part in rig.forces:
+        for one in getattr(part.settings, "channels", ()):
+            names[getattr(one, "name", str(one))] += 1
+    for name, count in names.items():
+        if count > 1:
+            yield f"forces: channel {name!r} is there {count} times; a name has to be unique"

@@ -1,0 +1,252 @@
+"""What the parts of a rig can do: a protocol per role. A driver is a class that answers one.
+
+Commands never wait: they set a goal, and :meth:`Device.tick`, called once per cycle, pursues it.
+What goes wrong is raised as a :class:`hardware.errors.HardwareError` by the command (refusals) or
+by ``tick`` (faults, each once).
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import Channel
+from hardware.description.oscillator import Range
+
+
+class Role(StrEnum):
+    """The places of a rig that a driver can fill; the names are those of ``rig.toml``."""
+
+    SHAFT = "shaft"
+    POSITION_AXIS = "position_axis"
+    FORCES = "forces"
+    PHOTOCELL = "photocell"
+    INCLINOMETER = "inclinometer"
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """One turn of the control loop.
+
+    Attributes
+    ----------
+    number
+        Number of the SYNC, from 1, never wrapping.
+    time_s
+        ``number`` times the period: the rig's time. It comes from counting, not from a clock.
+    lateness_s
+        How late the cycle began on the host's clock; 0 when free-running.
+    """
+
+    number: int
+    time_s: float
+    lateness_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A position as it was read: in the axis's unit, with its standard uncertainty."""
+
+    value: float
+    standard_uncertainty: float
+    source: str  # "encoder", or what the operator read: "micrometer", "phase drum"
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive samples of a device.
+
+    Attributes
+    ----------
+    first
+        Number of the first sample; a gap to the previous block is that many lost samples. Devices
+        on the bus count SYNCs, others their own samples.
+    values
+        Shape ``(channels, samples)``, in the channels' units; NaN where a value is not valid.
+    """
+
+    first: int
+    values: NDArray[np.float64]
+
+
+def rows(first: int, samples: Sequence[tuple[float, ...]], channel_count: int) -> Block:
+    """Make a block of samples that came one by one, each a tuple over the channels."""
+    values = np.array(samples, dtype=np.float64).reshape(len(samples), channel_count).T
+    return Block(first, values)
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A pulse of the photocell: one per turn of the shaft.
+
+    Attributes
+    ----------
+    number
+        The device's own count, never wrapping.
+    time_s
+        When, in the rig's time.
+    shaft_angle_rad
+        Where the shaft was, if the device knows.
+    """
+
+    number: int
+    time_s: float
+    shaft_angle_rad: float = math.nan
+
+
+@runtime_checkable
+class Device(Protocol):
+    """Whatever a rig is made of."""
+
+    name: str
+
+    def prepare(self) -> None:
+        """Write the device's settings to it; may wait for answers. Called once, before cycles."""
+        ...
+
+    def tick(self, cycle: Cycle) -> None:
+        """Take what came in this cycle and pursue the goal, without waiting."""
+        ...
+
+    def reset_fault(self) -> None:
+        """Clear a fault, on the operator's demand only; the device stays at rest, disabled."""
+        ...
+
+    def close(self) -> None:
+        """Let go of whatever is held; may be called twice."""
+        ...
+
+
+@runtime_checkable
+class Sampled(Device, Protocol):
+    """A device with channels."""
+
+    channels: tuple[Channel, ...]
+    sample_rate_hz: float
+
+    def take(self) -> tuple[Block, ...]:
+        """Return the samples since the last call, oldest first."""
+        ...
+
+
+@runtime_checkable
+class Powered(Device, Protocol):
+    """A device that moves."""
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds or moves under power."""
+        ...
+
+    @property
+    def moving(self) -> bool:
+        """Whether it moves or has been told to."""
+        ...
+
+    def enable(self) -> None:
+        """Put it under power, at rest."""
+        ...
+
+    def disable(self) -> None:
+        """Take the power off."""
+        ...
+
+    def stop(self) -> None:
+        """Decelerate along the profile, then stand under power."""
+        ...
+
+    def quick_stop(self) -> None:
+        """Decelerate as fast as is safe; enabling again takes :meth:`enable`."""
+        ...
+
+
+@runtime_checkable
+class Shaft(Powered, Sampled, Protocol):
+    """The drive shaft. Its channel, if it has an encoder, is the shaft angle in radians."""
+
+    frequency_hz: Range
+
+    @property
+    def at_speed(self) -> bool:
+        """Whether the commanded speed has been reached."""
+        ...
+
+    @property
+    def measured_frequency_hz(self) -> float:
+        """Turns per second now; NaN if nothing measures them."""
+        ...
+
+    def turn(self, frequency_hz: float) -> None:
+        """Run up or down to a speed; 0 is refused: that is :meth:`stop`."""
+        ...
+
+
+@runtime_checkable
+class PositionAxis(Powered, Protocol):
+    """The eccentricity (``"m"``) or the strut phase (``"rad"``)."""
+
+    unit: str
+    limits: Range
+
+    @property
+    def homed(self) -> bool:
+        """Whether positions are absolute; moving before is refused."""
+        ...
+
+    @property
+    def settled(self) -> bool:
+        """Whether the last move has arrived within the axis's tolerance."""
+        ...
+
+    @property
+    def reading(self) -> Reading | None:
+        """Where the axis is; ``None`` before it is known."""
+        ...
+
+    def home(self) -> None:
+        """Find the reference position."""
+        ...
+
+    def move_to(self, position: float) -> None:
+        """Go to a position in the axis's unit."""
+        ...
+
+
+@runtime_checkable
+class ForceChannels(Sampled, Protocol):
+    """Amplifiers of the dynamometers: any number of channels, in newtons or whatever they say."""
+
+    def tare(self) -> None:
+        """Take the present values for zero: from the next sample on."""
+        ...
+
+
+@runtime_checkable
+class Photocell(Device, Protocol):
+    """The photocell at the shaft."""
+
+    def expect(self, frequency_hz: float | None) -> None:
+        """Say how fast the shaft turns, so that missing pulses are noticed; ``None``: at rest."""
+        ...
+
+    def take(self) -> tuple[Pulse, ...]:
+        """Return the pulses since the last call, oldest first."""
+        ...
+
+
+@runtime_checkable
+class Inclinometer(Sampled, Protocol):
+    """The inclinometer of the swing: one channel in radians, sampled by the device's own clock."""
+
+
+PROTOCOLS: dict[Role, type] = {
+    Role.SHAFT: Shaft,
+    Role.POSITION_AXIS: PositionAxis,
+    Role.FORCES: ForceChannels,
+    Role.PHOTOCELL: Photocell,
+    Role.INCLINOMETER: Inclinometer,
+}

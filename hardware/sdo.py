@@ -1,0 +1,123 @@
+"""SDO transfers, guarded: one at a time, never from a receive callback, with typed errors."""
+
+import threading
+from collections.abc import Callable
+from typing import Protocol, TypeVar
+
+import can
+import canopen
+from canopen.sdo import SdoAbortedError, SdoClient, SdoCommunicationError
+
+from hardware.dictionary import Entry
+from hardware.errors import SdoAbortError, SdoInCallbackError, SdoTimeoutError
+
+Number = int | float
+T = TypeVar("T")
+_REQUEST, _RESPONSE = 0x600, 0x580
+
+
+class Carrier(Protocol):
+    """What carries SDO frames: the master."""
+
+    lock: threading.RLock
+    delivering: bool
+    clock: Callable[[], float]
+
+    @property
+    def network(self) -> canopen.Network:
+        """What sends for canopen, and hands responses on."""
+        ...
+
+    def receive(self, timeout_s: float) -> can.Message | None:
+        """Return the next frame of the bus."""
+        ...
+
+    def deliver(self, frame: can.Message) -> None:
+        """Hand a frame to whom it concerns."""
+        ...
+
+
+class _Client(SdoClient):
+    """canopen's client, but receiving through the carrier instead of blocking on a queue."""
+
+    def __init__(self, node_id: int, dictionary: canopen.ObjectDictionary, by: Carrier) -> None:
+        super().__init__(_REQUEST + node_id, _RESPONSE + node_id, dictionary)
+        self.network = by.network
+        self._carrier = by
+        by.network.subscribe(self.tx_cobid, self.on_response)
+
+    def read_response(self) -> bytes:
+        deadline = self._carrier.clock() + self.RESPONSE_TIMEOUT
+        while self.responses.empty():
+            left = deadline - self._carrier.clock()
+            frame = self._carrier.receive(left) if left > 0 else None
+            if frame is None:
+                raise SdoCommunicationError("No SDO response received")
+            self._carrier.deliver(frame)
+        response: bytes = super().read_response()  # type: ignore[no-untyped-call]
+        return response
+
+
+class Sdo:
+    """Reads and writes the objects of one node.
+
+    Parameters
+    ----------
+    timeout_s
+        How long to wait for each answer.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        node_id: int,
+        dictionary: canopen.ObjectDictionary,
+        carrier: Carrier,
+        timeout_s: float = 0.3,
+    ) -> None:
+        self._name = f"{name} (node {node_id})"
+        self._carrier = carrier
+        self._dictionary = dictionary
+        self._client = _Client(node_id, dictionary, carrier)
+        self._client.RESPONSE_TIMEOUT = timeout_s
+
+    def read(self, at: Entry) -> Number | str:
+        """Return an object's value, decoded after the EDS.
+
+        Raises
+        ------
+        SdoTimeoutError, SdoAbortError, SdoInCallbackError
+            If the node does not answer, refuses, or the call comes from a receive callback.
+        """
+        raw = self._guarded(at, "read", lambda: self._client.upload(*at))
+        value = self._variable(at).decode_raw(raw)
+        return value if isinstance(value, int | float | str) else bytes(value).hex()
+
+    def write(self, at: Entry, value: Number | str) -> None:
+        """Write an object's value, encoded after the EDS; raises as :meth:`read`."""
+        data = self._variable(at).encode_raw(value)
+        self._guarded(at, f"write {value!r} to", lambda: self._client.download(*at, data))
+
+    def _variable(self, at: Entry) -> canopen.objectdictionary.ODVariable:
+        found = self._dictionary.get_variable(*at)
+        if found is None:
+            raise SdoAbortError(self._name, f"object {at} is not in the EDS", 0x06020000)
+        return found
+
+    def _guarded(self, at: Entry, what: str, transfer: Callable[[], T]) -> T:
+        if self._carrier.delivering:
+            raise SdoInCallbackError(
+                self._name, f"cannot {what} {at} while frames are delivered; do it between cycles"
+            )
+        with self._carrier.lock:
+            try:
+                return transfer()
+            except SdoAbortedError as error:
+                raise SdoAbortError(
+                    self._name, f"refused to {what} {at}: {error}", error.code
+                ) from error
+            except SdoCommunicationError as error:
+                raise SdoTimeoutError(
+                    self._name,
+                    f"could not {what} {at} within {self._client.RESPONSE_TIMEOUT:g} s: {error}",
+                ) from error

@@ -1,0 +1,166 @@
+"""Serial ports: local, or on a device server (``socket://``, ``rfc2217://``), read by lines."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import serial
+from serial.tools import list_ports
+
+from hardware.errors import LineError, PortOpenError, UnpluggedError
+
+_CHUNK: Final = 65536
+_LONGEST_LINE: Final = 256
+_FIRST_BACK_OFF_S, _LAST_BACK_OFF_S = 0.5, 8.0
+
+
+@dataclass(frozen=True)
+class PortSettings:
+    """How to open a port.
+
+    Attributes
+    ----------
+    url
+        A device (best by id: ``/dev/serial/by-id/...``), a URL that pyserial opens, or
+        ``usb:SERIAL`` for the adapter with that serial number.
+    """
+
+    url: str
+    baud_rate: int = 115200
+    write_timeout_s: float = 0.2
+
+
+def resolve(url: str) -> str:
+    """Return the device of a ``usb:SERIAL`` name; anything else as it is.
+
+    Raises
+    ------
+    PortOpenError
+        If no adapter with that serial number is plugged in.
+    """
+    if not url.startswith("usb:"):
+        return url
+    ports = {port.serial_number: port.device for port in list_ports.comports()}
+    number = url.removeprefix("usb:")
+    if number not in ports:
+        known = ", ".join(str(one) for one in ports if one) or "none"
+        raise PortOpenError(url, f"no such adapter; plugged in: {known}")
+    device: str = ports[number]
+    return device
+
+
+class SerialPort:
+    """A port that is read by lines, never waiting.
+
+    pyserial's own ``readline`` reads byte by byte; this reads what is there and splits it.
+
+    Raises
+    ------
+    PortOpenError
+        If the port cannot be opened.
+    """
+
+    def __init__(self, name: str, settings: PortSettings) -> None:
+        self._name = name
+        self._settings = settings
+        self._rest = b""
+        self._back_off_s = _FIRST_BACK_OFF_S
+        self._again_s = 0.0
+        self._port: serial.SerialBase | None = None
+        self.open()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the port is open, as far as is known."""
+        return self._port is not None
+
+    def open(self) -> None:
+        """Open the port if it is not; raises as the constructor does."""
+        if self._port is not None:
+            return
+        try:
+            self._port = serial.serial_for_url(
+                resolve(self._settings.url),
+                baudrate=self._settings.baud_rate,
+                timeout=0,
+                write_timeout=self._settings.write_timeout_s,
+                exclusive=True,
+            )
+        except (OSError, ValueError) as error:
+            raise PortOpenError(
+                self._name, f"{self._settings.url} cannot be opened: {error}"
+            ) from error
+        self._rest = b""
+
+    def lines(self) -> list[bytes]:
+        """Return the whole lines that have arrived, without their line feed; none if closed.
+
+        Raises
+        ------
+        UnpluggedError
+            If the port fails; it is closed then.
+        LineError
+            If so much arrived without a line feed that it cannot be a line.
+        """
+        if self._port is None:
+            return []
+        try:
+            # The count of waiting bytes first: on an unplugged adapter it fails where a read of
+            # nothing would not.
+            if not self._port.in_waiting:
+                return []
+            self._rest += self._port.read(_CHUNK)
+        except OSError as error:  # SerialException is one
+            raise self._lost("reading", error) from error
+        *whole, self._rest = self._rest.split(b"\n")
+        if len(self._rest) > _LONGEST_LINE:
+            seen, self._rest = self._rest[:32], b""
+            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({seen!r} ...)")
+        return [line for line in whole if line.strip()]
+
+    def write(self, data: bytes) -> None:
+        """Write.
+
+        Raises
+        ------
+        UnpluggedError
+            If the port fails or does not take the data in time; it is closed then.
+        """
+        if self._port is None:
+            raise UnpluggedError(self._name, f"{self._settings.url} is closed; plug in and reset")
+        try:
+            self._port.write(data)
+        except OSError as error:
+            raise self._lost("writing", error) from error
+
+    def recover(self, now_s: float) -> bool:
+        """Try to open a lost port again, ever less often; for idle times. Tell whether it is open.
+
+        Parameters
+        ----------
+        now_s
+            The rig's time.
+        """
+        if self._port is not None or now_s < self._again_s:
+            return self.is_open
+        try:
+            self.open()
+            self._back_off_s = _FIRST_BACK_OFF_S
+        except PortOpenError:
+            self._again_s = now_s + self._back_off_s
+            self._back_off_s = min(2.0 * self._back_off_s, _LAST_BACK_OFF_S)
+        return self.is_open
+
+    def close(self) -> None:
+        """Close the port; may be called twice."""
+        port, self._port = self._port, None
+        if port is not None:
+            try:
+                port.close()
+            except OSError:
+                return  # an unplugged port has nothing left to close
+
+    def _lost(self, what: str, error: OSError) -> UnpluggedError:
+        self.close()
+        return UnpluggedError(
+            self._name, f"{what} {self._settings.url} failed: {error}; plug in and reset"
+        )

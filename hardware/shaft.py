@@ -1,0 +1,245 @@
+"""The drive shaft on a CiA 402 drive in profile velocity."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from hardware.cia402 import Goal, Mode, Status
+from hardware.description.channels import SHAFT_ANGLE, Channel
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Range
+from hardware.dictionary import Entry
+from hardware.drive import (
+    CONTROL_WORD,
+    MODE,
+    PROBE_PDO,
+    STATE_PDOS,
+    STEP_CYCLES,
+    TARGET_VELOCITY,
+    VELOCITY,
+    Drive,
+)
+from hardware.driver import Driver, NodePlan, Services, join
+from hardware.errors import LimitError, NotReadyError
+from hardware.roles import Block, Cycle, Role, rows
+
+_TURN = 2.0 * math.pi
+_REST_SHARE = 0.002  # of the largest frequency: below it the shaft stands
+_SPEED_SHARE = 0.02  # of the commanded frequency: within it the speed is reached
+_MARGIN = 1.5  # a run-up may take so much longer than its profile
+
+
+@dataclass(frozen=True)
+class ShaftSettings:
+    """Settings of the drive shaft.
+
+    Attributes
+    ----------
+    node
+        Node id of its drive.
+    counts_per_turn
+        Increments of 6064 in one turn of the shaft, gears included; negative if the drive counts
+        against the shaft's positive sense.
+    velocity_per_count
+        Units of 606C and 60FF for one count per second.
+    following_error_turns
+        Window outside of which the drive faults.
+    touch_probe
+        The photocell is wired to the drive's touch probe 1: maps its objects.
+    """
+
+    node: int
+    counts_per_turn: float
+    highest_frequency_hz: float
+    acceleration_hz_per_s: float
+    quick_stop_hz_per_s: float
+    lowest_frequency_hz: float = 0.0
+    velocity_per_count: float = 1.0
+    following_error_turns: float = 0.1
+    following_error_ms: int = 20
+    touch_probe: bool = False
+    eds: str = "cia402-drive.eds"
+
+    def __post_init__(self) -> None:
+        for key in ("highest_frequency_hz", "acceleration_hz_per_s", "quick_stop_hz_per_s"):
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        if self.counts_per_turn == 0.0:
+            raise ConfigurationError("counts_per_turn = 0: the shaft would never move")
+
+
+class DriveShaft:
+    """A :class:`hardware.roles.Shaft`.
+
+    Attributes
+    ----------
+    drive
+        Its drive, for the touch probe and for diagnosis.
+    """
+
+    channels: tuple[Channel, ...] = (SHAFT_ANGLE,)
+
+    def __init__(self, name: str, settings: ShaftSettings, services: Services) -> None:
+        self.name = name
+        self.settings = settings
+        self.sample_rate_hz = services.sample_rate_hz
+        self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
+        self.drive = Drive(join(nodes(name, settings)[0], services), (Mode.PROFILE_VELOCITY,))
+        self._target_hz = 0.0
+        self._counts: int | None = None
+        self._track: deque[tuple[int, int]] = deque(maxlen=4)
+        self._blocks: list[Block] = []
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds or turns under power."""
+        return self.drive.enabled
+
+    @property
+    def counts(self) -> int:
+        """Position in counts since the start, never wrapping."""
+        return self._counts or 0
+
+    @property
+    def measured_frequency_hz(self) -> float:
+        """Turns per second, positive in the shaft's sense."""
+        return self.drive.node.values[VELOCITY] / self._velocity_per_hz
+
+    @property
+    def moving(self) -> bool:
+        """Whether the shaft turns, or is commanded to."""
+        rest = _REST_SHARE * self.settings.highest_frequency_hz
+        return abs(self.measured_frequency_hz) > rest or self._target_hz != 0.0
+
+    @property
+    def at_speed(self) -> bool:
+        """Whether drive and measured speed say that the commanded speed is reached."""
+        off = abs(self.measured_frequency_hz - self._target_hz)
+        near = off <= _SPEED_SHARE * self._target_hz
+        return self.enabled and near and Status.TARGET_REACHED in self.drive.status
+
+    def enable(self) -> None:
+        """Put the shaft under power at rest."""
+        self._aim(0.0)
+        self.drive.head_for(Goal.ENABLED)
+
+    def disable(self) -> None:
+        """Take the power off."""
+        self._aim(0.0)
+        self.drive.head_for(Goal.DISABLED)
+
+    def turn(self, frequency_hz: float) -> None:
+        """Run up or down to a speed.
+
+        Raises
+        ------
+        LimitError
+            If it lies outside the limits.
+        NotReadyError
+            If the shaft is not enabled.
+        """
+        low, high = self.frequency_hz.low, self.frequency_hz.high
+        if not (frequency_hz > 0.0 and frequency_hz in self.frequency_hz):
+            raise LimitError(
+                self.name, f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0)"
+            )
+        if not self.enabled:
+            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        change = abs(frequency_hz - self.measured_frequency_hz)
+        self._aim(frequency_hz)
+        self.drive.within(self._cycles(change), f"run-up to {frequency_hz:g} Hz")
+
+    def stop(self) -> None:
+        """Decelerate along the profile, then stand under power."""
+        self._aim(0.0)
+        if self.enabled:
+            self.drive.within(self._cycles(abs(self.measured_frequency_hz)), "profile stop")
+
+    def quick_stop(self) -> None:
+        """Decelerate on the quick-stop ramp."""
+        self._aim(0.0)
+        self.drive.head_for(Goal.QUICK_STOPPED)
+
+    def reset_fault(self) -> None:
+        """Reset the drive's fault; it stays disabled."""
+        self._aim(0.0)
+        self.drive.reset_fault()
+
+    def prepare(self) -> None:
+        """Write limits and ramps to the drive."""
+        counts = abs(self.settings.counts_per_turn)
+        per_hz = abs(self._velocity_per_hz)
+        self.drive.prepare(
+            (
+                (Entry(0x607F), round(per_hz * self.settings.highest_frequency_hz)),
+                (Entry(0x6083), round(per_hz * self.settings.acceleration_hz_per_s)),
+                (Entry(0x6084), round(per_hz * self.settings.acceleration_hz_per_s)),
+                (Entry(0x6085), round(per_hz * self.settings.quick_stop_hz_per_s)),
+                (Entry(0x6065), round(counts * self.settings.following_error_turns)),
+                (Entry(0x6066), self.settings.following_error_ms),
+            )
+        )
+
+    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+        """Take the cycle's positions and keep the drive going."""
+        samples = self.drive.node.streams[0].samples
+        if samples:
+            for number, values in samples:
+                self._track.append((number, self._unwrap(int(values[2]))))
+            per_turn = self.settings.counts_per_turn
+            angles = [(_TURN * counts / per_turn,) for _, counts in self._track][-len(samples) :]
+            self._blocks.append(rows(samples[0][0], angles, 1))
+        if self.at_speed or not self.moving:
+            self.drive.done()
+        self.drive.tick()
+
+    def take(self) -> tuple[Block, ...]:
+        """Return the shaft angles since the last call."""
+        taken, self._blocks = tuple(self._blocks), []
+        return taken
+
+    def position_near(self, raw: int) -> int:
+        """Return the count, never wrapping, of a 32-bit position near the present one."""
+        return self.counts + _wrapped(raw - self.counts)
+
+    def last_two(self, number: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Return (number, count) at SYNC ``number`` and at the one known before it."""
+        known = [one for one in self._track if one[0] <= number] or [(number, self.counts)]
+        return (known[-2] if len(known) > 1 else known[-1]), known[-1]
+
+    def close(self) -> None:
+        """Nothing to let go of: the bus is the master's."""
+
+    @property
+    def _velocity_per_hz(self) -> float:
+        return self.settings.counts_per_turn * self.settings.velocity_per_count
+
+    def _cycles(self, change_hz: float) -> float:
+        ramp_s = change_hz / self.settings.acceleration_hz_per_s
+        return STEP_CYCLES + _MARGIN * ramp_s * self.sample_rate_hz
+
+    def _aim(self, frequency_hz: float) -> None:
+        self._target_hz = frequency_hz
+        self.drive.done()
+        self.drive.node.put(TARGET_VELOCITY, round(frequency_hz * self._velocity_per_hz))
+
+    def _unwrap(self, raw: int) -> int:
+        """Make the 32-bit position count on."""
+        if self._counts is None:
+            self._counts = raw
+        self._counts += _wrapped(raw - self._counts)
+        return self._counts
+
+
+def _wrapped(difference: int) -> int:
+    return (difference + 2**31) % 2**32 - 2**31
+
+
+def nodes(name: str, settings: ShaftSettings) -> tuple[NodePlan, ...]:
+    """Return what the shaft's drive wants of the bus."""
+    tpdos = (*STATE_PDOS, PROBE_PDO) if settings.touch_probe else STATE_PDOS
+    rpdo = (CONTROL_WORD, MODE, TARGET_VELOCITY)
+    return (NodePlan(name, settings.node, settings.eds, tpdos, (rpdo,)),)
+
+
+DRIVER = Driver(Role.SHAFT, ShaftSettings, DriveShaft, nodes)
