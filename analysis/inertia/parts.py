@@ -62,7 +62,7 @@ class Part:
             if gyradius > 0.0:
                 slope[k] = 0.5 / (mass * gyradius)
                 slope[0] = -0.5 * gyradius / mass
-            spread = float(np.sqrt(max(slope @ self.covariance @ slope, 0.0)))
+            spread = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
             out.append(Estimate(gyradius, spread, "m"))
         return out[0], out[1], out[2]
 

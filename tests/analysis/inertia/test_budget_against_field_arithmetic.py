@@ -1,0 +1,125 @@
+"""Budgets against the worked arithmetic, closed forms and GTC's own."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analysis.inertia.budget import linear_budget
+from analysis.inertia.estimate import Estimate, exactly, within
+from analysis.inertia.monte_carlo import assess, monte_carlo
+from hardware.description.errors import ConfigurationError, DataError
+
+INPUTS = {
+    "period_s": Estimate(7.2923, 0.0060, "s"),
+    "mass_kg": Estimate(42.28, 0.02, "kg"),
+    "cg_m": Estimate(0.0713, 0.0003, "m"),
+}
+
+
+def inertia(period_s: float, mass_kg: float, cg_m: float) -> float:
+    return period_s**2 * mass_kg * 9.81 * cg_m / (4.0 * math.pi**2)
+
+
+def test_worked_arithmetic() -> None:
+    budget = linear_budget("I", inertia, INPUTS, unit="kg m2")
+    assert budget.result.value == pytest.approx(39.8348, abs=5e-5)
+    assert budget.result.uncertainty == pytest.approx(0.1810, abs=5e-5)
+    shares = {line.name: 100.0 * line.share for line in budget.shares}
+    assert shares == pytest.approx({"cg_m": 85.8, "period_s": 13.1, "mass_kg": 1.1}, abs=0.05)
+    assert [line.name for line in budget.shares] == ["cg_m", "period_s", "mass_kg"]
+
+
+def test_worked_arithmetic_with_a_correlation() -> None:
+    tied = {("period_s", "cg_m"): 0.5}
+    budget = linear_budget("I", inertia, INPUTS, correlations=tied)
+    assert budget.result.uncertainty == pytest.approx(0.2091, abs=5e-5)
+    assert sum(line.share for line in budget.shares) == pytest.approx(1.0)
+    trial = monte_carlo("I", inertia, INPUTS, correlations=tied, seed=1)
+    assert trial.uncertainty == pytest.approx(0.2091, rel=0.01)
+
+
+def test_worked_arithmetic_by_monte_carlo() -> None:
+    found = assess("I", inertia, INPUTS, unit="kg m2", seed=4, trials=1_000_000)
+    assert found.monte_carlo.mean == pytest.approx(39.8351, abs=6e-4)
+    assert found.monte_carlo.low == pytest.approx(39.481, abs=2e-3)
+    assert found.monte_carlo.high == pytest.approx(40.190, abs=2e-3)
+    assert found.linear_good_enough
+
+
+def test_a_bent_formula_is_caught() -> None:
+    found = assess("square", lambda x: x * x, {"x": Estimate(0.1, 1.0)}, seed=2)
+    assert not found.linear_good_enough
+    assert "does not hold" in found.message
+    assert found.interval[0] >= 0.0
+    assert found.interval[1] == pytest.approx(5.0, rel=0.1)
+
+
+def test_degrees_of_freedom_are_welchs() -> None:
+    inputs = {"a": Estimate(1.0, 0.3, "1", 4.0), "b": Estimate(2.0, 0.4, "1", 9.0)}
+    budget = linear_budget("sum", lambda a, b: a + b, inputs)
+    assert budget.result.degrees_of_freedom == pytest.approx(
+        0.25**2 / (0.09**2 / 4.0 + 0.16**2 / 9.0), rel=1e-6
+    )
+    tied = linear_budget("sum", lambda a, b: a + b, inputs, correlations={("a", "b"): 0.9})
+    assert tied.result.degrees_of_freedom == pytest.approx(4.0)
+
+
+def test_finite_degrees_of_freedom_widen_the_monte_carlo() -> None:
+    few = monte_carlo("x", lambda x: x, {"x": Estimate(0.0, 1.0, "1", 3.0)}, seed=3)
+    assert few.high == pytest.approx(3.18, rel=0.05)
+    even = monte_carlo("x", lambda x: x, {"x": within(0.0, 1.0)}, seed=3)
+    assert even.high == pytest.approx(0.95, rel=0.01)
+
+
+@given(
+    u=st.lists(st.floats(0.01, 3.0), min_size=2, max_size=4),
+    slopes=st.lists(st.floats(-5.0, 5.0), min_size=4, max_size=4),
+    r=st.floats(-0.99, 0.99),
+)
+@settings(max_examples=30, deadline=None)
+def test_linear_formulas_are_exact(u: list[float], slopes: list[float], r: float) -> None:
+    inputs = {f"x{k}": Estimate(1.0 + k, spread) for k, spread in enumerate(u)}
+    weights = np.array(slopes[: len(u)])
+
+    def total(**given: float) -> float:
+        return float(sum(w * given[f"x{k}"] for k, w in enumerate(weights)))
+
+    matrix = np.eye(len(u))
+    matrix[0, 1] = matrix[1, 0] = r
+    part = weights * np.array(u)
+    budget = linear_budget("sum", total, inputs, correlations={("x0", "x1"): r})
+    expected = math.sqrt(max(part @ matrix @ part, 0.0))
+    assert budget.result.uncertainty == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+def test_bad_correlations_are_refused() -> None:
+    with pytest.raises(ConfigurationError, match="two different inputs"):
+        linear_budget("I", inertia, INPUTS, correlations={("period_s", "lever"): 0.5})
+    with pytest.raises(ConfigurationError, match="from -1 to 1"):
+        linear_budget("I", inertia, INPUTS, correlations={("period_s", "cg_m"): 1.5})
+    impossible = {
+        ("period_s", "cg_m"): 0.9,
+        ("cg_m", "mass_kg"): 0.9,
+        ("period_s", "mass_kg"): -0.9,
+    }
+    with pytest.raises(ConfigurationError, match="contradict"):
+        linear_budget("I", inertia, INPUTS, correlations=impossible)
+
+
+def test_formulas_without_a_value_are_refused() -> None:
+    with np.errstate(invalid="ignore"), pytest.raises(DataError, match="no finite value at x = -1"):
+        linear_budget("root", lambda x: np.sqrt(x), {"x": exactly(-1.0)})
+    with pytest.raises(DataError, match="of the trials have no value"):
+        monte_carlo("root", lambda x: np.sqrt(x), {"x": Estimate(0.1, 1.0)}, seed=0)
+
+
+def test_estimates_that_cannot_be_are_refused() -> None:
+    with pytest.raises(ConfigurationError, match="must be finite"):
+        Estimate(math.nan, 1.0)
+    with pytest.raises(ConfigurationError, match="not negative"):
+        Estimate(1.0, -1.0)
+    with pytest.raises(ConfigurationError, match="degrees of freedom"):
+        Estimate(1.0, 1.0, "m", 0.0)
