@@ -1,0 +1,131 @@
+"""What a real pendulum test has and an ideal one has not: one small class each.
+
+An effect is a value; calling it with a test returns the changed test, so several compose. Loads on
+a coordinate are N or, for angles, N m. The nominal test has none of them on.
+"""
+
+import math
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
+
+from hardware.description.errors import ConfigurationError
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.body import SwingingBody
+from sim.pendulum.suspension import Suspension
+
+if TYPE_CHECKING:
+    from sim.pendulum.resistance import Resistance
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """What is known beforehand of an effect's parameter."""
+
+    unit: str
+    low: float
+    high: float
+    typical: float
+
+
+def parameter(unit: str, low: float, high: float, typical: float) -> Any:
+    """Return a dataclass field with that knowledge; its default is the typical value."""
+    known = Plausible(unit, low, high, typical)
+    return field(default=typical, metadata={"plausible": known})
+
+
+class PendulumEffect(Protocol):
+    """One effect.
+
+    Attributes
+    ----------
+    name, stage
+        What it is called, and which stage it changes.
+    summary, signature
+        What it does, and how that shows in a record, in words and formulas.
+    """
+
+    name: ClassVar[str]
+    stage: ClassVar[str]
+    summary: ClassVar[str]
+    signature: ClassVar[str]
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        ...
+
+
+def plausible(effect: type[Any]) -> dict[str, Plausible]:
+    """Return what is known of each parameter of an effect, by name."""
+    found = {one.name: one.metadata.get("plausible") for one in fields(effect)}
+    return {name: known for name, known in found.items() if known is not None}
+
+
+def check_plausible(effect: PendulumEffect) -> None:
+    """Refuse parameters outside their plausible range.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming effect, parameter, value and range.
+    """
+    for name, known in plausible(type(effect)).items():
+        value = getattr(effect, name)
+        if not known.low <= value <= known.high:
+            raise ConfigurationError(
+                f"{effect.name}: {name} = {value:g} {known.unit} is outside its plausible range of "
+                f"{known.low:g} to {known.high:g} {known.unit}"
+            )
+
+
+def resist(bench: PendulumBench, coordinate: str, **added: float) -> PendulumBench:
+    """Return the test with loads added to one coordinate's resistance; an exponent is set."""
+
+    def change(body: SwingingBody) -> SwingingBody:
+        key = _resistance_of(body, coordinate)
+        old: Resistance = getattr(body, key)
+        new = {k: v if k == "exponent" else getattr(old, k) + v for k, v in added.items()}
+        return cast("SwingingBody", replace(cast("Any", body), **{key: replace(old, **new)}))
+
+    return bench.change_body(change)
+
+
+def _resistance_of(body: SwingingBody, coordinate: str) -> str:
+    """Return the field that holds a coordinate's resistance; an empty name is the only one's."""
+    names = [one.name for one in body.coordinates]
+    if coordinate not in names and not (not coordinate and len(names) == 1):
+        raise ConfigurationError(
+            f"coordinate {coordinate!r} is none of the body's: {', '.join(names)}; state one"
+        )
+    return coordinate if isinstance(body, Suspension) else "resistance"
+
+
+def suspension_of(bench: PendulumBench, effect: str) -> Suspension:
+    """Return the body on lines.
+
+    Raises
+    ------
+    ConfigurationError
+        If this test's body does not hang on lines.
+    """
+    if not isinstance(bench.body, Suspension):
+        raise ConfigurationError(
+            f"{effect} acts on a body on two lines, and this test's is a "
+            f"{type(bench.body).__name__}; leave the effect out"
+        )
+    return bench.body
+
+
+def small_swing(bench: PendulumBench, coordinate: str) -> tuple[float, float]:
+    """Return inertia and restoring of one coordinate by itself, from the linear matrices."""
+    names = [one.name for one in bench.body.coordinates]
+    at = names.index(coordinate) if coordinate else 0
+    return float(bench.body.mass[at, at]), float(bench.body.stiffness[at, at])
+
+
+def slope_to_restoring(slope: float, restoring: float) -> float:
+    """Return the ``|q| q`` term that makes ``T = T0 (1 + slope * amplitude)``.
+
+    ``|q| q`` of amplitude A has the first harmonic 8 A^2/(3 pi), so the period changes by
+    -4 A/(3 pi) times the term over the restoring.
+    """
+    return -0.75 * math.pi * slope * restoring

@@ -1,0 +1,244 @@
+"""Effects on the body: friction, damping, drag, and a period that depends on the amplitude.
+
+Their parameters do not depend on the body's size: what is lost of the amplitude, what remains as a
+dead zone, how the period changes. Each acts on one coordinate, with the inertia and the restoring
+that this coordinate has by itself; ``coordinate`` may be left empty where there is one only.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast
+
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.effects.base import parameter, resist, slope_to_restoring, small_swing
+
+
+@dataclass(frozen=True)
+class BearingFriction:
+    """Dry friction of a bearing or knife edge.
+
+    Attributes
+    ----------
+    dead_zone
+        Displacement up to which the friction holds the body: friction over restoring.
+    """
+
+    dead_zone: float = parameter("rad or m", 0.0, 0.02, 1e-4)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "bearing_friction"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "Coulomb friction that opposes sliding and holds at rest"
+    signature: ClassVar[str] = "amplitude falls by 4 dead zones a cycle, stops within one; T as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        _, restoring = small_swing(bench, self.coordinate)
+        return resist(bench, self.coordinate, coulomb=self.dead_zone * restoring)
+
+
+@dataclass(frozen=True)
+class ViscousDamping:
+    """Linear damping.
+
+    Attributes
+    ----------
+    damping_ratio
+        Share of critical damping.
+    """
+
+    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "viscous_damping"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "resistance in proportion to the rate"
+    signature: ClassVar[str] = "exp(-zeta w t); T = T0/sqrt(1 - zeta^2)"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        inertia, restoring = small_swing(bench, self.coordinate)
+        critical = 2.0 * math.sqrt(inertia * restoring)
+        return resist(bench, self.coordinate, viscous=self.damping_ratio * critical)
+
+
+@dataclass(frozen=True)
+class QuadraticDrag:
+    """Drag with the square of the rate.
+
+    Attributes
+    ----------
+    loss
+        Amplitude lost in a cycle over the square of the amplitude: 8/3 of drag over inertia.
+    """
+
+    loss: float = parameter("1/rad or 1/m", 0.0, 10.0, 0.1)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "quadratic_drag"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "resistance |v| v of air or water"
+    signature: ClassVar[str] = "1/A grows by loss a cycle; log decrement in proportion to A"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        inertia, _ = small_swing(bench, self.coordinate)
+        return resist(bench, self.coordinate, quadratic=0.375 * self.loss * inertia)
+
+
+@dataclass(frozen=True)
+class CubicDamping:
+    """Damping with the third power of the rate.
+
+    Attributes
+    ----------
+    loss
+        Amplitude lost in a cycle over the third power of the amplitude.
+    """
+
+    loss: float = parameter("1/rad2 or 1/m2", 0.0, 100.0, 1.0)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "cubic_damping"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "resistance v^3, as in roll"
+    signature: ClassVar[str] = "1/A^2 grows by 2 loss a cycle; log decrement with A^2"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        inertia, restoring = small_swing(bench, self.coordinate)
+        over_rate = 4.0 / (3.0 * math.pi) * inertia / math.sqrt(restoring / inertia)
+        return resist(bench, self.coordinate, cubic=self.loss * over_rate)
+
+
+@dataclass(frozen=True)
+class PowerDrag:
+    """Drag between linear and quadratic: a time constant that grows as amplitude^-beta.
+
+    Attributes
+    ----------
+    beta
+        The law's power less one; 0.3 for hulls in air.
+    damping_ratio
+        Equivalent share of critical damping at ``amplitude``.
+    amplitude
+        In the coordinate's unit.
+    """
+
+    beta: float = parameter("1", 0.0, 1.0, 0.3)
+    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002)
+    amplitude: float = parameter("rad or m", 1e-4, 1.0, 0.1)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "power_drag"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "resistance |v|^(1 + beta)"
+    signature: ClassVar[str] = "A^-beta grows in proportion to time"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        inertia, restoring = small_swing(bench, self.coordinate)
+        rate = math.sqrt(restoring / inertia)
+        # twice the mean of |cos|^(beta + 2): the first harmonic of the law
+        order = self.beta + 2.0
+        mean = math.gamma((order + 1.0) / 2.0) / math.gamma(order / 2.0 + 1.0)
+        harmonic = 2.0 * mean / math.sqrt(math.pi) * (rate * self.amplitude) ** self.beta
+        viscous = 2.0 * self.damping_ratio * inertia * rate
+        added = {"power": viscous / harmonic, "exponent": 1.0 + self.beta}
+        return resist(bench, self.coordinate, **added)
+
+
+@dataclass(frozen=True)
+class AmplitudePeriod:
+    """A period that grows in proportion to the amplitude, as measured on hulls.
+
+    Attributes
+    ----------
+    slope
+        Relative change of the period per amplitude.
+    """
+
+    slope: float = parameter("1/rad or 1/m", -0.5, 0.5, 0.02)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "amplitude_period"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "restoring that softens with |q| q"
+    signature: ClassVar[str] = "T = T0 (1 + slope A)"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        _, restoring = small_swing(bench, self.coordinate)
+        term = slope_to_restoring(self.slope, restoring)
+        return resist(bench, self.coordinate, restoring_abs=term)
+
+
+@dataclass(frozen=True)
+class NonlinearRestoring:
+    """Restoring that changes with the square of the displacement, as the righting arm of a hull.
+
+    Attributes
+    ----------
+    cubic
+        Restoring is C q (1 + cubic q^2).
+    """
+
+    cubic: float = parameter("1/rad2 or 1/m2", -5.0, 5.0, -0.5)
+    coordinate: str = ""
+
+    name: ClassVar[str] = "nonlinear_restoring"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "a term q^3 of the restoring"
+    signature: ClassVar[str] = "T = T0 (1 - 3/8 cubic A^2)"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        _, restoring = small_swing(bench, self.coordinate)
+        return resist(bench, self.coordinate, restoring_cubic=self.cubic * restoring)
+
+
+@dataclass(frozen=True)
+class FiniteAmplitude:
+    """Full geometry of a pivot or of two lines, in place of the motion of small swings."""
+
+    name: ClassVar[str] = "finite_amplitude"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "full geometry; a test has it unless its body was made linear"
+    signature: ClassVar[str] = "pivot and sway: T = T0 (1 + A^2/16); two lines: modes are coupled"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        if not hasattr(bench.body, "linear"):
+            return bench
+        return replace(bench, body=replace(cast("Any", bench.body), linear=False))
+
+
+@dataclass(frozen=True)
+class AirAround:
+    """Buoyancy of the body in air, and air that moves along with it.
+
+    Attributes
+    ----------
+    buoyancy_ratio
+        Density of the air over the body's.
+    added_mass_ratio, added_inertia_ratio
+        Air that moves along, over the body's mass and over its moments of inertia.
+    """
+
+    buoyancy_ratio: float = parameter("1", 0.0, 0.02, 0.0015)
+    added_mass_ratio: float = parameter("1", 0.0, 0.05, 0.002)
+    added_inertia_ratio: float = parameter("1", 0.0, 0.05, 0.002)
+
+    name: ClassVar[str] = "air"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "g' = g (1 - buoyancy), more mass and inertia"
+    signature: ClassVar[str] = "T grows by half of buoyancy + added share, at any amplitude"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on; a body afloat stays as it is."""
+        from sim.pendulum.air import Air
+
+        if not hasattr(bench.body, "air"):
+            return bench
+        air = Air(self.buoyancy_ratio, self.added_mass_ratio, self.added_inertia_ratio)
+        return replace(bench, body=replace(cast("Any", bench.body), air=air))

@@ -1,0 +1,254 @@
+"""Effects on what watches the body: sensors, gates, recorder and clock.
+
+An empty ``channel`` means every sensor of the test.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from hardware.description.errors import ConfigurationError
+from sim.acquisition import Digitiser
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.effects.base import parameter
+from sim.pendulum.photogate import Photogate
+from sim.pendulum.sensors import Sensor
+
+
+@dataclass(frozen=True)
+class WrongClock:
+    """A recorder or timer whose clock runs fast.
+
+    Attributes
+    ----------
+    clock_error
+        Reading over true time, less one.
+    """
+
+    clock_error: float = parameter("1", -0.01, 0.01, 1e-4)
+
+    name: ClassVar[str] = "wrong_clock"
+    stage: ClassVar[str] = "acquisition"
+    summary: ClassVar[str] = "all recorded times are the true ones times 1 + error"
+    signature: ClassVar[str] = "every period longer by the same share; inertia by twice that"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return replace(bench, clock_error=self.clock_error)
+
+
+@dataclass(frozen=True)
+class SensorLag:
+    """First-order lag of a sensor.
+
+    Attributes
+    ----------
+    lag_s
+        Its time constant.
+    """
+
+    lag_s: float = parameter("s", 0.0, 1.0, 0.05)
+    channel: str = ""
+
+    name: ClassVar[str] = "sensor_lag"
+    stage: ClassVar[str] = "sensors"
+    summary: ClassVar[str] = "1/(1 + s lag)"
+    signature: ClassVar[str] = "amplitude / sqrt(1 + (w lag)^2), later by atan(w lag); T as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _sensors(bench, self.channel, lambda one: replace(one, lag_s=self.lag_s))
+
+
+@dataclass(frozen=True)
+class SensorOffset:
+    """A sensor that does not read zero at rest.
+
+    Attributes
+    ----------
+    offset
+        In the channel's unit.
+    """
+
+    offset: float = parameter("rad or m", -0.1, 0.1, 1e-3)
+    channel: str = ""
+
+    name: ClassVar[str] = "sensor_offset"
+    stage: ClassVar[str] = "sensors"
+    summary: ClassVar[str] = "a constant on top of the reading"
+    signature: ClassVar[str] = "mean of the record; static fits without offset are biased"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _sensors(bench, self.channel, lambda one: replace(one, offset=self.offset))
+
+
+@dataclass(frozen=True)
+class SensorGain:
+    """A sensor whose scale is off.
+
+    Attributes
+    ----------
+    gain_error
+        Reading over truth, less one.
+    """
+
+    gain_error: float = parameter("1", -0.1, 0.1, 0.005)
+    channel: str = ""
+
+    name: ClassVar[str] = "sensor_gain"
+    stage: ClassVar[str] = "sensors"
+    summary: ClassVar[str] = "the reading times 1 + error"
+    signature: ClassVar[str] = "static lever falls by the error; T as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        gain = 1.0 + self.gain_error
+        return _sensors(bench, self.channel, lambda one: replace(one, gain=gain))
+
+
+@dataclass(frozen=True)
+class SensorNoise:
+    """White noise and a linear drift on a channel.
+
+    Attributes
+    ----------
+    noise_rms
+        Standard deviation, in the channel's unit.
+    drift_per_s
+        Slope.
+    """
+
+    noise_rms: float = parameter("rad or m", 0.0, 0.05, 1e-4)
+    drift_per_s: float = parameter("rad/s or m/s", -1e-3, 1e-3, 0.0)
+    channel: str = ""
+
+    name: ClassVar[str] = "sensor_noise"
+    stage: ClassVar[str] = "acquisition"
+    summary: ClassVar[str] = "noise of each sample, independent, and a drift"
+    signature: ClassVar[str] = "white residual; scatter of T falls with record length^-3/2"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        chosen = _chosen(bench, self.channel)
+
+        def noisy(how: Digitiser) -> Digitiser:
+            return replace(how, noise_rms=self.noise_rms, drift_per_s=self.drift_per_s)
+
+        changed = tuple(
+            noisy(how) if one in chosen else how
+            for one, how in zip(bench.sensors, bench.digitisers, strict=True)
+        )
+        return replace(bench, digitisers=changed)
+
+
+@dataclass(frozen=True)
+class FlagWidth:
+    """A flag of another width in the photogates.
+
+    Attributes
+    ----------
+    flag_width_m
+        Its width.
+    """
+
+    flag_width_m: float = parameter("m", 1e-4, 0.1, 0.01)
+
+    name: ClassVar[str] = "flag_width"
+    stage: ClassVar[str] = "photogate"
+    summary: ClassVar[str] = "blocked while the flag is in the beam"
+    signature: ClassVar[str] = "edges lie width/speed apart; single edges are early or late"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _gates(bench, self.name, lambda one: replace(one, flag_width_m=self.flag_width_m))
+
+
+@dataclass(frozen=True)
+class GateOffset:
+    """A beam beside the rest position.
+
+    Attributes
+    ----------
+    beam_offset_m
+        How far.
+    """
+
+    beam_offset_m: float = parameter("m", -0.05, 0.05, 0.002)
+
+    name: ClassVar[str] = "gate_offset"
+    stage: ClassVar[str] = "photogate"
+    summary: ClassVar[str] = "the beam is not where the flag hangs"
+    signature: ClassVar[str] = "half-swings alternate by T/pi asin(offset/A), more as A falls"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _gates(bench, self.name, lambda one: replace(one, beam_offset_m=self.beam_offset_m))
+
+
+@dataclass(frozen=True)
+class MissedPassages:
+    """Passages that a photogate does not notice.
+
+    Attributes
+    ----------
+    missed_share
+        Probability of each.
+    """
+
+    missed_share: float = parameter("1", 0.0, 0.3, 0.02)
+
+    name: ClassVar[str] = "missed_passages"
+    stage: ClassVar[str] = "photogate"
+    summary: ClassVar[str] = "both edges of a passage are lost, at random"
+    signature: ClassVar[str] = "gaps of two or more half-swings"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _gates(bench, self.name, lambda one: replace(one, missed_share=self.missed_share))
+
+
+@dataclass(frozen=True)
+class GateJitter:
+    """Edges that come a little early or late.
+
+    Attributes
+    ----------
+    jitter_rms_s
+        Standard deviation.
+    """
+
+    jitter_rms_s: float = parameter("s", 0.0, 0.01, 1e-4)
+
+    name: ClassVar[str] = "gate_jitter"
+    stage: ClassVar[str] = "photogate"
+    summary: ClassVar[str] = "random delay of each edge"
+    signature: ClassVar[str] = "white scatter of passage times"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _gates(bench, self.name, lambda one: replace(one, jitter_rms_s=self.jitter_rms_s))
+
+
+def _chosen(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:
+    """Return the sensors of that channel, or all."""
+    chosen = tuple(one for one in bench.sensors if channel in ("", one.channel.name))
+    if not chosen:
+        names = ", ".join(one.channel.name for one in bench.sensors)
+        raise ConfigurationError(f"no sensor {channel!r} in this test (sensors: {names})")
+    return chosen
+
+
+def _sensors(
+    bench: PendulumBench, channel: str, change: Callable[[Sensor], Sensor]
+) -> PendulumBench:
+    chosen = _chosen(bench, channel)
+    return bench.change_sensors(lambda one: change(one) if one in chosen else one)
+
+
+def _gates(
+    bench: PendulumBench, effect: str, change: Callable[[Photogate], Photogate]
+) -> PendulumBench:
+    if not bench.photogates:
+        raise ConfigurationError(f"{effect}: this test has no photogate; add one, or leave it out")
+    return replace(bench, photogates=tuple(change(one) for one in bench.photogates))
