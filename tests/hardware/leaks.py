@@ -1,0 +1,54 @@
+"""Notices buses, ports, threads and processes that were opened and not closed."""
+
+import subprocess
+import threading
+from typing import Any
+
+import can
+import pytest
+import serial
+
+
+class Leaks:
+    """Watches from its construction on."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self._buses: list[can.BusABC] = []
+        self._ports: list[serial.SerialBase] = []
+        self._processes: list[subprocess.Popen[Any]] = []
+        self._threads = set(threading.enumerate())
+        for kind, kept in (
+            (can.BusABC, self._buses),
+            (serial.SerialBase, self._ports),
+            (subprocess.Popen, self._processes),
+        ):
+            _record(monkeypatch, kind, kept)
+
+    def found(self) -> list[str]:
+        """Close what was left open, and name it."""
+        left = []
+        for bus in self._buses:
+            if not bus._is_shutdown:
+                left.append(f"bus {bus.channel_info}")
+                bus.shutdown()
+        for port in self._ports:
+            if port.is_open:
+                left.append(f"port {port.portstr}")
+                port.close()
+        for process in self._processes:
+            if process.poll() is None:
+                left.append(f"process {process.args!r}")
+                process.kill()
+                process.wait()
+        fresh = set(threading.enumerate()) - self._threads
+        return left + [f"thread {one.name}" for one in fresh]
+
+
+def _record(monkeypatch: pytest.MonkeyPatch, kind: type, kept: list[Any]) -> None:
+    original = kind.__init__
+
+    def recorded(self: Any, *args: Any, **kwargs: Any) -> None:
+        original(self, *args, **kwargs)
+        kept.append(self)
+
+    monkeypatch.setattr(kind, "__init__", recorded)

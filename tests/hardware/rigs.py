@@ -1,0 +1,188 @@
+"""Rigs over the doubles, ready to run."""
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib.metadata import EntryPoint
+from itertools import count
+from typing import Any
+
+from hardware.lines import Kind, Line, encode
+from hardware.pacing import FreeRunning
+from hardware.rig import Rig
+from hardware.rig_configuration import read_rig
+from tests.hardware.doubles import Amplifier, Drive, Network, bench, virtual
+
+COUNTS_PER_TURN = 10_000
+COUNTS_PER_METRE = 1_000_000
+NEWTON_PER_COUNT = 0.01
+_CHANNELS = count()
+
+# What an installed package would have; here the project may run from its folder.
+DRIVERS = tuple(
+    EntryPoint(name, value, "pmm.drivers")
+    for name, value in {
+        "cia402-shaft": "hardware.shaft:DRIVER",
+        "cia402-axis": "hardware.axis:DRIVER",
+        "manual-axis": "hardware.manual_axis:DRIVER",
+        "manual-shaft": "hardware.manual_shaft:DRIVER",
+        "cia404-amplifier": "hardware.amplifier:DRIVER",
+        "touch-probe": "hardware.photocell_probe:DRIVER",
+        "timestamper": "hardware.photocell_serial:DRIVER",
+        "serial-inclinometer": "hardware.inclinometer:DRIVER",
+    }.items()
+)
+
+SHAFT = {
+    "driver": "cia402-shaft",
+    "node": 1,
+    "counts_per_turn": COUNTS_PER_TURN,
+    "highest_frequency_hz": 2.0,
+    "acceleration_hz_per_s": 1.0,
+    "quick_stop_hz_per_s": 5.0,
+    "touch_probe": True,
+}
+ECCENTRICITY = {
+    "driver": "cia402-axis",
+    "node": 2,
+    "counts_per_unit": COUNTS_PER_METRE,
+    "low": 0.0,
+    "high": 0.06,
+    "speed": 0.005,
+    "acceleration": 0.05,
+    "quick_stop": 0.5,
+    "tolerance": 1e-5,
+    "standard_uncertainty": 1e-5,
+}
+PHASE = {
+    **ECCENTRICITY,
+    "node": 3,
+    "unit": "rad",
+    "counts_per_unit": 100_000,
+    "low": -3.2,
+    "high": 3.2,
+    "speed": 0.2,
+    "acceleration": 1.0,
+    "quick_stop": 5.0,
+    "tolerance": 1e-3,
+}
+FORCES = {
+    "driver": "cia404-amplifier",
+    "node": 4,
+    "channels": [
+        {
+            "name": name,
+            "object": f"9130:{i}",
+            "scale": NEWTON_PER_COUNT,
+            "full_scale": 490.0,
+            "status": f"6150:{i}",
+        }
+        for i, name in enumerate(("force_aft", "force_fore"), start=1)
+    ],
+}
+MANUAL = {
+    "driver": "manual-axis",
+    "low": 0.0,
+    "high": 0.06,
+    "standard_uncertainty": 2e-5,
+    "tolerance": 1e-4,
+    "dial": "micrometer",
+    "dial_unit": "mm",
+    "dial_per_unit": 1000.0,
+}
+
+
+def nobody(_question: str) -> str | None:
+    """Nobody answers."""
+    return None
+
+
+class SimulatedTime:
+    """A clock that nobody moves: the pumped bus answers at once or never."""
+
+    def __call__(self) -> float:
+        return 0.0
+
+
+@contextmanager
+def open_rig(
+    tables: Mapping[str, Any],
+    prompt: Callable[[str], str | None] = nobody,
+    clock: Callable[[], float] = SimulatedTime(),
+    **options: Any,
+) -> Iterator[Rig]:
+    """A prepared rig."""
+    with Rig(read_rig(tables, DRIVERS), clock, FreeRunning(), prompt, **options) as rig:
+        rig.prepare()
+        yield rig
+
+
+def bus_table(channel: str, interface: str, **more: Any) -> dict[str, Any]:
+    threaded = interface != "pumped"
+    return {"interface": interface, "channel": channel, "receive_thread": threaded, **more}
+
+
+@contextmanager
+def on_bus(
+    tables: Mapping[str, Any], build: Callable[[Network], Any], kind: str = "pumped", **bus: Any
+) -> Iterator[tuple[Rig, Any]]:
+    """A prepared rig on a bus, and the doubles that ``build`` put on its other end."""
+    channel = f"rig {next(_CHANNELS)}"
+    side = bench if kind == "pumped" else virtual
+    clock = SimulatedTime() if kind == "pumped" else time.monotonic
+    with side(channel) as network:
+        doubles = build(network)
+        whole = {"bus": bus_table(channel, kind, **bus), **tables}
+        with open_rig(whole, clock=clock) as rig:
+            yield rig, doubles
+
+
+def two_drives(network: Network) -> dict[str, Drive]:
+    return {"shaft": Drive(network, 1), "eccentricity": Drive(network, 2)}
+
+
+def slotted(drive: Drive) -> None:
+    """Give a drive a photocell at every whole turn."""
+    drive.photocell = once_a_turn
+
+
+def once_a_turn(before: float, after: float) -> float | None:
+    turns = int(after // COUNTS_PER_TURN)
+    return float(turns * COUNTS_PER_TURN) if turns > before // COUNTS_PER_TURN else None
+
+
+class Talker:
+    """The far end of a pty: a small device that says lines."""
+
+    def __init__(self) -> None:
+        self.far, self._near = os.openpty()
+        self.url = os.ttyname(self._near)
+        self.sequence = 0
+
+    def say(self, kind: Kind, time_s: float, value: float) -> None:
+        self.send(encode(Line(kind, self.sequence, round(time_s * 1e6), value)))
+        self.sequence += 1
+
+    def send(self, data: bytes) -> None:
+        os.write(self.far, data)
+
+    def unplug(self) -> None:
+        if self.far >= 0:
+            os.close(self.far)
+            os.close(self._near)
+        self.far = -1
+
+    def __enter__(self) -> "Talker":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.unplug()
+
+
+def alive(name: str) -> bool:
+    return any(one.name == name for one in threading.enumerate())
+
+
+__all__ = ["Amplifier", "Drive"]
