@@ -83,7 +83,7 @@ class Digitiser:
 
     def response(self, s: ComplexArray) -> ComplexArray:
         """Return what filter, carrier, gain and delay make of harmonics at ``s``."""
-        factor: ComplexArray = self.gain * np.exp(-s * self.delay_s)
+        factor: ComplexArray = np.exp(-s * self.delay_s) * np.complex128(self.gain)
         if self.low_pass is not None:
             factor = factor * self.low_pass.response(s)
         if self.carrier is not None:

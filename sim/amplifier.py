@@ -75,8 +75,7 @@ class LowPass:
 
     def settled(self, value: float) -> FloatArray:
         """Return the states after a constant input."""
-        states: FloatArray = -np.linalg.solve(self.system.A, self.system.B[:, 0] * value)
-        return states
+        return np.linalg.solve(self.system.A, -value * self.system.B[:, 0]).astype(np.float64)
 
 
 @lru_cache(maxsize=64)

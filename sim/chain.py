@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError, DataError
 from sim.signals import FloatArray, Signal, Signals
-from sim.stage import Block, Stage
+from sim.stage import Block, Composite, Stage
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,18 @@ class Chain:
         raise ConfigurationError(_unknown("stage", name, [stage.name for stage in self.stages]))
 
     def change(self, name: str, change: Callable[[Stage[Any]], Stage[Any]]) -> "Chain":
-        """Return the chain with ``change`` applied to one stage: how an effect is switched on."""
+        """Return the chain with ``change`` applied to one stage: how an effect is switched on.
+
+        A part of a stage that solves several together is changed like a stage of its own.
+        """
+        for stage in self.stages:
+            if isinstance(stage, Composite) and name in (part.name for part in stage.parts):
+                part = next(part for part in stage.parts if part.name == name)
+                return self._with(stage, stage.with_part(name, change(part)))
         old = self.stage(name)
-        new = change(old)
+        return self._with(old, change(old))
+
+    def _with(self, old: Stage[Any], new: Stage[Any]) -> "Chain":
         return replace(self, stages=tuple(new if s is old else s for s in self.stages))
 
     def start(self, sample_rate_hz: float, seed: int) -> ChainState:
@@ -101,8 +110,10 @@ class Chain:
         substitute
             Signals to use in place of the simulated ones, by name, over this block: shape
             ``(count,)`` for sampled ones. Every stage downstream is fed with them; the stage that
-            would have written one still runs. Displacement, velocity and acceleration of a strut
-            are three signals: whoever substitutes a measured motion supplies all three.
+            would have written one still runs, and is handed them too, so that one that solves
+            several parts together uses them between its parts. Displacement, velocity and
+            acceleration of a strut are three signals: whoever substitutes a measured motion has to
+            supply all three.
 
         Returns
         -------
@@ -122,6 +133,7 @@ class Chain:
         after: list[Any] = []
         for stage, before in zip(self.stages, state.stages, strict=True):
             fed = {one.name: signals[one.name] for one in stage.reads}
+            fed |= {one.name: given[one.name] for one in stage.writes if one.name in given}
             stage_state, written = stage.run(before, block, fed)
             after.append(stage_state)
             signals |= {name: given.get(name, values) for name, values in written.items()}

@@ -1,4 +1,4 @@
-"""Compiled loops, where numba is there; the same functions interpreted, where it is not.
+"""Compiled loops, where numba is there; the same numbers by NumPy, where it is not.
 
 Only loops that carry something from sample to sample need this; everything else is NumPy on whole
 blocks. numba comes with the extra ``fast``; it is loaded when the first such loop runs.
@@ -16,9 +16,15 @@ from sim.signals import FloatArray
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 
+@cache
+def available() -> bool:
+    """Tell whether numba is installed."""
+    return find_spec("numba") is not None
+
+
 def compile_loop(function: FunctionT) -> FunctionT:
     """Return the function compiled by numba, or as it is without numba: the same numbers."""
-    if find_spec("numba") is None:
+    if not available():
         return function
     import numba
 
@@ -44,17 +50,29 @@ def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArr
     """
     states = np.empty((len(forcing) + 1, len(state)))
     states[0] = state
-    _follow()(np.ascontiguousarray(step), np.ascontiguousarray(forcing), states)
+    loop = _compiled_follow() if available() else follow_interpreted
+    loop(np.ascontiguousarray(step), np.ascontiguousarray(forcing), states)
     return states[1:]
 
 
 @cache
-def _follow() -> Callable[[FloatArray, FloatArray, FloatArray], None]:
+def _compiled_follow() -> Callable[[FloatArray, FloatArray, FloatArray], None]:
     return compile_loop(follow_loop)
 
 
-def follow_loop(step: FloatArray, forcing: FloatArray, states: FloatArray) -> None:
-    """Fill rows 1 on of ``states`` from row 0: the loop behind :func:`follow`."""
-    for k in range(len(forcing)):
+def follow_interpreted(step: FloatArray, forcing: FloatArray, states: FloatArray) -> None:
+    """Fill rows 1 on of ``states`` from row 0 without numba: one matrix product a sample."""
+    for k, driven in enumerate(forcing):
         np.dot(step, states[k], states[k + 1])
-        states[k + 1] += forcing[k]
+        states[k + 1] += driven
+
+
+def follow_loop(step: FloatArray, forcing: FloatArray, states: FloatArray) -> None:
+    """Fill rows 1 on of ``states`` from row 0: what numba compiles; the same to rounding."""
+    size = states.shape[1]
+    for k in range(forcing.shape[0]):
+        for i in range(size):
+            total = forcing[k, i]
+            for j in range(size):
+                total += step[i, j] * states[k, j]
+            states[k + 1, i] = total

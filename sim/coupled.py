@@ -11,12 +11,14 @@ from typing import Any, ClassVar, Final, NamedTuple
 
 import numpy as np
 
+from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive import SHAFT, DriveSettings, Shaft, shaft_over
 from sim.linear import ComplexArray, Hold, causal_hold
 from sim.motor import Motor, closed_loop, droop
 from sim.period import Period, Spectra
 from sim.relaxation import Tail, relax
+from sim.sampled import steady_of
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
 
@@ -117,7 +119,8 @@ class Coupled:
 
     def with_part(self, name: str, part: Stage[Any]) -> "Coupled":
         """Return the stage with one part changed."""
-        return replace(self, **{name: part})
+        changed: dict[str, Any] = {name: part}
+        return replace(self, **changed)
 
     @property
     def writes(self) -> tuple[Signal, ...]:
@@ -162,7 +165,7 @@ class Coupled:
             found.update(inputs)
             found.update(shaft)
             for part in self.parts:
-                found.update(part.steady(real, {**found, **inputs})[1])  # type: ignore[attr-defined]
+                found.update(steady_of(part, real, {**found, **inputs})[1])
             found.update({name: inputs[name] for name in found.keys() & inputs.keys()})
             load = real.harmonics(
                 self._torque({name: real.values(values) for name, values in found.items()}, real)
@@ -193,6 +196,18 @@ class Coupled:
         for cogging in motor.cogging:
             total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
         return total
+
+
+def reflected_inertia(mass: FloatArray, set_point: SetPoint) -> float:
+    """Return the mean over a turn of the inertia that a mass at the struts has at the shaft.
+
+    Parameters
+    ----------
+    mass
+        Per strut acceleration, shape ``(2, 2)``; the struts move as yokes.
+    """
+    struts = np.exp(1j * np.array([0.0, set_point.strut_phase_rad]))
+    return float((struts.conj() @ mass @ struts).real) * set_point.eccentricity_m**2 / 2.0
 
 
 @dataclass(frozen=True, eq=False)

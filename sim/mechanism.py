@@ -8,7 +8,6 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.linear import ComplexArray
 from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
@@ -119,7 +118,7 @@ class Mechanism:
         """Return the harmonics of motion and levers over a period."""
         beyond = period.values(inputs[signals.SHAFT_ANGLE.name])
         angle = period.omega_rad_s * period.time_s + beyond
-        written: dict[str, ComplexArray] = {}
+        written: dict[str, np.ndarray] = {}
         for strut, names in zip(self._struts, _WRITES, strict=True):
             d, slope, _ = self._strut(strut, angle)
             motion, lever = period.harmonics(np.column_stack([d, slope])).T

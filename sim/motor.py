@@ -5,6 +5,7 @@ is fed forward (voltage for the back-EMF of a shunt motor), so that without load
 speed nothing deviates. Load is what the struts ask, and what the inertia asks during a ramp.
 """
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar, Protocol
@@ -55,7 +56,7 @@ class Guides:
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
 
-class Motor(Protocol):
+class Motor(Hashable, Protocol):
     """What the drive needs to know of a motor."""
 
     @property
@@ -205,4 +206,4 @@ def droop(motor: Motor) -> float:
         return 0.0
     A, B = motor.plant(0.0)
     closed = A - motor.loop.proportional * np.outer(B[:, 0], [1.0, 0.0])
-    return float(np.linalg.solve(closed, B[:, 1])[0])
+    return -float(np.linalg.solve(closed, B[:, 1])[0])

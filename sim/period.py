@@ -44,7 +44,8 @@ class Period:
     @property
     def s(self) -> ComplexArray:
         """Laplace variable i n w of each order, shape ``(orders + 1,)``."""
-        s: ComplexArray = np.arange(self.orders + 1) * complex(0.0, self.omega_rad_s)
+        s = np.zeros(self.orders + 1, dtype=np.complex128)
+        s.imag = self.omega_rad_s * np.arange(self.orders + 1)
         return s
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.noise import NoiseState, draw_normal, start_stream
+from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -26,10 +27,13 @@ class PhotocellState:
         Angle, speed and acceleration of the shaft at the last sample; ``None`` before the first.
     jitter
         The stream of random delays.
+    passed
+        How often the mark has passed.
     """
 
     last: tuple[float, float, float] | None
     jitter: NoiseState
+    passed: int = 0
 
 
 @dataclass(frozen=True)
@@ -48,11 +52,18 @@ class Photocell:
         Delay of every pulse behind the mark.
     jitter_rms_s
         Standard deviation of the delay from pulse to pulse.
+    missed_every
+        One pulse in so many is missing: those whose number, from 1, it divides; 0 for none.
+    extra_every, extra_after_s
+        After one pulse in so many comes another, so much later; 0 for none.
     """
 
     mark_angle_rad: float = 0.0
     latency_s: float = 0.0
     jitter_rms_s: float = 0.0
+    missed_every: int = 0
+    extra_every: int = 0
+    extra_after_s: float = 0.01
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
     name: ClassVar[str] = "photocell"
@@ -89,8 +100,34 @@ class Photocell:
         if self.jitter_rms_s > 0.0:
             jitter, deviates = draw_normal(jitter, edges.size)
             edges = edges + self.jitter_rms_s * deviates
-        after = PhotocellState(last, jitter)
-        return after, {signals.PHOTOCELL_EDGE_TIME.name: edges + self.latency_s}
+        after = PhotocellState(last, jitter, state.passed + edges.size)
+        pulses = self._pulses(state.passed, edges + self.latency_s)
+        return after, {signals.PHOTOCELL_EDGE_TIME.name: pulses}
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the time of the pulse within the period, ``(1,)``; each period has the same.
+
+        Jitter and false pulses do not repeat and are left out.
+        """
+        beyond = inputs[signals.SHAFT_ANGLE.name]
+        time_s = self.mark_angle_rad / period.omega_rad_s
+        for _ in range(_MOST_STEPS):
+            waves = beyond * np.exp(period.s * time_s)
+            missing = self.mark_angle_rad - period.omega_rad_s * time_s - float(waves.sum().real)
+            step = missing / (period.omega_rad_s + float((period.s * waves).sum().real))
+            time_s += step
+            if abs(step) < 1e-15 / period.frequency_hz:
+                break
+        return period, {signals.PHOTOCELL_EDGE_TIME.name: np.array([time_s + self.latency_s + 0j])}
+
+    def _pulses(self, passed: int, edges: FloatArray) -> FloatArray:
+        """Leave out the pulses that are missed, and add the extra ones."""
+        number = passed + 1 + np.arange(edges.size)
+        kept = edges if not self.missed_every else edges[number % self.missed_every != 0]
+        if not self.extra_every:
+            return kept
+        extra = edges[number % self.extra_every == 0] + self.extra_after_s
+        return np.sort(np.concatenate([kept, extra]))
 
 
 def _last(shaft: FloatArray) -> tuple[float, float, float] | None:

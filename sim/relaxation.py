@@ -5,6 +5,7 @@ fed in again until it no longer changes. Anderson's mixing of the last sweeps ma
 the sweeps end at does not depend on the length of the stretch, so blocks stay exchangeable.
 """
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Final, TypeAlias, TypeVar
@@ -20,7 +21,8 @@ ArrayT = TypeVar("ArrayT", NDArray[np.float64], NDArray[np.complex128])
 # The last samples of a signal, newest last: the part of a state that a hold needs.
 Tail: TypeAlias = tuple[tuple[float, ...], ...]
 
-TOLERANCE: Final = 1e-14
+TOLERANCE: Final = 1e-13
+ROUNDING: Final = 1e-11  # changes below it that no longer shrink are rounding
 MOST_SWEEPS: Final = 80
 _DEPTH: Final = 4
 
@@ -46,19 +48,23 @@ def relax(
     """
     size = float(np.abs(start).max(initial=0.0)) if scale is None else scale
     allowed = TOLERANCE * np.maximum(size, np.finfo(np.float64).tiny)
-    at = start
+    at, before = start, math.inf
     answers: list[ArrayT] = []
     changes: list[ArrayT] = []
     for _ in range(MOST_SWEEPS):
         answer = respond(at)
         change = answer - at
-        if np.all(np.abs(change) <= allowed):
+        largest = float((np.abs(change) / allowed).max(initial=0.0))
+        if largest <= 1.0 or (largest <= ROUNDING / TOLERANCE and largest >= before):
             return answer
-        answers, changes = [*answers[-_DEPTH:], answer], [*changes[-_DEPTH:], change]
+        before = largest
+        answers.append(answer)
+        changes.append(change)
+        del answers[: -_DEPTH - 1], changes[: -_DEPTH - 1]
         at = _mixed(answers, changes, allowed)
     raise ConfigurationError(
         f"{stage}: its parts act back on each other so strongly that {MOST_SWEEPS} sweeps do not "
-        f"settle them (change {np.abs(change / allowed).max() * TOLERANCE:.2g} of the signal); "
+        f"settle them (change {largest * TOLERANCE:.2g} of the signal); "
         f"sample faster, or make the drive or the mounting stiffer"
     )
 

@@ -2,20 +2,25 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from hardware.description.body import Body
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition import Acquisition, Digitiser
-from sim.carriage import Carriage
+from sim.carriage import Carriage, CarriageSettings
 from sim.chain import Chain
+from sim.coupled import Coupled, LoadedDrive, reflected_inertia
 from sim.drive import ConstantSpeedDrive, DriveSettings
 from sim.dynamometer import Dynamometers, Gauge
 from sim.hull import Hull, HullCoefficients
-from sim.mechanism import Mechanism
+from sim.hull_forces import CrossFlow
+from sim.laws import Acting
+from sim.mechanism import Mechanism, Setting
+from sim.mounting import Mounting
 from sim.photocell import Photocell
-from sim.stage import UNKNOWN_KEYS_REFUSED
+from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
+from sim.water.radiation import Radiation
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,17 @@ class SimulatedRig:
         The model, measured about the midpoint between the struts.
     water
         What the water does to the model; ignored for runs in air.
+    drive
+        With a motor in it the drive feels the struts' load, and is solved together with mechanism
+        and model.
+    linkage_aft, linkage_fore
+        How each strut's linkage differs from what was set.
+    radiation
+        The water's memory, with its added mass at infinite frequency, which adds to ``water``.
+    mounting
+        Stiffness of gauges and frame.
+    forces, cross_flow
+        Forces that depend on the motion at once; those of the water are ignored in air.
     photocell
         ``None`` for a rig without one.
     """
@@ -36,6 +52,13 @@ class SimulatedRig:
     body: Body
     water: HullCoefficients = field(default_factory=HullCoefficients)
     drive: DriveSettings = field(default_factory=DriveSettings)
+    carriage: CarriageSettings = field(default_factory=CarriageSettings)
+    linkage_aft: Setting = field(default_factory=Setting)
+    linkage_fore: Setting = field(default_factory=Setting)
+    radiation: Radiation | None = None
+    mounting: Mounting = field(default_factory=Mounting)
+    forces: tuple[Acting, ...] = ()
+    cross_flow: CrossFlow | None = None
     dynamometers: Dynamometers = field(default_factory=Dynamometers)
     acquisition: Acquisition = field(default_factory=Acquisition)
     photocell: Photocell | None = field(default_factory=Photocell)
@@ -51,24 +74,44 @@ class SimulatedRig:
             If the oscillator cannot run the set-point.
         """
         check_within(self.oscillator, set_point)
-        in_water = set_point.medium is Medium.WATER
-        stages = (
-            ConstantSpeedDrive(set_point.frequency_hz, self.drive),
-            Carriage(set_point.carriage_speed_m_s),
-            Mechanism(
-                set_point.eccentricity_m, set_point.strut_phase_rad, self.oscillator.rod_length_m
-            ),
-            Hull(
-                self.oscillator.plane,
-                self.oscillator.half_spacing_m,
-                self.body,
-                self.water if in_water else HullCoefficients(),
-                carriage_speed_m_s=set_point.carriage_speed_m_s,
-            ),
-            self.dynamometers,
-            self.acquisition,
+        carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
+        mechanism = Mechanism(
+            set_point.eccentricity_m,
+            set_point.strut_phase_rad,
+            self.oscillator.rod_length_m,
+            self.linkage_aft,
+            self.linkage_fore,
         )
-        return Chain(stages if self.photocell is None else (*stages, self.photocell))
+        hull = self._hull(set_point.medium, carriage.mean_m_s)
+        stages: tuple[Stage[Any], ...]
+        if self.drive.motor is None:
+            drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
+            stages = (drive, carriage, mechanism, hull)
+        else:
+            loaded = LoadedDrive(
+                set_point.frequency_hz,
+                self.drive,
+                self.drive.motor,
+                reflected_inertia(hull.system.mass, set_point),
+            )
+            stages = (carriage, Coupled(loaded, mechanism, hull))
+        behind = (self.dynamometers, self.acquisition)
+        seen = () if self.photocell is None else (self.photocell,)
+        return Chain((*stages, *behind, *seen))
+
+    def _hull(self, medium: Medium, carriage_speed_m_s: float) -> Hull:
+        in_water = medium is Medium.WATER
+        return Hull(
+            self.oscillator.plane,
+            self.oscillator.half_spacing_m,
+            self.body,
+            self.water if in_water else HullCoefficients(),
+            self.radiation if in_water else None,
+            self.mounting,
+            tuple(one for one in self.forces if in_water or not one.in_water),
+            self.cross_flow if in_water else None,
+            carriage_speed_m_s,
+        )
 
     def ideal(self) -> "SimulatedRig":
         """Return the same rig with perfect sensors: no noise, drift, rounding, gain or delay.

@@ -3,7 +3,7 @@
 import json
 import math
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -179,8 +179,13 @@ def _provenance(rig: SimulatedRig, seed: int, settling_periods: int) -> dict[str
         "simulator": f"pmm {_version()}",
         "seed": str(seed),
         "settling_periods": str(settling_periods),
-        "rig": json.dumps(asdict(rig)),
+        "rig": json.dumps(asdict(rig), default=_as_list),
     }
+
+
+def _as_list(matrix: FloatArray) -> list[Any]:
+    """Return a matrix as JSON can hold it."""
+    return list(matrix.tolist())
 
 
 def _version() -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from sim import signals
 from sim.period import Period, Spectra
 from sim.signals import Signals
-from sim.stage import Block, Stage
+from sim.stage import Block, Periodic, Stage
 
 
 def steady_by_samples(
@@ -36,6 +36,13 @@ def steady_by_samples(
         )
     sampled = [signal.name for signal in stage.writes if signal.sampled]
     return period, {name: period.harmonics(written[name]) for name in sampled}
+
+
+def steady_of(stage: Stage[Any], period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+    """Return a stage's periodic steady state: its own, or from its samples where it has none."""
+    if isinstance(stage, Periodic):
+        return stage.steady(period, inputs)
+    return steady_by_samples(stage, period, inputs)
 
 
 def _with_angle(values: dict[str, np.ndarray], angle: np.ndarray) -> Signals:

@@ -61,7 +61,7 @@ DISPLACEMENT_FORE = of_channel(channels.DISPLACEMENT_FORE)
 VELOCITY_FORE = Signal("velocity_fore", "m/s")
 ACCELERATION_FORE = Signal("acceleration_fore", "m/s2")
 
-# Mechanism: displacement of each strut per shaft angle, the lever at which its force loads the shaft.
+# Displacement of each strut per shaft angle: the lever at which its force loads the shaft.
 LEVER_AFT = Signal("lever_aft", "m/rad")
 LEVER_FORE = Signal("lever_fore", "m/rad")
 LOAD_TORQUE = Signal("load_torque", "N m")  # of both struts and their guides, against the motion

@@ -1,10 +1,11 @@
 """What a stage of the chain is: signals in, signals out, and a state that is a value."""
 
 from dataclasses import dataclass
-from typing import Final, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
+from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 
 StateT = TypeVar("StateT")
@@ -78,6 +79,38 @@ class Stage(Protocol[StateT]):
         Parameters
         ----------
         inputs
-            The signals of ``reads`` over the block; never changed in place.
+            The signals of ``reads`` over the block; never changed in place. Of the stage's own
+            signals, those that are substituted are there too: a stage that is one link only may
+            ignore them.
         """
+        ...
+
+
+@runtime_checkable
+class Periodic(Protocol):
+    """A stage that has a periodic steady state of its own, beside its samples."""
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the period (only a drive changes it) and the harmonics of the outputs.
+
+        Parameters
+        ----------
+        inputs
+            Harmonics of the signals of ``reads``, as :data:`sim.period.Spectra`; of the stage's own
+            signals, those that are substituted.
+        """
+        ...
+
+
+@runtime_checkable
+class Composite(Protocol):
+    """A stage that solves parts together; each part is a stage that effects may change."""
+
+    @property
+    def parts(self) -> "tuple[Stage[Any], ...]":
+        """The parts, in order."""
+        ...
+
+    def with_part(self, name: str, part: "Stage[Any]") -> "Stage[Any]":
+        """Return the stage with one part changed."""
         ...
