@@ -43,7 +43,7 @@ class PlaneInertia:
 
     @property
     def principal_angle_rad(self) -> float:
-        """Angle of the principal x axis, from body x towards body z's negative (bow up)."""
+        """Angle ``psi`` of the principal x axis, from body x towards body z."""
         xx, zz, xz = self.values
         return float(0.5 * np.arctan(2.0 * xz / (zz - xx)))
 
@@ -58,7 +58,7 @@ def plane_inertia(
     about
         Inertia about each axis through the centre of gravity, kg m2.
     angle_rad
-        Of each axis to the z axis; 0 is yaw, a quarter turn roll.
+        Of each axis, from body z towards body x; 0 is yaw, a quarter turn roll.
     angle_uncertainty_rad
         Standard uncertainty of each angle, independent of the others.
 

@@ -1,0 +1,142 @@
+"""Bodies put together and taken apart, against sums over points and the keelboat's table."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analysis.inertia.ballast import Target, Weight, place_ballast
+from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.parts import Part, combine, inertia_about, part
+from hardware.description.errors import ConfigurationError, DataError
+
+finite = st.floats(-2.0, 2.0)
+points = st.lists(st.tuples(st.floats(0.1, 9.0), finite, finite, finite), min_size=2, max_size=6)
+
+
+def point(name: str, m: float, x: float, y: float, z: float, u: float = 0.0) -> Part:
+    zero = exactly(0.0, "m")
+    place = (Estimate(x, u, "m"), Estimate(y, u, "m"), Estimate(z, u, "m"))
+    return part(name, Estimate(m, u, "kg"), place, (zero, zero, zero))
+
+
+@given(points)
+@settings(max_examples=50, deadline=None)
+def test_combined_points_are_the_sums(rows: list[tuple[float, float, float, float]]) -> None:
+    whole = combine("all", [point(str(k), *row) for k, row in enumerate(rows)])
+    m, r = np.array([row[0] for row in rows]), np.array([row[1:] for row in rows])
+    centre = (m @ r) / m.sum()
+    x, y, z = (r - centre).T
+    expected = [m @ (y**2 + z**2), m @ (z**2 + x**2), m @ (x**2 + y**2)]
+    expected += [m @ (x * y), m @ (x * z), m @ (y * z)]
+    assert whole.parameters[1:4] == pytest.approx(centre, abs=1e-9)
+    assert whole.parameters[4:] == pytest.approx(expected, abs=1e-8)
+
+
+@given(points)
+@settings(max_examples=50, deadline=None)
+def test_taking_away_undoes_putting_on(rows: list[tuple[float, float, float, float]]) -> None:
+    parts = [point(str(k), *row) for k, row in enumerate(rows)]
+    rest = combine("rest", [combine("all", parts)], without=parts[1:])
+    assert rest.parameters == pytest.approx(parts[0].parameters, rel=1e-6, abs=1e-6)
+
+
+def test_keelboat_of_table_4() -> None:
+    zero = exactly(0.0, "m")
+
+    def body(name: str, m: float, x: float, z: float, kp: float, ky: float) -> Part:
+        place = (exactly(x, "m"), zero, exactly(-z, "m"))
+        return part(name, exactly(m, "kg"), place, (zero, exactly(kp, "m"), exactly(ky, "m")))
+
+    keel = body("keel", 306.2, 3.141, -0.934, 0.339, 0.263)
+    hull = body("hull", 316.5, 3.083, -0.011, 1.448, 1.459)
+    boat = combine("boat", [keel, hull])
+    _, pitch, yaw = boat.gyradii
+    assert boat.mass.value == pytest.approx(622.7)
+    assert boat.centre_of_gravity[0].value == pytest.approx(3.112, abs=1e-3)
+    assert pitch.value == pytest.approx(1.156, abs=1e-3)
+    assert yaw.value == pytest.approx(1.057, abs=1e-3)
+    back = combine("hull", [boat], without=[keel])
+    assert back.gyradii[1].value == pytest.approx(1.448, abs=1e-6)
+
+
+def test_covariance_against_monte_carlo() -> None:
+    rng = np.random.default_rng(0)
+    a, b = point("a", 3.0, 0.5, 0.1, 0.2, 0.01), point("b", 2.0, -0.8, 0.0, -0.1, 0.01)
+    drawn = []
+    for _ in range(4000):
+        pair = [
+            Part(
+                p.name,
+                rng.multivariate_normal(p.parameters, p.covariance, method="eigh"),
+                p.covariance,
+            )
+            for p in (a, b)
+        ]
+        drawn.append(combine("w", pair).parameters)
+    whole = combine("w", [a, b])
+    seen = np.cov(np.array(drawn).T)
+    assert np.sqrt(np.diag(whole.covariance)) == pytest.approx(
+        np.sqrt(np.diag(seen)), rel=0.06, abs=1e-3
+    )
+
+
+def test_inertia_about_another_point() -> None:
+    body = point("a", 2.0, 0.5, 0.0, 0.3)
+    roll, pitch, yaw = inertia_about(body, (0.0, 0.0, 0.0))
+    assert (roll.value, pitch.value, yaw.value) == pytest.approx((0.18, 0.68, 0.5))
+
+
+def test_impossible_parts_are_refused() -> None:
+    small, large = point("small", 1.0, 0.0, 0.0, 0.0), point("large", 2.0, 0.0, 0.0, 0.0)
+    with pytest.raises(DataError, match="weigh more than the whole"):
+        combine("rest", [small], without=[large])
+    with pytest.raises(ConfigurationError, match="mass_kg = 0"):
+        point("none", 0.0, 0.0, 0.0, 0.0)
+    with pytest.raises(ConfigurationError, match="no parts"):
+        combine("none", [])
+
+
+def hull() -> Part:
+    zero = exactly(0.0, "m")
+    place = (exactly(0.02, "m"), zero, exactly(0.05, "m"))
+    return part(
+        "hull",
+        exactly(40.0, "kg"),
+        place,
+        (exactly(0.2, "m"), exactly(0.6, "m"), exactly(0.6, "m")),
+    )
+
+
+BOX = ((-1.2, 0.0, -0.1), (1.2, 0.0, 0.2))
+
+
+def test_ballast_meets_a_target_that_can_be_met() -> None:
+    weights = [Weight(f"w{k}", 10.0, *BOX) for k in range(3)]
+    target = Target(70.0, (0.0, None, 0.06), (None, 0.62, None))
+    found = place_ballast(hull(), weights, target, seed=1)
+    assert found.feasible, found.message
+    assert found.errors["mass_kg"] == pytest.approx(0.0)
+    assert abs(found.errors["pitch_m"]) < 1e-3
+    assert (found.positions_m >= np.array(BOX[0]) - 1e-12).all()
+    assert (found.positions_m <= np.array(BOX[1]) + 1e-12).all()
+    again = place_ballast(hull(), weights, target, seed=1)
+    assert again.positions_m == pytest.approx(found.positions_m)
+
+
+def test_ballast_says_what_cannot_be_met_and_how_near_it_gets() -> None:
+    weights = [Weight("w", 10.0, *BOX)]
+    found = place_ballast(hull(), weights, Target(70.0, (0.5, None, None)), seed=1)
+    assert not found.feasible
+    assert "mass off by -20 kg" in found.message
+    assert "x off by -" in found.message
+    assert found.positions_m[0, 0] == pytest.approx(1.2, abs=1e-6)
+
+
+def test_fixed_ballast_and_bad_boxes() -> None:
+    fixed = Weight("w", 10.0, (0.1, 0.0, 0.0), (0.1, 0.0, 0.0))
+    assert place_ballast(hull(), [fixed], Target(50.0)).feasible
+    with pytest.raises(ConfigurationError, match="swapped in: x"):
+        place_ballast(hull(), [Weight("w", 1.0, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))], Target())
+    with pytest.raises(ConfigurationError, match="no weights"):
+        place_ballast(hull(), [], Target())
