@@ -6,21 +6,18 @@ import numpy as np
 
 from analysis.inertia.numeric import FloatArray
 from analysis.inertia.series import Series, UsablePart
-from analysis.inertia.spectrum import spectrum
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 FEWEST_SWINGS = 3.0
 FEW_SWINGS = 10.0
-FEWEST_SAMPLES_A_PERIOD = 5.0
-ALIASED_SHARE = 0.1
 LARGEST_ANGLE_RAD = 0.7  # 40 degrees: nobody releases a pendulum for inertia from further out
 SWAY_TOLERANCE = 0.03
 
 
 def check_record(part: UsablePart) -> tuple[Flag, ...]:
-    """Check number of swings, sampling and size of an oscillation.
+    """Check number of swings and size of an oscillation; its sampling was when it was found.
 
     Returns
     -------
@@ -30,10 +27,8 @@ def check_record(part: UsablePart) -> tuple[Flag, ...]:
     Raises
     ------
     DataError
-        Under three swings, under five samples a period, where the spectrum stands against the
-        Nyquist frequency (aliasing), and for angles that only degrees can be.
+        Under three swings, and for angles that only degrees can be.
     """
-    check_sampling(part.series, part.period_s)
     check_angle(part.series.where, part.series.unit, part.first_amplitude)
     return check_swings(part)
 
@@ -54,27 +49,6 @@ def check_swings(part: UsablePart) -> tuple[Flag, ...]:
         "make a period that repeats"
     )
     return (Flag("few_swings", Severity.WARNING, message, series.channel),)
-
-
-def check_sampling(series: Series, period_s: float) -> None:
-    """Refuse a record that is, or may be, sampled too slowly.
-
-    Raises
-    ------
-    DataError
-        Under five samples a period, or with a tenth of the strongest line at half the rate.
-    """
-    samples = period_s * series.sample_rate_hz
-    lines = spectrum(series.values, series.sample_rate_hz)
-    top = lines.frequency_hz > 0.45 * series.sample_rate_hz
-    share = float(lines.amplitude[top].max() / lines.amplitude[1:].max())
-    if samples < FEWEST_SAMPLES_A_PERIOD or share > ALIASED_SHARE:
-        raise DataError(
-            f"{series.where}: {samples:.2g} samples a period of {period_s:.3g} s (at least "
-            f"{FEWEST_SAMPLES_A_PERIOD:g}), and {100 * share:.0f} % of the strongest line stands "
-            f"at half the sample rate (limit {100 * ALIASED_SHARE:g} %): aliasing; a faster motion "
-            f"looks slow at {series.sample_rate_hz:g} Hz: sample faster"
-        )
 
 
 def check_angle(where: str, unit: str, amplitude: float) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.inertia.numeric import FloatArray
-from analysis.inertia.spectrum import spectrum
+from analysis.inertia.sampling import rough_period
 from analysis.recording import Recording
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -120,9 +120,9 @@ def usable_part(series: Series) -> UsablePart:
     Raises
     ------
     DataError
-        If nothing swings above the noise.
+        If nothing swings above the noise, or it is sampled too slowly (aliasing).
     """
-    period = _rough_period(series)
+    period = rough_period(series.where, series.values, series.sample_rate_hz)
     size = max(round(period * series.sample_rate_hz), 4)
     noise = _noise(series.values)
     envelope = _envelope(series.values, size)
@@ -134,7 +134,7 @@ def usable_part(series: Series) -> UsablePart:
             f"{noise:.3g}; nothing swings: choose another channel, or release from further out"
         )
     first = _release(series.values, envelope, size, top)
-    after = np.flatnonzero(np.nan_to_num(envelope[first:]) < floor)
+    after = np.flatnonzero(np.nan_to_num(envelope[first:], nan=np.inf) < floor)
     last = first + int(after[0]) if after.size else series.values.size - 1
     start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))
     chosen = cut(series, start_s, stop_s)
@@ -149,11 +149,6 @@ def usable_part(series: Series) -> UsablePart:
     return UsablePart(
         chosen, period, float(envelope[ends[0]]), float(envelope[ends[1]]), noise, because
     )
-
-
-def _rough_period(series: Series) -> float:
-    slowest = 1.5 * series.sample_rate_hz / series.values.size
-    return 1.0 / spectrum(series.values, series.sample_rate_hz).peak_hz(slowest)
 
 
 def _noise(values: FloatArray) -> float:
