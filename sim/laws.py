@@ -22,7 +22,9 @@ import numpy as np
 from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
-_TINY: Final = 1e-300
+# Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens
+# the turn of a motion with peak speed V, which takes (CREEP / V)^2 / 6 from the first harmonic.
+CREEP_M_S: Final = 1e-4
 
 
 class Point(StrEnum):
@@ -64,7 +66,7 @@ class Motion:
     @property
     def direction(self) -> FloatArray:
         """Sign of the velocity, averaged over the sample."""
-        half = np.abs(self.acceleration) * (self.step_s / 2.0) + _TINY
+        half = np.hypot(self.acceleration * (self.step_s / 2.0), CREEP_M_S)
         return np.minimum(np.maximum(self.velocity / half, -1.0), 1.0)
 
 
