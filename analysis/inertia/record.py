@@ -1,0 +1,119 @@
+"""From one record to its periods, and from several to one period with its scatter: the short way.
+
+series -> usable part -> checks -> fit -> parts of the record -> period at no amplitude
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from analysis.inertia.amplitude import (
+    LocalPeriods,
+    PowerDecay,
+    ZeroAmplitude,
+    fit_power_decay,
+    local_periods,
+    zero_amplitude_period,
+)
+from analysis.inertia.checks import check_amplitude_effect, check_record
+from analysis.inertia.damped import DampedFit, fit_damped
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.repeats import Repeated, combine_runs, single_run
+from analysis.inertia.series import Series, UsablePart, usable_part
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+
+@dataclass(frozen=True)
+class ModeAnalysis:
+    """One oscillation of a record: how its period and decay change with amplitude."""
+
+    local: LocalPeriods
+    at_no_amplitude: ZeroAmplitude
+    decay: PowerDecay
+
+
+@dataclass(frozen=True)
+class RecordAnalysis:
+    """One record, analysed.
+
+    Attributes
+    ----------
+    part
+        What of it was used, and why.
+    fit
+        All oscillations at once, longest period first.
+    modes
+        Each of them along the record.
+    flags
+        Everything noticed on the way.
+    """
+
+    part: UsablePart
+    fit: DampedFit
+    modes: tuple[ModeAnalysis, ...]
+    flags: tuple[Flag, ...]
+
+    def period(self, mode: int = 0) -> Estimate:
+        """Return a period at no amplitude with this record's own error; see :func:`from_runs`."""
+        return self.modes[mode].at_no_amplitude.period
+
+
+def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) -> RecordAnalysis:
+    """Find the usable part of a record, check it, fit it and follow it to no amplitude.
+
+    Parameters
+    ----------
+    modes
+        How many oscillations are in the record (2 for yaw with sway, or both pitch modes).
+    pendulum
+        Whether the channel is the angle of a plain pendulum in radians, whose period must lengthen
+        with amplitude as ``1 + A^2/16``; degrees given as radians are told so.
+
+    Raises
+    ------
+    DataError
+        If nothing swings, swings are too few, the record is aliased, angles are degrees, or the
+        fit does not settle.
+    """
+    part = usable_part(series)
+    flags = [*part.series.flags, *check_record(part)]
+    time_s, values = part.series.time_s, part.series.values
+    fit = fit_damped(time_s, values, modes=modes, where=series.where)
+    flags += fit.flags
+    void = [flag for flag in fit.flags if flag.severity is Severity.VOID]
+    if void:
+        raise DataError(void[0].message)
+    found = []
+    for mode in range(modes):
+        local = local_periods(time_s, values, fit, mode=mode)
+        decay = fit_power_decay(local.time_s, local.amplitude)
+        found.append(ModeAnalysis(local, zero_amplitude_period(local), decay))
+    if pendulum and series.unit == "rad":
+        local = found[0].local
+        flags += check_amplitude_effect(
+            series.where, local.amplitude, local.period_s, local.uncertainty_s
+        )
+    return RecordAnalysis(part, fit, tuple(found), tuple(flags))
+
+
+def from_runs(
+    runs: Sequence[RecordAnalysis],
+    mode: int = 0,
+    *,
+    known_scatter: Estimate | None = None,
+    what: str = "period",
+) -> Repeated:
+    """Return the period of several releases with the scatter between them.
+
+    One run alone rests on the scatter known from elsewhere or on that between its own parts, and is
+    flagged.
+
+    Raises
+    ------
+    DataError
+        For no run.
+    """
+    if len(runs) == 1 and known_scatter is None:
+        only = runs[0].modes[mode]
+        return single_run(only.local, only.at_no_amplitude.period, what=what)
+    return combine_runs([run.period(mode) for run in runs], known_scatter=known_scatter, what=what)
