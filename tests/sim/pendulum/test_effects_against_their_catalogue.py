@@ -1,0 +1,74 @@
+"""Oracle: the page that documents the effects, and what each says of itself."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hardware.description.errors import ConfigurationError
+from sim.pendulum.benches import (
+    KVLCC2_ROLL,
+    MODEL_HULL_2014,
+    bifilar_bench,
+    decay_bench,
+)
+from sim.pendulum.effects import CATALOGUE, effects_table, make_effect
+from sim.pendulum.effects.base import plausible
+from sim.pendulum.record import record
+
+PAGE = Path(__file__).parents[3] / "docs" / "pendulums.md"
+
+
+def test_the_page_holds_the_table_of_the_classes() -> None:
+    assert effects_table() in PAGE.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("effect", CATALOGUE, ids=lambda one: one.name)
+def test_every_effect_is_described_and_typical_values_are_plausible(effect) -> None:  # type: ignore[no-untyped-def]
+    made = make_effect(effect.name)
+    assert made.summary
+    assert made.signature
+    for key, known in plausible(effect).items():
+        assert known.low <= known.typical <= known.high
+        assert getattr(made, key) == known.typical
+
+
+@pytest.mark.parametrize("effect", CATALOGUE, ids=lambda one: one.name)
+def test_every_effect_changes_the_record_of_a_yaw_and_sway_test(effect) -> None:  # type: ignore[no-untyped-def]
+    quiet = bifilar_bench(replace(MODEL_HULL_2014, linear=True), sway_m=0.03, flag_width_m=0.02)
+    coordinate = {"coordinate": "yaw"} if "coordinate" in effect.__dataclass_fields__ else {}
+    strong = {"missed_share": 0.3} if effect.name == "missed_passages" else {}
+    bench = make_effect(effect.name, **coordinate, **strong)(quiet)
+    kept = {"duration_s": 20.0, "sample_rate_hz": 50.0, "seed": 1}
+    before, after = record(quiet, **kept), record(bench, **kept)
+    same = [
+        np.array_equal(before.dataset[name].values, after.dataset[name].values)
+        for name in ("stern_displacement", "yaw", "sway")
+    ]
+    edges = [gate.time_s.tolist() for gate in before.gates]
+    if all(same):
+        assert edges != [gate.time_s.tolist() for gate in after.gates]
+
+
+def test_wrong_names_and_values_are_refused_with_what_is_near() -> None:
+    with pytest.raises(ConfigurationError, match="did you mean bearing_friction"):
+        make_effect("bearing_frction")
+    with pytest.raises(ConfigurationError, match="did you mean dead_zone"):
+        make_effect("bearing_friction", dead_zon=1e-3)
+    with pytest.raises(
+        ConfigurationError, match=r"clock_error = 0.5 1 is outside .* -0.01 to 0.01"
+    ):
+        make_effect("wrong_clock", clock_error=0.5)
+
+
+def test_an_effect_where_it_cannot_act_is_refused() -> None:
+    roll = decay_bench(KVLCC2_ROLL, release=0.1)
+    with pytest.raises(ConfigurationError, match="acts on a body on two lines"):
+        make_effect("line_stretch")(roll)
+    with pytest.raises(ConfigurationError, match="no photogate"):
+        make_effect("gate_jitter")(roll)
+    with pytest.raises(ConfigurationError, match="none of the body's: surge, sway, yaw, pitch"):
+        make_effect("bearing_friction")(bifilar_bench(MODEL_HULL_2014))
+    with pytest.raises(ConfigurationError, match="no sensor 'gyro'"):
+        make_effect("sensor_lag", channel="gyro")(roll)
