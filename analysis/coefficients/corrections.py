@@ -1,0 +1,224 @@
+"""What is known of the measuring chain, taken out: calibration, lag and filters, zero runs.
+
+Responses are functions of ``s = i omega``: the ones below, or any single channel LTI object of
+python-control (continuous, or sampled with its ``dt``). A channel with response G reads ``G(i n
+omega) H`` for a harmonic H, so the reading is divided by it.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.measured import FORCES, StrutRun
+from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
+from analysis.recording import Recording
+from hardware.description.errors import ConfigurationError, DataError
+
+Response = Callable[[complex], complex]
+
+_LEAST_GAIN = 0.1  # a channel filtered below this tells about its noise, not about the force
+_BLOCKS = 10  # of a zero run: their scatter sees slow noise too
+
+
+@dataclass(frozen=True)
+class Delay:
+    """A channel that is late by ``lag_s``: sampling skew, converter, transmission."""
+
+    lag_s: float
+
+    def __call__(self, s: complex) -> complex:
+        """Return the response."""
+        return complex(np.exp(-s * self.lag_s))
+
+
+@dataclass(frozen=True)
+class LowPass:
+    """An amplifier's low-pass filter.
+
+    Attributes
+    ----------
+    cutoff_hz
+        Where it lets half the power through.
+    kind
+        ``"butterworth"`` (of order 1: a resistor and a capacitor) or ``"bessel"``.
+    """
+
+    cutoff_hz: float
+    order: int = 1
+    kind: str = "butterworth"
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("butterworth", "bessel"):
+            raise ConfigurationError(f"filter {self.kind!r}; known are butterworth and bessel")
+        if not self.cutoff_hz > 0.0 or self.order < 1:
+            raise ConfigurationError(
+                f"a filter of order {self.order} at {self.cutoff_hz:g} Hz; both must be above 0"
+            )
+
+    def __call__(self, s: complex) -> complex:
+        """Return the response."""
+        from scipy import signal
+
+        cutoff = 2.0 * math.pi * self.cutoff_hz
+        if self.kind == "bessel":
+            found = signal.bessel(self.order, cutoff, analog=True, output="ba", norm="mag")
+        else:
+            found = signal.butter(self.order, cutoff, analog=True, output="ba")
+        above, below = (np.asarray(part) for part in found)
+        return complex(np.polyval(above, s) / np.polyval(below, s))
+
+
+@dataclass(frozen=True)
+class Gain:
+    """A channel that reads ``gain`` times the truth."""
+
+    gain: float
+
+    def __call__(self, s: complex) -> complex:  # noqa: ARG002
+        """Return the response, the same at all frequencies."""
+        return complex(self.gain)
+
+
+def without_response(run: StrutRun, responses: Mapping[str, Response]) -> StrutRun:
+    """Take known responses out of some channels.
+
+    Parameters
+    ----------
+    responses
+        By channel name; several of one channel in a chain are multiplied beforehand.
+
+    Raises
+    ------
+    ConfigurationError
+        If a channel is unknown.
+    DataError
+        If a channel lets less than a tenth of this harmonic through.
+    """
+    factors = np.ones(len(run.phasors.values), dtype=np.complex128)
+    omega = 2.0 * math.pi * run.frequency_hz * run.order
+    for name, response in responses.items():
+        value = response_at(response, omega)
+        if not abs(value) > _LEAST_GAIN:
+            raise DataError(
+                f"{run.name}: {name} lets {abs(value):.2g} of harmonic {run.order} at "
+                f"{run.frequency_hz:g} Hz through, less than {_LEAST_GAIN:g}; raise the filter's "
+                "frequency or take a lower harmonic"
+            )
+        factors[run.phasors.index(name)] /= value
+    return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
+
+
+def response_at(response: Response, omega: float) -> complex:
+    """Return a response at an angular frequency; a sampled system's at ``z = exp(i omega dt)``."""
+    step = getattr(response, "dt", None)  # python-control: None, 0 and True say nothing of seconds
+    step_s = 0.0 if step is None or step is True else float(step)
+    argument = complex(np.exp(1j * omega * step_s)) if step_s > 0.0 else 1j * omega
+    return complex(np.asarray(response(argument)).item())
+
+
+def calibrated(run: StrutRun, matrix: FloatArray) -> StrutRun:
+    """Apply the calibration matrix of the two dynamometers: ``force = matrix @ reading``.
+
+    Parameters
+    ----------
+    matrix
+        Shape ``(2, 2)``, aft and fore: gains on the diagonal, cross-talk beside it.
+
+    Raises
+    ------
+    ConfigurationError
+        If its shape is another, or it is singular: two gauges would tell the same.
+    """
+    matrix = np.asarray(matrix, dtype=np.float64)
+    if matrix.shape != (2, 2) or not np.linalg.cond(matrix) < 1e6:
+        raise ConfigurationError(
+            f"the calibration matrix {matrix.tolist()} must be 2 by 2 and not singular"
+        )
+    whole = np.eye(len(run.phasors.values))
+    places = [run.phasors.index(name) for name in FORCES]
+    whole[np.ix_(places, places)] = matrix
+    return replace(run, phasors=run.phasors.mapped(whole))
+
+
+@dataclass(frozen=True, eq=False)
+class ZeroReading:
+    """What the channels read at rest.
+
+    Attributes
+    ----------
+    at_s
+        Middle of the reading, on the clock of the whole campaign.
+    offsets
+        Means, as real phasors of order 0.
+    """
+
+    at_s: float
+    offsets: Phasors
+
+
+def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FORCES) -> ZeroReading:
+    """Read a zero run: the mean of each channel, with the scatter between ten blocks.
+
+    Raises
+    ------
+    DataError
+        If a sample is missing or there are fewer than twenty.
+    """
+    values = np.stack([recording.values(name) for name in names])
+    if values.shape[1] < 2 * _BLOCKS or not np.isfinite(values).all():
+        raise DataError(
+            f"{recording.name}: a zero run needs {2 * _BLOCKS} samples or more, none missing; "
+            f"it has {values.shape[1]}, {int((~np.isfinite(values)).sum())} of them missing"
+        )
+    length = values.shape[1] // _BLOCKS
+    blocks = values[:, : length * _BLOCKS].reshape(len(names), _BLOCKS, length).mean(axis=2)
+    covariance = np.zeros((len(names), 2, len(names), 2))
+    covariance[:, 0, :, 0] = np.cov(blocks) / _BLOCKS
+    size = 2 * len(names)
+    source = Source(
+        f"zero run {recording.name}", covariance.reshape(size, size), float(_BLOCKS - 1)
+    )
+    units = tuple(recording.channels[recording.index(name)].unit for name in names)
+    means: ComplexArray = values.mean(axis=1).astype(np.complex128)
+    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)))
+
+
+def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:
+    """Return the offsets at a time between two zero runs, on the straight line between them.
+
+    Raises
+    ------
+    ConfigurationError
+        If the time does not lie between the two.
+    """
+    if not before.at_s <= at_s <= after.at_s or before.at_s == after.at_s:
+        raise ConfigurationError(
+            f"{at_s:g} s does not lie between the zero runs at {before.at_s:g} s and "
+            f"{after.at_s:g} s; take zero runs before and after"
+        )
+    part = (at_s - before.at_s) / (after.at_s - before.at_s)
+    count = len(before.offsets.values)
+    first = before.offsets.mapped((1.0 - part) * np.eye(count))
+    return first.minus(after.offsets.mapped(-part * np.eye(count)))
+
+
+def without_zero(run: StrutRun, offsets: Phasors) -> StrutRun:
+    """Take the zero runs' offsets off the means of a run (order 0).
+
+    Raises
+    ------
+    ConfigurationError
+        If the run holds a harmonic: an offset has no part in it.
+    """
+    if run.order != 0:
+        raise ConfigurationError(
+            f"{run.name}: an offset is taken off the mean, not off harmonic {run.order}"
+        )
+    count = len(run.phasors.values)
+    place = np.zeros((count, len(offsets.values)))
+    for k, name in enumerate(offsets.names):
+        place[run.phasors.index(name), k] = 1.0
+    whole = offsets.mapped(place, run.phasors.names, run.phasors.units)
+    return replace(run, phasors=run.phasors.minus(whole))

@@ -1,0 +1,274 @@
+"""From readings of the resolver to phasors of the struts, with the covariance across channels.
+
+Both struts feel the same carriage and the same waves, so their scatter is not independent. A
+reading's own covariance is by channel; from the sums of its periods the covariance of all channels
+together follows in the same way. Where only the reading is at hand the channels are taken as
+independent, and a flag says so.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray, Phasors, Source, joined
+from analysis.motion import strut_displacements
+from analysis.resolver.analyse import Analysis
+from analysis.resolver.estimate import fit_drift, no_drift, solve_periods, usable
+from analysis.resolver.harmonics import DriftSource, Harmonics
+from analysis.resolver.sums import PeriodSums
+from hardware.description.channels import (
+    DISPLACEMENT_AFT,
+    DISPLACEMENT_FORE,
+    FORCE_AFT,
+    FORCE_FORE,
+)
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import SetPoint
+
+DISPLACEMENTS = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
+FORCES = (FORCE_AFT.name, FORCE_FORE.name)
+
+
+@dataclass(frozen=True, eq=False)
+class StrutRun:
+    """Phasors of the struts at one harmonic of one run.
+
+    Attributes
+    ----------
+    frequency_hz
+        Measured, of the fundamental.
+    displacements
+        ``displacement_aft``, ``displacement_fore`` in m; ``forces``: ``force_aft``, ``force_fore``
+        in N. Together in ``phasors``, so that their joint covariance is kept.
+    order
+        The harmonic; 0 for the means, which are real.
+    """
+
+    name: str
+    oscillator: Oscillator
+    set_point: SetPoint
+    frequency_hz: float
+    phasors: Phasors
+    order: int = 1
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def displacements(self) -> Phasors:
+        """Of the aft and the fore strut, m."""
+        return self.phasors.select(DISPLACEMENTS)
+
+    @property
+    def forces(self) -> Phasors:
+        """Of the aft and the fore strut on the model, N."""
+        return self.phasors.select(FORCES)
+
+
+def joint_covariance(
+    gate: PeriodSums, around: PeriodSums | None = None, *, take_out_drift: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance of all channels' coefficients together.
+
+    As :func:`analysis.resolver.estimate.resolve` does by channel: the scatter between the periods
+    about their drift, and what the drift's own slope leaves uncertain.
+
+    Returns
+    -------
+    covariance
+        Shape ``(channels, K, channels, K)``; NaN where there is but one period.
+    degrees_of_freedom
+        Shape ``(K,)``.
+    """
+    size = gate.period_count
+    gate = usable(gate)
+    stretch = gate if around is None or around.period_count == size else usable(around)
+    drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
+    drifting = drift.source is not DriftSource.NONE
+    covariance, freedom = _scatter(stretch, drifting)
+    covariance = covariance / gate.period_count
+    if drifting:
+        covariance = covariance + _drift_part(gate, drift.variance, covariance)
+    return covariance, freedom
+
+
+def _scatter(stretch: PeriodSums, drifting: bool) -> tuple[FloatArray, FloatArray]:
+    values = solve_periods(stretch)
+    count, channels, size = values.coefficients.shape
+    freedom = np.full(size, max(count - 1.0, 0.0))
+    if count < 2:
+        return np.full((channels, size, channels, size), np.nan), freedom
+    left = values.coefficients - values.coefficients.mean(axis=0)
+    if drifting:
+        freedom[0] = count - 2.0
+        time = values.ramp[:, 0] - values.ramp[:, 0].mean()
+        slope = np.einsum("p,pc->c", time, values.coefficients[:, :, 0]) / (time @ time)
+        ramp = values.ramp - values.ramp.mean(axis=0)
+        left = left - slope[:, None] * ramp[:, None, :]
+    scaled = left / np.sqrt(np.where(freedom > 0.0, freedom, np.nan))
+    return np.einsum("pci,pdj->cidj", scaled, scaled), freedom
+
+
+def _drift_part(gate: PeriodSums, variance: FloatArray, scatter: FloatArray) -> FloatArray:
+    """What the uncertain slopes add, correlated between channels as their means are."""
+    gram, ramp = gate.gram.sum(axis=0), gate.ramp.sum(axis=0)
+    time = np.linalg.solve(gram, ramp)
+    time[0] = 0.0
+    means = scatter[:, 0, :, 0]
+    spread = np.sqrt(np.diagonal(means))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = np.nan_to_num(means / np.outer(spread, spread))
+    np.fill_diagonal(correlation, 1.0)
+    slopes = correlation * np.sqrt(np.outer(variance, variance))
+    return np.asarray(np.einsum("cd,i,j->cidj", slopes, time, time))
+
+
+def reading_phasors(
+    reading: Harmonics,
+    names: Sequence[str],
+    order: int = 1,
+    joint: tuple[FloatArray, FloatArray] | None = None,
+) -> Phasors:
+    """Return the phasors of some channels of a reading.
+
+    Parameters
+    ----------
+    order
+        The harmonic; 0 gives the means as real numbers.
+    joint
+        Of :func:`joint_covariance`; without it the channels count as independent.
+
+    Raises
+    ------
+    DataError
+        If the reading has no such channel or harmonic.
+    """
+    missing = [name for name in names if name not in reading.channel_names]
+    if missing or not 0 <= order <= reading.order:
+        raise DataError(
+            f"{reading.run}: no harmonic {order} of {', '.join(missing or names)}; resolved are "
+            f"harmonics up to {reading.order} of {', '.join(reading.channel_names)}"
+        )
+    rows = [reading.channel_names.index(name) for name in names]
+    parts = [2 * order - 1, 2 * order] if order else [0]
+    values = reading.coefficients[np.ix_(rows, parts)]
+    if joint is None:
+        covariance = np.zeros((len(rows), len(parts), len(rows), len(parts)))
+        for k, row in enumerate(rows):
+            covariance[k, :, k, :] = reading.covariance[row][np.ix_(parts, parts)]
+    else:
+        covariance = joint[0][np.ix_(rows, parts, rows, parts)]
+    full = np.zeros((len(rows), 2, len(rows), 2))
+    full[:, : len(parts), :, : len(parts)] = covariance
+    phasors = values[:, 0].astype(np.complex128)
+    if order:
+        phasors += 1j * values[:, 1]
+    freedom = reading.degrees_of_freedom if joint is None else joint[1]
+    size = 2 * len(rows)
+    label = f"scatter of {reading.run}"
+    source = Source(label, full.reshape(size, size), float(freedom[parts[0]]))
+    return Phasors(tuple(names), tuple(reading.units[r] for r in rows), phasors, (source,))
+
+
+def measured_run(
+    analysis: Analysis,
+    oscillator: Oscillator,
+    *,
+    reading_index: int = 0,
+    order: int = 1,
+    set_point: SetPoint | None = None,
+) -> StrutRun:
+    """Return the strut phasors of one reading; set-points stand in for displacements not measured.
+
+    Parameters
+    ----------
+    set_point
+        By default that of the recording.
+
+    Raises
+    ------
+    DataError
+        If a force channel is missing, or there is no set-point.
+    """
+    reading = analysis.readings[reading_index]
+    set_point = analysis.recording.set_point if set_point is None else set_point
+    if set_point is None:
+        raise DataError(
+            f"{reading.run}: no set-point; give frequency, eccentricity, strut phase and speed"
+        )
+    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
+    names = (*DISPLACEMENTS, *FORCES) if has_sensors else FORCES
+    joint, flags = _joint(analysis, reading_index)
+    phasors = reading_phasors(reading, names, order, joint)
+    run = StrutRun(
+        reading.run, oscillator, set_point, reading.frequency_hz, phasors, order, reading.flags
+    )
+    run = replace(run, flags=run.flags + flags)
+    return run if has_sensors else with_set_point_motion(run)
+
+
+def _joint(
+    analysis: Analysis, reading_index: int
+) -> tuple[tuple[FloatArray, FloatArray] | None, tuple[Flag, ...]]:
+    if analysis.settings.hann:
+        text = "tapered gates have no periods: the channels' scatter is taken as independent"
+        return None, (Flag("channels_independent", Severity.NOTE, text),)
+    size = analysis.readings[reading_index].periods
+    steady = analysis.steady_sums
+    gate = steady[reading_index * size : (reading_index + 1) * size]
+    drifting = analysis.settings.take_out_drift
+    return joint_covariance(gate, steady, take_out_drift=drifting), ()
+
+
+def with_set_point_motion(run: StrutRun) -> StrutRun:
+    """Return the run with the displacements that its set-point asks for, exact and flagged."""
+    orders = max(run.order, 1)
+    asked = strut_displacements(run.oscillator, run.set_point, orders)[run.order]
+    values = asked if run.order else asked.imag.astype(np.complex128)  # H[0] = i A0
+    exact = Phasors(DISPLACEMENTS, ("m", "m"), values)
+    text = (
+        "no strut displacements were measured: the set-point's are used, without uncertainty; "
+        "state those of amplitude and strut phase"
+    )
+    flag = Flag("motion_from_set_point", Severity.NOTE, text)
+    return replace(run, phasors=joined(exact, run.phasors), flags=(*run.flags, flag))
+
+
+def from_harmonics(
+    reading: Harmonics,
+    oscillator: Oscillator,
+    set_point: SetPoint,
+    order: int = 1,
+) -> StrutRun:
+    """Return the strut phasors of a reading alone, without the sums it came from.
+
+    The struts' scatter is taken as independent, and flagged so.
+
+    Raises
+    ------
+    DataError
+        If a force channel is missing.
+    ConfigurationError
+        If the set-point and the reading differ by more than 5 % in frequency.
+    """
+    asked = set_point.frequency_hz
+    if abs(reading.frequency_hz / asked - 1.0) > 0.05:
+        raise ConfigurationError(
+            f"{reading.run}: measured {reading.frequency_hz:.4g} Hz, but the set-point is "
+            f"{asked:.4g} Hz; give the run its own set-point"
+        )
+    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
+    names = (*DISPLACEMENTS, *FORCES) if has_sensors else FORCES
+    text = "the sums of the periods are not at hand: the channels' scatter is taken as independent"
+    flag = Flag("channels_independent", Severity.NOTE, text)
+    run = StrutRun(
+        reading.run,
+        oscillator,
+        set_point,
+        reading.frequency_hz,
+        reading_phasors(reading, names, order),
+        order,
+        (*reading.flags, flag),
+    )
+    return run if has_sensors else with_set_point_motion(run)

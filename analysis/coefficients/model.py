@@ -1,0 +1,243 @@
+"""The way from phasors to coefficients as one function of everything uncertain, vectorised.
+
+Each trial has its own phasors of every run and its own deviations of what is known besides (mass,
+amplitude, lag ...). Derivatives for the linear budget and Monte Carlo both call this one function.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from analysis.coefficients.names import Form, Place
+from analysis.coefficients.phasors import ComplexArray, FloatArray, from_interleaved
+from analysis.coefficients.run import LOADS, MOTIONS, Run, point_matrix
+from analysis.motion import incidence
+from hardware.description.oscillator import Plane
+from hardware.description.struts import to_loads, to_motion, to_strut_forces, to_struts
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+PER_RUN = 8  # real numbers: S and C of translation, rotation, force, moment
+
+
+@dataclass(frozen=True)
+class Stated:
+    """Standard uncertainties of what all runs share; 0 where it is taken as exact.
+
+    Attributes
+    ----------
+    mass_kg, cg_x_m, cg_z_m, inertia_kg_m2
+        Of the body that is taken off, about the midpoint.
+    half_spacing_m, speed_m_s, frequency_relative, restoring_relative
+        Of geometry, carriage, frequency (u/f) and the restoring matrix (common factor).
+    amplitude_relative
+        Of the struts' motion: eccentricity setting, or calibration of the displacement sensors.
+    strut_phase_rad
+        Of the fore strut against the aft one, where set-points stand in for the motion.
+    lag_s
+        Of both forces against the motion: amplifier, skew, and the photocell's latency where
+        set-points stand in for the motion.
+    skew_s
+        Of the fore gauge against the aft one.
+    force_gain_relative
+        Of both gauges together.
+    """
+
+    mass_kg: float = 0.0
+    cg_x_m: float = 0.0
+    cg_z_m: float = 0.0
+    inertia_kg_m2: float = 0.0
+    half_spacing_m: float = 0.0
+    speed_m_s: float = 0.0
+    frequency_relative: float = 0.0
+    restoring_relative: float = 0.0
+    amplitude_relative: float = 0.0
+    strut_phase_rad: float = 0.0
+    lag_s: float = 0.0
+    skew_s: float = 0.0
+    force_gain_relative: float = 0.0
+
+    @property
+    def vector(self) -> FloatArray:
+        """All of them, in the order of :data:`STATED`."""
+        return np.array([getattr(self, name) for name in STATED])
+
+
+STATED = tuple(one.name for one in fields(Stated))
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Runs of one plane on one oscillator, and what is sought from them.
+
+    Attributes
+    ----------
+    columns
+        The motions whose coefficients are solved for: 0 translation, 1 rotation.
+    weights
+        Of each run in the fit of each load, shape ``(runs, 2)``.
+    """
+
+    runs: tuple[Run, ...]
+    form: Form
+    columns: tuple[int, ...]
+    weights: FloatArray
+
+    @property
+    def plane(self) -> Plane:
+        """The plane of all runs."""
+        return self.runs[0].plane
+
+    def phasor_parts(self) -> FloatArray:
+        """The runs' phasors as real numbers, shape ``(runs, 8)``."""
+        rows = []
+        for run in self.runs:
+            values = run.phasors.select((*MOTIONS, *LOADS)).values
+            rows.append(np.stack((values.real, values.imag), axis=-1).ravel())
+        return np.stack(rows)
+
+    def nominal(self) -> FloatArray:
+        """Return the coefficients of the runs as they are, shape ``(2, columns, 2)``."""
+        found = self.solve(self.phasor_parts()[None], np.zeros((1, len(STATED))))
+        return np.asarray(found[0])
+
+    def velocities(self) -> tuple[ComplexArray, FloatArray]:
+        """Return the form's velocities ``(runs, 2)`` and angular frequencies ``(runs,)``."""
+        velocity, _, omega = self.reduce(self.phasor_parts()[None], np.zeros((1, len(STATED))))
+        return velocity[0], omega[0]
+
+    def solve(self, parts: FloatArray, deviations: FloatArray) -> FloatArray:
+        """Return A and B of each trial.
+
+        Parameters
+        ----------
+        parts
+            Phasors, shape ``(trials, runs, 8)``.
+        deviations
+            Of the stated quantities from what the runs say, shape ``(trials, len(STATED))``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(trials, 2, columns, 2)``: row, column, (A, B) in SI units.
+        """
+        velocity, load, omega = self.reduce(parts, deviations)
+        return fit(velocity[..., list(self.columns)], load, omega, self.weights)
+
+    def reduce(
+        self, parts: FloatArray, deviations: FloatArray
+    ) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+        """Return velocities, hydrodynamic loads and angular frequencies.
+
+        Returns
+        -------
+        velocity, load
+            The form's velocities and the loads about the point, shape ``(trials, runs, 2)``.
+        omega
+            Shape ``(trials, runs)``.
+        """
+        off = {name: deviations[:, k, None] for k, name in enumerate(STATED)}
+        omega = np.array([run.omega for run in self.runs]) * (1.0 + off["frequency_relative"])
+        motion, load = self._struts_corrected(from_interleaved(parts), off, omega)
+        known = self._known(off, omega)
+        load = load - np.einsum("trij,trj->tri", known, motion)
+        moves = np.stack([point_matrix(run.point_ahead_m, run.plane) for run in self.runs])
+        carry = np.linalg.inv(moves).transpose(0, 2, 1)
+        motion = np.einsum("rij,trj->tri", moves, motion)
+        load = np.einsum("rij,trj->tri", carry, load)
+        velocity = 1j * omega[..., None] * motion
+        if self.form is Form.MANOEUVRING:
+            speed = np.array([run.speed_m_s for run in self.runs]) + off["speed_m_s"]
+            velocity = velocity + speed[..., None] * (motion @ incidence(self.plane).T)
+        return velocity, load, omega
+
+    def _struts_corrected(
+        self, phasors: ComplexArray, off: dict[str, FloatArray], omega: FloatArray
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Let amplitude, strut phase, lag, skew and gain act where they do: at the struts."""
+        half, plane = self.runs[0].half_spacing_m, self.plane
+        order = np.array([run.order for run in self.runs])
+        aft, fore = to_struts(phasors[..., 0], phasors[..., 1], half, plane)
+        forces = to_strut_forces(phasors[..., 2], phasors[..., 3], half, plane)
+        fore = fore * np.exp(1j * order * off["strut_phase_rad"])
+        late = forces[1] * np.exp(1j * omega * off["skew_s"])
+        motion = np.stack(to_motion(aft, fore, half, plane), axis=-1)
+        load = np.stack(to_loads(forces[0], late, half, plane), axis=-1)
+        longer = 1.0 + off["half_spacing_m"] / half
+        motion[..., 1] /= longer
+        load[..., 1] *= longer
+        gain = (1.0 + off["force_gain_relative"]) * np.exp(1j * omega * off["lag_s"])
+        motion *= (1.0 + off["amplitude_relative"])[..., None]
+        load *= gain[..., None]
+        return motion, load
+
+    def _known(self, off: dict[str, FloatArray], omega: FloatArray) -> FloatArray:
+        """``C + G - omega^2 M`` of each trial and run, shape ``(trials, runs, 2, 2)``."""
+        vertical = self.plane is Plane.VERTICAL
+        restoring = np.stack([run.restoring for run in self.runs])
+        known = restoring * (1.0 + off["restoring_relative"])[..., None, None]
+        known = np.broadcast_to(known, (*omega.shape, 2, 2)).copy()
+        for k, run in enumerate(self.runs):
+            if run.body is None:
+                continue
+            body, square = run.body, omega[:, k] ** 2
+            mass = body.mass_kg + off["mass_kg"][:, 0]
+            coupling = mass * (body.cg_x_m + off["cg_x_m"][:, 0]) * (-1.0 if vertical else 1.0)
+            known[:, k, 0, 0] -= square * mass
+            known[:, k, 0, 1] -= square * coupling
+            known[:, k, 1, 0] -= square * coupling
+            known[:, k, 1, 1] -= square * (body.inertia_kg_m2 + off["inertia_kg_m2"][:, 0])
+            if vertical:
+                height = body.cg_z_m + off["cg_z_m"][:, 0]
+                known[:, k, 1, 1] += mass * STANDARD_GRAVITY_M_S2 * height
+        return known
+
+    def places(self) -> tuple[Place, ...]:
+        """The coefficients that are solved for, column by column."""
+        return tuple(
+            Place(row, column, inertial)
+            for column in self.columns
+            for row in (0, 1)
+            for inertial in (True, False)
+        )
+
+    def flat(self, matrices: FloatArray) -> FloatArray:
+        """Return A and B as named coefficients: ``(trials, 2, columns, 2)`` to ``(trials, n)``."""
+        ordered = matrices.transpose(0, 2, 1, 3)
+        return self.form.sign * ordered.reshape(len(matrices), -1)
+
+
+def fit(
+    velocity: ComplexArray, load: ComplexArray, omega: FloatArray, weights: FloatArray
+) -> FloatArray:
+    """Solve ``load = (B + i omega A) velocity`` for real A and B by weighted least squares.
+
+    Parameters
+    ----------
+    velocity
+        Shape ``(trials, runs, columns)``.
+    load
+        Shape ``(trials, runs, 2)``.
+    weights
+        Shape ``(runs, 2)``: one over the standard deviation of each load.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(trials, 2, columns, 2)``: row, column, (A, B).
+    """
+    trials, runs, columns = velocity.shape
+    pace = omega / omega[:, :1]  # runs at slightly different frequencies share one A
+    z = np.stack((1j * pace[..., None] * velocity, velocity), axis=-1)
+    z = z.reshape(trials, runs, 2 * columns)
+    scale = np.sqrt((np.abs(z) ** 2).sum(axis=1, keepdims=True))
+    z = z / np.where(scale > 0.0, scale, 1.0)
+    found = np.empty((trials, 2, columns, 2))
+    for row in (0, 1):
+        weight = weights[:, row, None]
+        design = np.concatenate(((weight * z).real, (weight * z).imag), axis=1)
+        right = weights[:, row] * load[..., row]
+        target = np.concatenate((right.real, right.imag), axis=1)
+        solved = np.einsum("tij,tj->ti", np.linalg.pinv(design), target)
+        found[:, row] = (solved / scale[:, 0]).reshape(trials, columns, 2)
+    found[..., 0] /= omega[:, :1, None]
+    return found

@@ -1,0 +1,94 @@
+"""What coefficients are called: in the seakeeping form and in the manoeuvring form.
+
+Both write the hydrodynamic load that the struts have to exert as ``A x' + B x`` with rows force and
+moment and columns translation and rotation. They differ in x:
+
+* seakeeping: ``x = q'``, the velocities of heave and pitch (3, 5) or sway and yaw (2, 6); at
+  forward speed a and b hold what the incidence does;
+* manoeuvring: ``x = (w, q)`` or ``(v, r)``, the velocity through the water; the derivatives are
+  those of the load on the hull, ``-A`` and ``-B``.
+"""
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from enum import StrEnum
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Plane
+
+
+class Form(StrEnum):
+    """How the load is written."""
+
+    SEAKEEPING = "seakeeping"
+    MANOEUVRING = "manoeuvring"
+
+    @property
+    def sign(self) -> float:
+        """Of the named coefficients against A and B."""
+        return 1.0 if self is Form.SEAKEEPING else -1.0
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a coefficient stands.
+
+    Attributes
+    ----------
+    row, column
+        0 for force and translation, 1 for moment and rotation.
+    inertial
+        True in A (per acceleration), False in B (per velocity).
+    """
+
+    row: int
+    column: int
+    inertial: bool
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        levers = self.row + self.column
+        if self.inertial:
+            return ("kg", "kg m", "kg m2")[levers]
+        return ("N s/m", "N s", "N m s")[levers]
+
+
+_MODES = {Plane.VERTICAL: "35", Plane.HORIZONTAL: "26"}
+_LOADS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
+_VELOCITIES = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
+
+# Column by column: all that one pure motion tells stands together.
+PLACES = tuple(
+    Place(row, column, inertial)
+    for column in (0, 1)
+    for row in (0, 1)
+    for inertial in (True, False)
+)
+
+
+def name_of(place: Place, plane: Plane, form: Form) -> str:
+    """Return what a coefficient is called, for example ``a35`` or ``N_vdot``."""
+    if form is Form.SEAKEEPING:
+        kind = "a" if place.inertial else "b"
+        return kind + _MODES[plane][place.row] + _MODES[plane][place.column]
+    dot = "dot" if place.inertial else ""
+    return f"{_LOADS[plane][place.row]}_{_VELOCITIES[plane][place.column]}{dot}"
+
+
+def place_of(name: str, plane: Plane, form: Form) -> Place:
+    """Return where the coefficient of that name stands.
+
+    Raises
+    ------
+    ConfigurationError
+        If this plane and form have none of that name; the message names the nearest.
+    """
+    known = {name_of(place, plane, form): place for place in PLACES}
+    if name not in known:
+        near = get_close_matches(name, known, n=3, cutoff=0.4)
+        hint = f"; did you mean {', '.join(near)}?" if near else ""
+        raise ConfigurationError(
+            f"no {form} coefficient {name!r} in the {plane} plane{hint} (known: {', '.join(known)})"
+        )
+    return known[name]

@@ -1,0 +1,165 @@
+"""Systems without dimensions, each with its inverse; every result names its own.
+
+A coefficient is divided by its system's mass (A) or mass per time (B), and by one length for each
+moment and each rotation: the force per rate of rotation has one length, the moment per rate two.
+
+====================  ==================  ====================
+system                A is divided by     B is divided by
+====================  ==================  ====================
+prime                 rho/2 L^3           rho/2 L^2 U
+MMG                   rho/2 L^2 d         rho/2 L d U
+seakeeping            rho V               rho V sqrt(g/L)
+====================  ==================  ====================
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray
+from analysis.coefficients.result import Coefficients, Share
+from hardware.description.errors import ConfigurationError
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+DIMENSIONAL = "dimensional"
+
+
+@dataclass(frozen=True)
+class Normalisation:
+    """A system without dimensions.
+
+    Attributes
+    ----------
+    name
+        With what it is built on, for the head of a table.
+    length_m
+        Of levers.
+    mass_kg, mass_per_second
+        What force per acceleration and force per velocity are divided by.
+    """
+
+    name: str
+    length_m: float
+    mass_kg: float
+    mass_per_second: float
+
+    def factors(self, coefficients: Coefficients) -> FloatArray:
+        """Return what each value is divided by, shape ``(n,)``."""
+        places = coefficients.places()
+        levers = np.array([place.row + place.column for place in places])
+        unit = [self.mass_kg if place.inertial else self.mass_per_second for place in places]
+        return np.asarray(np.array(unit) * self.length_m**levers)
+
+    def without_dimensions(self, coefficients: Coefficients) -> Coefficients:
+        """Return coefficients in this system, uncertainties and all.
+
+        Raises
+        ------
+        ConfigurationError
+            If they are in a system already.
+        """
+        if coefficients.normalisation != DIMENSIONAL:
+            raise ConfigurationError(
+                f"the coefficients are in the system {coefficients.normalisation!r}; bring them "
+                "back to dimensions first"
+            )
+        units = ("1",) * len(coefficients.names)
+        return _scaled(coefficients, 1.0 / self.factors(coefficients), units, self.name)
+
+    def with_dimensions(self, coefficients: Coefficients) -> Coefficients:
+        """Return coefficients of this system in SI units: the inverse.
+
+        Raises
+        ------
+        ConfigurationError
+            If they are in another system.
+        """
+        if coefficients.normalisation != self.name:
+            raise ConfigurationError(
+                f"the coefficients are in the system {coefficients.normalisation!r}, not in "
+                f"{self.name!r}"
+            )
+        units = tuple(place.unit for place in coefficients.places())
+        return _scaled(coefficients, self.factors(coefficients), units, DIMENSIONAL)
+
+
+def _scaled(
+    coefficients: Coefficients, factors: FloatArray, units: tuple[str, ...], name: str
+) -> Coefficients:
+    shares = tuple(
+        Share(s.label, s.variance * factors**2, s.degrees_of_freedom) for s in coefficients.shares
+    )
+    return replace(
+        coefficients,
+        values=coefficients.values * factors,
+        covariance=coefficients.covariance * np.outer(factors, factors),
+        units=units,
+        shares=shares,
+        normalisation=name,
+    )
+
+
+def prime(length_m: float, speed_m_s: float, density_kg_m3: float) -> Normalisation:
+    """Return the prime system of SNAME: rho/2, L and U.
+
+    Raises
+    ------
+    ConfigurationError
+        If a quantity is not positive: at rest the system has no meaning.
+    """
+    _positive(length_m=length_m, speed_m_s=speed_m_s, density_kg_m3=density_kg_m3)
+    area = 0.5 * density_kg_m3 * length_m**2
+    name = f"prime (rho/2, L = {length_m:g} m, U = {speed_m_s:g} m/s)"
+    return Normalisation(name, length_m, area * length_m, area * speed_m_s)
+
+
+def mmg(length_m: float, draught_m: float, speed_m_s: float, density_kg_m3: float) -> Normalisation:
+    """Return the MMG system: the prime one with L d in place of L^2.
+
+    Raises
+    ------
+    ConfigurationError
+        If a quantity is not positive.
+    """
+    _positive(
+        length_m=length_m,
+        draught_m=draught_m,
+        speed_m_s=speed_m_s,
+        density_kg_m3=density_kg_m3,
+    )
+    area = 0.5 * density_kg_m3 * length_m * draught_m
+    name = f"MMG (rho/2, L = {length_m:g} m, d = {draught_m:g} m, U = {speed_m_s:g} m/s)"
+    return Normalisation(name, length_m, area * length_m, area * speed_m_s)
+
+
+def seakeeping(
+    length_m: float,
+    volume_m3: float,
+    density_kg_m3: float,
+    gravity_m_s2: float = STANDARD_GRAVITY_M_S2,
+) -> Normalisation:
+    """Return the seakeeping system: a/(rho V) and b sqrt(L/g)/(rho V).
+
+    Raises
+    ------
+    ConfigurationError
+        If a quantity is not positive.
+    """
+    _positive(
+        length_m=length_m,
+        volume_m3=volume_m3,
+        density_kg_m3=density_kg_m3,
+        gravity_m_s2=gravity_m_s2,
+    )
+    mass = density_kg_m3 * volume_m3
+    name = f"seakeeping (rho V, V = {volume_m3:g} m3, L = {length_m:g} m)"
+    return Normalisation(name, length_m, mass, mass * math.sqrt(gravity_m_s2 / length_m))
+
+
+def _positive(**values: float) -> None:
+    faults = [f"{name} = {value:g}" for name, value in values.items() if not value > 0.0]
+    if faults:
+        raise ConfigurationError(
+            f"{', '.join(faults)} must be above 0 for coefficients without dimensions"
+        )

@@ -1,0 +1,145 @@
+"""How far to trust coefficients: weights of the runs, misfit, digits lost, what was left out."""
+
+import math
+
+import numpy as np
+
+from analysis.coefficients.determined import ALONE, motion_words
+from analysis.coefficients.model import Problem
+from analysis.coefficients.names import Form, Place
+from analysis.coefficients.phasors import ComplexArray, FloatArray
+from analysis.coefficients.run import LOADS, MOTIONS, Run, point_matrix
+from analysis.motion import incidence, mass_matrix, weight_matrix
+from hardware.description.flags import Flag, Severity
+
+_NOTICED = 1e-3
+_DIGIT = 0.1
+_DISAGREE = 3.0
+
+
+def run_weights(problem: Problem) -> FloatArray:
+    """Return one over the scatter of each run's residual, shape ``(runs, 2)``; 1 if unknown.
+
+    Scalars by run and load, and not whole matrices: a covariance from a few periods makes a poor
+    metric, while any weights leave the result unbiased and its propagated covariance right.
+    """
+    spread = _residual_spread(problem, problem.nominal())
+    if not np.isfinite(spread).all():
+        return np.ones_like(spread)
+    sizes = np.stack([np.abs(run.loads.values) for run in problem.runs])
+    floor = 1e-9 * sizes.max(axis=0) + 1e-300
+    return np.asarray(floor / np.maximum(spread, floor))
+
+
+def _residual_spread(problem: Problem, matrices: FloatArray) -> FloatArray:
+    """Standard deviation of ``load - (B + i omega A) velocity``, shape ``(runs, 2)``."""
+    rows = []
+    for run in problem.runs:
+        carry = np.linalg.inv(point_matrix(run.point_ahead_m, run.plane)).T
+        slope = np.hstack((-carry @ run.known() - _asked(problem, run, matrices), carry))
+        ordered = run.phasors.select((*MOTIONS, *LOADS))
+        covariance = ordered.mapped(slope.astype(np.complex128), LOADS, ("N", "N m")).covariance
+        rows.append(np.sqrt(np.diagonal(covariance).reshape(2, 2).mean(axis=1)))
+    return np.stack(rows)
+
+
+def _asked(problem: Problem, run: Run, matrices: FloatArray) -> ComplexArray:
+    """``(B + i omega A)`` times what turns the midpoint's motion into the form's velocities."""
+    turn = np.asarray(1j * run.omega * np.eye(2), dtype=np.complex128)
+    if problem.form is Form.MANOEUVRING:
+        turn = turn + run.speed_m_s * incidence(run.plane)
+    turn = turn @ point_matrix(run.point_ahead_m, run.plane)
+    dynamic = matrices[..., 1] + 1j * run.omega * matrices[..., 0]
+    return np.asarray(dynamic @ turn[list(problem.columns)])
+
+
+def misfit_of(problem: Problem, matrices: FloatArray) -> float:
+    """Return the residuals over their expected size; NaN without any left over."""
+    spare = 4 * (len(problem.runs) - len(problem.columns))
+    if spare == 0:
+        return math.nan
+    spread = _residual_spread(problem, matrices)
+    residuals = np.stack(
+        [
+            run.net().values - _asked(problem, run, matrices) @ run.motion.values
+            for run in problem.runs
+        ]
+    )
+    floor = 1e-9 * np.abs(np.stack([run.loads.values for run in problem.runs])).max(axis=0)
+    ratio = np.abs(residuals) / np.maximum(spread, floor + 1e-300)
+    return float(np.sqrt((ratio**2).sum() / spare))
+
+
+def retained_parts(problem: Problem, matrices: FloatArray) -> FloatArray:
+    """Return each coefficient's part of the load over the largest it is left from, ``(n,)``."""
+    velocity, omega = problem.velocities()
+    size = np.abs(velocity)
+    found = []
+    for place in problem.places():
+        run = problem.runs[int(np.argmax(size[:, place.column]))]
+        speed = float(size[:, place.column].max())
+        if place.inertial:
+            speed *= float(omega[0])
+        value = matrices[place.row, problem.columns.index(place.column), 0 if place.inertial else 1]
+        own = abs(float(value)) * speed
+        found.append(own / max(own, _largest_part(run, place.row), 1e-300))
+    return np.array(found)
+
+
+def _largest_part(run: Run, row: int) -> float:
+    """Largest of the gross load and what inertia, weight and restoring ask of it."""
+    motion = run.motion.values
+    parts = [abs(run.loads.values[row]), abs((run.restoring @ motion)[row])]
+    if run.body is not None:
+        inertia = run.omega**2 * mass_matrix(run.body, run.plane)
+        parts += [abs((inertia @ motion)[row])]
+        parts += [abs((weight_matrix(run.body, run.plane) @ motion)[row])]
+    return float(max(parts))
+
+
+def quality_flags(
+    problem: Problem,
+    names: tuple[str, ...],
+    places: tuple[Place, ...],
+    retained: FloatArray,
+    misfit: float,
+    covariance: FloatArray,
+) -> tuple[Flag, ...]:
+    """Return the runs' own flags and what the coefficients add."""
+    found = [flag for run in problem.runs for flag in run.flags]
+    for name, place, part in zip(names, places, retained, strict=True):
+        if part < _DIGIT:
+            what = "gain, mass or restoring" if place.inertial else "phase (in radians)"
+            text = (
+                f"{name} is {100.0 * part:.2g} % of the largest part of the load (limit "
+                f"{100 * _DIGIT:g} %): an error in {what} is {1.0 / max(part, 1e-12):.3g} times "
+                "as large in it"
+            )
+            found.append(Flag("digits_lost", Severity.WARNING, text, name))
+    if misfit > _DISAGREE:
+        text = (
+            f"the runs differ {misfit:.2g} times as much as their scatter (limit {_DISAGREE:g}): "
+            "amplitude, alignment or a force that is not linear; solve them apart"
+        )
+        found.append(Flag("runs_disagree", Severity.WARNING, text))
+    if not np.isfinite(covariance).all():
+        text = "a run has too few periods for scatter: no interval can be given"
+        found.append(Flag("no_interval", Severity.WARNING, text))
+    return (*found, *_neglected(problem))
+
+
+def _neglected(problem: Problem) -> tuple[Flag, ...]:
+    if len(problem.columns) == 2:
+        return ()
+    velocity, _ = problem.velocities()
+    moved = np.abs(velocity * np.array([1.0, problem.runs[0].half_spacing_m])).max(axis=0)
+    column = problem.columns[0]
+    part = moved[1 - column] / moved[column]
+    if part <= _NOTICED:
+        return ()
+    words = motion_words(problem.plane, problem.form)
+    text = (
+        f"{words[1 - column]} of {100 * part:.2g} % of {words[column]} at the struts was left out "
+        f"(limit {100 * ALONE:g} %); add a run in {words[1 - column]} to have it taken off"
+    )
+    return (Flag("other_motion_left_out", Severity.WARNING, text),)

@@ -1,0 +1,145 @@
+"""Uncertainty of coefficients: to first order with shares, and by Monte Carlo beside it.
+
+Scatter of the harmonics belongs to each run, stated uncertainties are shared by all of them, so
+that runs do not average out an unknown mass. Derivatives are central differences, all at once.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+
+from analysis.coefficients.model import PER_RUN, STATED, Problem, Stated
+from analysis.coefficients.phasors import FloatArray, Source
+from analysis.coefficients.result import Share
+from analysis.coefficients.run import LOADS, MOTIONS, Run
+
+_STEP = 1e-6  # of the run's largest motion or load
+_STATED_STEP = 0.01  # of the stated uncertainty: curvature is the Monte Carlo's to find
+_TRIALS_AT_ONCE = 5_000
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """What a Monte Carlo gave.
+
+    Attributes
+    ----------
+    mean, standard_uncertainty, low, high
+        Mean, standard deviation and the symmetric interval of each coefficient, shape ``(n,)``.
+    covariance
+        Shape ``(n, n)``.
+    """
+
+    count: int
+    mean: FloatArray
+    standard_uncertainty: FloatArray
+    covariance: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def linear_shares(problem: Problem, stated: Stated) -> tuple[FloatArray, tuple[Share, ...]]:
+    """Return the covariance to first order and what each source adds to it.
+
+    Returns
+    -------
+    covariance
+        Of ``problem.flat``'s coefficients, shape ``(n, n)``.
+    shares
+        Scatter by source, then each stated uncertainty that is not zero.
+    """
+    by_phasor, by_stated = _jacobians(problem, stated)
+    covariance = np.zeros((len(by_phasor), len(by_phasor)))
+    shares = []
+    for k, run in enumerate(problem.runs):
+        slope = by_phasor[:, k * PER_RUN : (k + 1) * PER_RUN]
+        for source in _sources(run):
+            part = slope @ source.covariance @ slope.T
+            covariance += part
+            shares.append(Share(source.label, np.diagonal(part), source.degrees_of_freedom))
+    for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
+        if spread > 0.0:
+            part = np.outer(by_stated[:, k], by_stated[:, k]) * spread**2
+            covariance += part
+            shares.append(Share(name, np.diagonal(part), np.inf))
+    return covariance, tuple(shares)
+
+
+def freedom(shares: tuple[Share, ...], size: int) -> FloatArray:
+    """Return the effective degrees of freedom (Welch and Satterthwaite), shape ``(size,)``."""
+    total, loss = np.zeros(size), np.zeros(size)
+    for share in shares:
+        total += share.variance
+        if share.degrees_of_freedom > 0.0:
+            loss += share.variance**2 / share.degrees_of_freedom
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(loss > 0.0, total**2 / loss, np.inf))
+
+
+def monte_carlo(
+    problem: Problem, stated: Stated, *, trials: int, seed: int, level: float = 0.95
+) -> Trials:
+    """Draw phasors and stated quantities and solve each trial.
+
+    Scatter with few degrees of freedom is drawn from Student's t, as its own kind of knowledge.
+    """
+    generator = np.random.default_rng(seed)
+    found = []
+    for start in range(0, trials, _TRIALS_AT_ONCE):
+        count = min(_TRIALS_AT_ONCE, trials - start)
+        parts = np.broadcast_to(problem.phasor_parts(), (count, len(problem.runs), PER_RUN)).copy()
+        for k, run in enumerate(problem.runs):
+            for source in _sources(run):
+                parts[:, k] += _draw(source, count, generator)
+        deviations = generator.standard_normal((count, len(STATED))) * stated.vector
+        found.append(problem.flat(problem.solve(parts, deviations)))
+    values = np.concatenate(found)
+    tail = (1.0 - level) / 2.0
+    low, high = np.quantile(values, (tail, 1.0 - tail), axis=0)
+    return Trials(
+        trials,
+        values.mean(axis=0),
+        values.std(axis=0, ddof=1),
+        np.cov(values, rowvar=False),
+        low,
+        high,
+    )
+
+
+def _draw(source: Source, count: int, generator: Generator) -> FloatArray:
+    values, vectors = np.linalg.eigh(source.covariance)
+    root = vectors * np.sqrt(np.clip(values, 0.0, None))
+    normal = np.asarray(generator.standard_normal((count, len(root))) @ root.T)
+    nu = source.degrees_of_freedom
+    if np.isfinite(nu) and nu > 0.0:
+        normal *= np.sqrt(nu / generator.chisquare(nu, count))[:, None]
+    return normal
+
+
+def _sources(run: Run) -> tuple[Source, ...]:
+    return run.phasors.select((*MOTIONS, *LOADS)).sources
+
+
+def _jacobians(problem: Problem, stated: Stated) -> tuple[FloatArray, FloatArray]:
+    """Derivatives by the phasors ``(n, 8 runs)`` and by the stated quantities ``(n, stated)``."""
+    parts = problem.phasor_parts()
+    steps = np.concatenate((_steps(problem, parts).ravel(), _STATED_STEP * stated.vector))
+    count = len(steps)
+    shifts = np.concatenate((np.diag(steps), -np.diag(steps)))
+    trial = parts[None] + shifts[:, : parts.size].reshape(2 * count, *parts.shape)
+    solved = problem.flat(problem.solve(trial, shifts[:, parts.size :]))
+    with np.errstate(invalid="ignore"):
+        slopes = (solved[:count] - solved[count:]) / (2.0 * steps[:, None])
+    slopes[steps == 0.0] = 0.0
+    return slopes[: parts.size].T, slopes[parts.size :].T
+
+
+def _steps(problem: Problem, parts: FloatArray) -> FloatArray:
+    """Steps of each phasor's parts: a millionth of the run's motion or load."""
+    half = np.array([run.half_spacing_m for run in problem.runs])
+    size = np.abs(parts).reshape(len(half), 4, 2).max(axis=2)
+    way = np.maximum(size[:, 0], size[:, 1] * half)
+    load = np.maximum(size[:, 2], size[:, 3] / half)
+    steps = _STEP * np.stack((way, way / half, load, load * half), axis=-1)
+    return np.repeat(steps, 2, axis=1)
