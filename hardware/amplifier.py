@@ -17,7 +17,6 @@ from hardware.errors import (
     SensorInvalidError,
     StuckSensorError,
 )
-from hardware.node import Values
 from hardware.roles import Block, Cycle, Role, rows
 
 _INVALID, _OVERLOADS = 0x01, 0x06  # bits of the analogue input's status (6150)
@@ -158,9 +157,8 @@ class Amplifier:
         by_number: dict[int, dict[Entry, int | float]] = {}
         for stream in self._node.streams:
             for number, values in stream.samples:
-                found: Values = values
                 by_number.setdefault(number, {}).update(
-                    zip(stream.layout.entries, found, strict=True)
+                    zip(stream.layout.entries, values, strict=True)
                 )
         return [
             (number, tuple(values.get(at, math.nan) for at in self._values))

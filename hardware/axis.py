@@ -93,7 +93,7 @@ class DriveAxis:
 
     def __init__(self, name: str, settings: PositionAxisSettings, services: Services) -> None:
         self.name = name
-        self.unit = settings.unit
+        self.unit: str = settings.unit
         self.limits = Range(settings.low, settings.high)
         self.homed = False
         self.settled = False

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Any, Final, Protocol, cast
 
 import can
 
@@ -120,7 +120,7 @@ def open_bus(configuration: BusConfiguration) -> can.BusABC:
             channel=configuration.channel,
             bitrate=configuration.bit_rate,
             ignore_config=True,
-            **configuration.options,
+            **cast("dict[str, Any]", dict(configuration.options)),
         )
     except NotImplementedError as error:
         raise BusOpenError(where, f"{error}; see python-can's list of interfaces") from error

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import canopen
-from canopen.objectdictionary import ODVariable, datatypes, import_od
+from canopen.objectdictionary import ODArray, ODVariable, datatypes, import_od
 
 from hardware.description.errors import ConfigurationError
 
@@ -31,11 +31,11 @@ _ENTRY: Final = re.compile(r"^(?:0x)?([0-9A-Fa-f]{4})(?::([0-9]{1,3}))?$")
 class Entry(NamedTuple):
     """An object's address in the dictionary; written ``6041`` or ``9130:1`` in configurations."""
 
-    index: int
+    object_index: int
     subindex: int = 0
 
     def __str__(self) -> str:
-        return f"{self.index:04X}:{self.subindex}"
+        return f"{self.object_index:04X}:{self.subindex}"
 
 
 def entry(text: str) -> Entry:
@@ -77,8 +77,19 @@ def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
 
 
 def variable(dictionary: canopen.ObjectDictionary, at: Entry) -> ODVariable | None:
-    """Return the variable at an address, or ``None`` if the dictionary has none there."""
-    return dictionary.get_variable(at.index, at.subindex)
+    """Return the variable at an address, or ``None`` if the dictionary has none there.
+
+    canopen makes up members of any array; that is right for compact arrays only, whose EDS states
+    the first member for all.
+    """
+    found = dictionary.get_variable(*at)
+    holder = dictionary.get(at.object_index)
+    if not isinstance(holder, ODArray) or at.subindex in holder.subindices:
+        return found
+    if found is None or len(holder.subindices) > 2:
+        return None
+    found.pdo_mappable = holder[1].pdo_mappable
+    return found
 
 
 def has(dictionary: canopen.ObjectDictionary, at: Entry) -> bool:

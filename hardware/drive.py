@@ -128,7 +128,7 @@ class Drive:
             word = self._walk.tick(int(status))
         except DriveFaultError as error:
             self._put(next_command(self._walk.state, self._walk.goal))
-            raise self._named(error) from None
+            raise self._named() from error
         except HardwareError:
             self._put(next_command(self._walk.state, self._walk.goal))
             raise
@@ -140,7 +140,7 @@ class Drive:
         self.node.put(CONTROL_WORD, word | extra)
         self.node.put(MODE, self.mode)
 
-    def _named(self, error: DriveFaultError) -> HardwareError:
+    def _named(self) -> HardwareError:
         code = int(self.node.values[ERROR_CODE])
         if code == _FOLLOWING_ERROR_CODE:
             return FollowingError(self.node.name, f"outside its window (error 0x{code:04X})")

@@ -45,7 +45,7 @@ class SerialInclinometer:
 
     def __init__(self, name: str, settings: InclinometerSettings, services: Services) -> None:  # noqa: ARG002
         self.name = name
-        self.channels = (Channel(name, "rad", settings.range_rad),)
+        self.channels: tuple[Channel, ...] = (Channel(name, "rad", settings.range_rad),)
         self.sample_rate_hz = settings.sample_rate_hz
         self._settings = settings
         self._port = SerialPort(name, settings.port)

@@ -1,6 +1,6 @@
 r"""Lines of the small serial devices: ``kind,sequence,ticks,value*checksum`` and a line feed.
 
-``P,17,4294967295,3*2A`` is line 17: pulse number 3 at 4294967295 microseconds of the device's own
+``P,17,4294967295,3*44`` is line 17: pulse number 3 at 4294967295 microseconds of the device's own
 counter. The sequence is of 16 bits and counts every line; ticks are of 32 bits and wrap after
 71.6 minutes; the checksum is the exclusive or of all bytes before the asterisk, in two hexadecimal
 digits, as in NMEA 0183.

@@ -1,4 +1,4 @@
-"""Axes that an operator sets by hand, as in 1963: micrometer, phase drum, speed knob.
+"""Axes that an operator sets by hand, as in 1963: micrometer and phase drum.
 
 The operator is asked through :attr:`hardware.driver.Services.prompt`, once per cycle until there is
 an answer, so that the loop (and with it the heartbeat) never waits for a person.
@@ -8,15 +8,14 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import DialReadingError, LimitError, NotReadyError
-from hardware.roles import Block, Cycle, Reading, Role
+from hardware.roles import Cycle, Reading, Role
 
 
-class _Question:
+class Question:
     """One question to the operator, asked until a number comes."""
 
     def __init__(self, name: str, services: Services) -> None:
@@ -96,13 +95,13 @@ class ManualAxis:
 
     def __init__(self, name: str, settings: ManualAxisSettings, services: Services) -> None:
         self.name = name
-        self.unit = settings.unit
+        self.unit: str = settings.unit
         self.limits = Range(settings.low, settings.high)
         self.enabled = False
         self.settled = False
         self.reading: Reading | None = None
         self._settings = settings
-        self._question = _Question(name, services)
+        self._question = Question(name, services)
         self._target: float | None = None
 
     @property
@@ -181,8 +180,7 @@ class ManualAxis:
             If it is no number, outside the limits, or further from the set-point than the
             tolerance; the operator is asked again.
         """
-        asked = self._question
-        answer = asked.answer()
+        answer = self._question.answer()
         if answer is not None:
             self._take(answer)
 
@@ -212,107 +210,3 @@ class ManualAxis:
 
 
 DRIVER = Driver(Role.POSITION_AXIS, ManualAxisSettings, ManualAxis)
-
-
-@dataclass(frozen=True)
-class ManualShaftSettings:
-    """Settings of a shaft whose speed is set by hand and read off a tachometer."""
-
-    lowest_frequency_hz: float
-    highest_frequency_hz: float
-    tolerance_share: float = 0.1
-
-
-class ManualShaft:
-    """A :class:`hardware.roles.Shaft` whose knob is the operator's; it has no encoder."""
-
-    channels: tuple[Channel, ...] = ()
-
-    def __init__(self, name: str, settings: ManualShaftSettings, services: Services) -> None:
-        self.name = name
-        self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
-        self.sample_rate_hz = services.sample_rate_hz
-        self.enabled = False
-        self.measured_frequency_hz = math.nan
-        self._tolerance_share = settings.tolerance_share
-        self._question = _Question(name, services)
-        self._wanted_hz = 0.0
-
-    @property
-    def moving(self) -> bool:
-        """Whether the shaft turns as far as anyone has said; unknown counts as turning."""
-        return self._question.open or self.measured_frequency_hz > 0.0
-
-    @property
-    def at_speed(self) -> bool:
-        """Whether the operator has read the commanded speed."""
-        off = abs(self.measured_frequency_hz - self._wanted_hz)
-        return self._wanted_hz > 0.0 and off <= self._tolerance_share * self._wanted_hz
-
-    def prepare(self) -> None:
-        """Nothing to write."""
-
-    def enable(self) -> None:
-        """Let the shaft be started."""
-        self.enabled = True
-
-    def disable(self) -> None:
-        """Have the shaft stopped and let it be started no more."""
-        self.stop()
-        self.enabled = False
-
-    def turn(self, frequency_hz: float) -> None:
-        """Ask the operator to set a speed and to read it; raises as the driven shaft does."""
-        low, high = self.frequency_hz.low, self.frequency_hz.high
-        if not (frequency_hz > 0.0 and frequency_hz in self.frequency_hz):
-            raise LimitError(
-                self.name, f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0)"
-            )
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
-        self._wanted_hz = frequency_hz
-        self._question.ask(f"{self.name}: set {frequency_hz:g} Hz and read the speed [Hz]")
-
-    def stop(self) -> None:
-        """Ask the operator to stop the shaft, unless it stands."""
-        self._wanted_hz = 0.0
-        if self.moving:
-            self._question.ask(f"{self.name}: stop the shaft, then enter 0 [Hz]")
-
-    def quick_stop(self) -> None:
-        """Ask for a stop: a hand-set shaft has no other way than its emergency stop."""
-        self.disable()
-
-    def reset_fault(self) -> None:
-        """Nothing to reset."""
-        self.disable()
-
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
-        """Look for an answer.
-
-        Raises
-        ------
-        DialReadingError
-            If it is no number or not the speed that was asked for; the operator is asked again.
-        """
-        answer = self._question.answer()
-        if answer is None:
-            return
-        self.measured_frequency_hz = abs(answer)
-        wanted = self._wanted_hz
-        if abs(answer - wanted) > self._tolerance_share * wanted:
-            self._question.ask(f"{self.name}: set {wanted:g} Hz and read the speed [Hz]")
-            raise DialReadingError(
-                self.name,
-                f"reads {answer:g} Hz; wanted {wanted:g} Hz within {self._tolerance_share:.0%}",
-            )
-
-    def take(self) -> tuple[Block, ...]:
-        """Return nothing: there is no encoder."""
-        return ()
-
-    def close(self) -> None:
-        """Nothing to let go of."""
-
-
-SHAFT_DRIVER = Driver(Role.SHAFT, ManualShaftSettings, ManualShaft)

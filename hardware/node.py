@@ -151,6 +151,6 @@ class Node:
         self.sdo.write(Entry(record, 2), kind)
         self.sdo.write(Entry(mapping, 0), 0)
         for sub, (at, bits) in enumerate(zip(layout.entries, layout.bits, strict=True), start=1):
-            self.sdo.write(Entry(mapping, sub), at.index << 16 | at.subindex << 8 | bits)
+            self.sdo.write(Entry(mapping, sub), at.object_index << 16 | at.subindex << 8 | bits)
         self.sdo.write(Entry(mapping, 0), len(layout.entries))
         self.sdo.write(Entry(record, 1), layout.cob_id)

@@ -6,7 +6,8 @@ from typing import Protocol, TypeVar
 
 import can
 import canopen
-from canopen.sdo import SdoAbortedError, SdoClient, SdoCommunicationError
+from canopen.sdo.client import SdoClient
+from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from hardware.dictionary import Entry
 from hardware.errors import SdoAbortError, SdoInCallbackError, SdoTimeoutError
@@ -41,7 +42,9 @@ class _Client(SdoClient):
     """canopen's client, but receiving through the carrier instead of blocking on a queue."""
 
     def __init__(self, node_id: int, dictionary: canopen.ObjectDictionary, by: Carrier) -> None:
-        super().__init__(_REQUEST + node_id, _RESPONSE + node_id, dictionary)
+        super().__init__(  # type: ignore[no-untyped-call]
+            _REQUEST + node_id, _RESPONSE + node_id, dictionary
+        )
         self.network = by.network
         self._carrier = by
         by.network.subscribe(self.tx_cobid, self.on_response)

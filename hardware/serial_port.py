@@ -65,7 +65,7 @@ class SerialPort:
         self._rest = b""
         self._back_off_s = _FIRST_BACK_OFF_S
         self._again_s = 0.0
-        self._port: serial.SerialBase | None = None
+        self._port: serial.Serial | None = None
         self.open()
 
     @property

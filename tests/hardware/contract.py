@@ -299,7 +299,7 @@ class PhotocellContract(_Contract):
         cell.expect(self.frequency_hz)
         bench.cycles(round(6.2 * rate / self.frequency_hz))
         pulses = cell.take()
-        assert len(pulses) == 6
+        assert len(pulses) in (6, 7)
         assert np.diff([one.number for one in pulses]) == pytest.approx(1)
         periods = np.diff([one.time_s for one in pulses])
         assert periods == pytest.approx(1.0 / self.frequency_hz, abs=1.1 / rate)

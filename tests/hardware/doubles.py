@@ -38,9 +38,7 @@ class Network(canopen.Network):
         self.sent: deque[can.Message] = deque()
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        self.sent.append(
-            can.Message(arbitration_id=can_id, data=bytes(data), is_extended_id=False)
-        )
+        self.sent.append(can.Message(arbitration_id=can_id, data=bytes(data), is_extended_id=False))
 
     def send_periodic(self, *_: object, **__: object) -> "Network":
         """Take the heartbeat's timer: the doubles send it in every SYNC instead."""

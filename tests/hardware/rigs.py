@@ -1,7 +1,5 @@
 """Rigs over the doubles, ready to run."""
 
-import os
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -9,11 +7,15 @@ from importlib.metadata import EntryPoint
 from itertools import count
 from typing import Any
 
-from hardware.lines import Kind, Line, encode
+import serial
+
+from hardware.lines import Kind, encode
+from hardware.lines import Line as LineOfText
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
-from tests.hardware.doubles import Amplifier, Drive, Network, bench, virtual
+from tests.hardware.doubles import Drive, Network, bench, virtual
+from tests.hardware.protocol_double import Line
 
 COUNTS_PER_TURN = 10_000
 COUNTS_PER_METRE = 1_000_000
@@ -154,35 +156,34 @@ def once_a_turn(before: float, after: float) -> float | None:
 
 
 class Talker:
-    """The far end of a pty: a small device that says lines."""
+    """A small device that says lines, at the far end of a line in memory."""
 
     def __init__(self) -> None:
-        self.far, self._near = os.openpty()
-        self.url = os.ttyname(self._near)
+        self._name = f"talker{next(_CHANNELS)}"
+        self.url = f"double://{self._name}"
+        self.line = Line()
         self.sequence = 0
 
     def say(self, kind: Kind, time_s: float, value: float) -> None:
-        self.send(encode(Line(kind, self.sequence, round(time_s * 1e6), value)))
+        self.send(encode(LineOfText(kind, self.sequence, round(time_s * 1e6), value)))
         self.sequence += 1
 
     def send(self, data: bytes) -> None:
-        os.write(self.far, data)
+        self.line.waiting += data
 
     def unplug(self) -> None:
-        if self.far >= 0:
-            os.close(self.far)
-            os.close(self._near)
-        self.far = -1
+        self.line.there = False
+        gone = serial.SerialException("device disconnected")
+        self.line.fail_on = dict.fromkeys(("in_waiting", "read", "write"), gone)
+
+    def plug(self) -> None:
+        self.line.there, self.line.fail_on = True, {}
 
     def __enter__(self) -> "Talker":
+        Line.by_name[self._name] = self.line
+        if "tests.hardware" not in serial.protocol_handler_packages:
+            serial.protocol_handler_packages.append("tests.hardware")
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.unplug()
-
-
-def alive(name: str) -> bool:
-    return any(one.name == name for one in threading.enumerate())
-
-
-__all__ = ["Amplifier", "Drive"]
+        del Line.by_name[self._name]

@@ -13,6 +13,7 @@ from tests.hardware.contract import (
     PositionAxisContract,
     ShaftContract,
 )
+from tests.hardware.doubles import Amplifier, Drive
 from tests.hardware.rigs import (
     COUNTS_PER_TURN,
     ECCENTRICITY,
@@ -20,8 +21,6 @@ from tests.hardware.rigs import (
     MANUAL,
     NEWTON_PER_COUNT,
     SHAFT,
-    Amplifier,
-    Drive,
     Talker,
     on_bus,
     open_rig,
