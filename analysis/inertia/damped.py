@@ -19,6 +19,8 @@ from analysis.inertia.starts import starting_points, thinned
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
+_ROUGH_ITERATIONS = 10  # enough to tell the starts apart
+
 
 @dataclass(frozen=True)
 class Mode:
@@ -142,9 +144,11 @@ def fit_damped(
     problem, start_s = _problem(time_s, values, offset, trend, damped, modes, where)
     coarse = thinned(problem)
     starts = starting_points(coarse, modes, start_periods_s)
-    rough = [iterate(coarse, omega, decay) for omega, decay in starts]
-    ranked = sorted(rough, key=lambda solution: solution.cost)
-    solution = iterate(problem, ranked[0].omega_rad_s, ranked[0].decay_1_s)
+    rough = [iterate(coarse, omega, decay, _ROUGH_ITERATIONS) for omega, decay in starts]
+    best = min(rough, key=lambda solution: solution.cost)
+    if coarse is not problem:
+        best = iterate(coarse, best.omega_rad_s, best.decay_1_s)
+    solution = iterate(problem, best.omega_rad_s, best.decay_1_s)
     return _finish(problem, solution, start_s, where)
 
 
@@ -198,7 +202,7 @@ def _finish(problem: Problem, solution: Solution, start_s: float, where: str) ->
         modes=modes,
         offset=float(base[0]) if base.size else 0.0,
         trend=float(base[1]) if base.size > 1 else 0.0,
-        covariance=_covariance(problem, omega, decay, linear, residual, diagnostics),
+        covariance=_covariance(problem, omega, decay, matrix, linear, residual, diagnostics),
         diagnostics=diagnostics,
         converged=solution.converged,
         iterations=solution.iterations,
@@ -219,6 +223,7 @@ def _covariance(
     problem: Problem,
     omega: FloatArray,
     decay: FloatArray,
+    matrix: FloatArray,
     linear: FloatArray,
     residual: FloatArray,
     diagnostics: ResidualDiagnostics,
@@ -226,7 +231,6 @@ def _covariance(
     """Covariance of (T, lambda, A, phi) per mode and the base, the residual's colour included."""
     count, extra = omega.size, problem.base.shape[1]
     free = Problem(problem.time_s, problem.values, problem.base, damped=True)
-    matrix = columns(free, omega, decay)
     slope = derivative(free, matrix, linear)
     parts, inflation = [], []
     for k in range(count):

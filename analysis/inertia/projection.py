@@ -67,11 +67,13 @@ class Solution:
 
 def columns(problem: Problem, omega: FloatArray, decay: FloatArray) -> FloatArray:
     """Return the model's linear columns, shape ``(samples, 2 modes + B)``."""
-    parts = []
-    for w, rate in zip(omega, decay, strict=True):
+    count = omega.size
+    matrix = np.empty((problem.time_s.size, 2 * count + problem.base.shape[1]), order="F")
+    for k, (w, rate) in enumerate(zip(omega, decay, strict=True)):
         wave = np.exp((-rate + 1j * w) * problem.time_s)
-        parts += [wave.real, wave.imag]
-    return np.column_stack([*parts, problem.base])
+        matrix[:, 2 * k], matrix[:, 2 * k + 1] = wave.real, wave.imag
+    matrix[:, 2 * count :] = problem.base
+    return matrix
 
 
 def project(problem: Problem, matrix: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

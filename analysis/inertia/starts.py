@@ -12,7 +12,7 @@ Start = tuple[FloatArray, FloatArray]
 
 # Split of two modes that the spectrum shows as one, in cycles per record.
 _SPLITS = (0.35, 0.8)
-_MOST_SAMPLES = 4096  # starting values need no more
+_MOST_SAMPLES = 2048  # starting values need no more
 
 
 def starting_points(
