@@ -10,11 +10,11 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
 from sim import signals
+from sim.acting import Acting
 from sim.hull_blocks import BlockForces, HullState
 from sim.hull_coefficients import HullCoefficients, mass_matrix, weight_matrix
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_harmonics
 from sim.hull_system import HullSystem
-from sim.laws import Acting
 from sim.linear import ComplexArray, Hold
 from sim.mounting import Mounting
 from sim.period import Period, Spectra

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim.acting import Acting
 from sim.compiled import follow
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
 from sim.hull_system import LOAD_DEGREE, HullSystem
-from sim.laws import Acting
 from sim.linear import Hold
 from sim.relaxation import Tail, relax
 from sim.signals import FloatArray

@@ -5,8 +5,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from sim.acting import Acting, Point
 from sim.hull_system import HullSystem
-from sim.laws import Acting, Motion, Point
+from sim.laws import Motion
 from sim.linear import ComplexArray, Rows
 from sim.period import Period
 from sim.signals import FloatArray

@@ -1,8 +1,8 @@
 """Forces that depend on the motion at once: friction, drag, springs; each one small law.
 
 A law gives the force that a strut (or the couple that both) has to exert because of it, positive
-along the motion, from the motion at one :class:`Point` of the model. A new law is a new class with
-a method ``force``; nothing else needs to know of it.
+along the motion, from the motion at one :class:`sim.acting.Point` of the model. A new law is a new
+class with a method ``force``; nothing else needs to know of it.
 
 A law that jumps where the velocity changes sign is averaged over the sample (``jumps = True``): the
 velocity is taken as linear over the sample, so that sgn(v) becomes the part of the sample with
@@ -14,7 +14,6 @@ a sample do: 4e-5 of the first at 200 samples a period, where sampling sgn(v) it
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import ClassVar, Final
 
 import numpy as np
@@ -27,16 +26,6 @@ from sim.stage import UNKNOWN_KEYS_REFUSED
 CREEP_M_S: Final = 1e-4
 
 
-class Point(StrEnum):
-    """Where a law acts, and so which motion it depends on."""
-
-    AFT = "aft"
-    FORE = "fore"
-    TRANSLATION = "translation"
-    ROTATION = "rotation"
-    THROUGH_WATER = "through_water"  # translation; its velocity includes U times the rotation
-
-
 @dataclass(frozen=True, eq=False)
 class Motion:
     """What a law may depend on: one value per sample each.
@@ -44,7 +33,7 @@ class Motion:
     Attributes
     ----------
     position, velocity, acceleration
-        At the law's point: m, or rad at :attr:`Point.ROTATION`.
+        At the law's point: m, or rad at :attr:`sim.acting.Point.ROTATION`.
     load
         What the linear parts of the model ask of the struts at that point: N, or N m.
     time_s
@@ -64,10 +53,14 @@ class Motion:
     speed_m_s: FloatArray
 
     @property
+    def half_change(self) -> FloatArray:
+        """Half of what the velocity changes over the sample."""
+        return np.hypot(self.acceleration * (self.step_s / 2.0), CREEP_M_S)
+
+    @property
     def direction(self) -> FloatArray:
         """Sign of the velocity, averaged over the sample."""
-        half = np.hypot(self.acceleration * (self.step_s / 2.0), CREEP_M_S)
-        return np.minimum(np.maximum(self.velocity / half, -1.0), 1.0)
+        return np.minimum(np.maximum(self.velocity / self.half_change, -1.0), 1.0)
 
 
 class ForceLaw(ABC):
@@ -97,7 +90,7 @@ class Viscous(ForceLaw):
     viscous_n_s_m: float
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         return self.viscous_n_s_m * motion.velocity
 
 
@@ -109,7 +102,7 @@ class Quadratic(ForceLaw):
     drift_m_s: float = 0.0
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         velocity = motion.velocity + self.drift_m_s
         return self.quadratic_n_s2_m2 * velocity * np.abs(velocity)
 
@@ -121,7 +114,7 @@ class Cubic(ForceLaw):
     cubic_n_s3_m3: float
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         return self.cubic_n_s3_m3 * motion.velocity**3
 
 
@@ -139,7 +132,7 @@ class Coulomb(ForceLaw):
     jumps: ClassVar[bool] = True
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         return self.coulomb_n * motion.direction + self.uneven_n
 
 
@@ -153,12 +146,14 @@ class Stribeck(ForceLaw):
     jumps: ClassVar[bool] = True
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
-        return (
-            self.excess_n
-            * np.exp(-((motion.velocity / self.stribeck_speed_m_s) ** 2))
-            * motion.direction
-        )
+        """Return the force that has to be exerted: its mean over the sample, by its integral."""
+        from scipy.special import erf
+
+        half, scale = motion.half_change / self.stribeck_speed_m_s, math.sqrt(math.pi) / 4.0
+        velocity = motion.velocity / self.stribeck_speed_m_s
+        risen = erf(np.abs(velocity + half)) - erf(np.abs(velocity - half))
+        mean: FloatArray = self.excess_n * scale * risen / half
+        return mean
 
 
 @dataclass(frozen=True)
@@ -172,7 +167,7 @@ class LoadFriction(ForceLaw):
     jumps: ClassVar[bool] = True
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         normal = np.abs(self.load_share * motion.load + self.side_load_n)
         return self.friction * normal * motion.direction
 
@@ -186,7 +181,7 @@ class Spring(ForceLaw):
     stiffness_n_m3: float = 0.0
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         x = motion.position
         return x * (self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3))
 
@@ -200,7 +195,7 @@ class RubbingSpring(ForceLaw):
     jumps: ClassVar[bool] = True
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         return self.rubbing_n_m * np.abs(motion.position) * motion.direction
 
 
@@ -214,7 +209,7 @@ class Proximity(ForceLaw):
     reference_speed_m_s: float | None = None
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         ratio = self.clearance_m / (self.clearance_m - motion.position)
         return (
             self.proximity_n
@@ -232,7 +227,7 @@ class Exponential(ForceLaw):
     reference_speed_m_s: float | None = None
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         dynamic = _dynamic(motion, self.reference_speed_m_s)
         return self.suction_n * dynamic * np.expm1(self.rate_1_m * motion.position)
 
@@ -253,7 +248,7 @@ class Tone(ForceLaw):
     periodic: ClassVar[bool] = False
 
     def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted."""
+        """Return the force."""
         turned = 2.0 * math.pi * self.tone_hz * motion.time_s + self.tone_phase_rad
         decay = 1.0 if self.decay_s is None else np.exp(-motion.time_s / self.decay_s)
         tone: FloatArray = self.tone_n * decay * np.sin(turned)
@@ -265,37 +260,3 @@ def _dynamic(motion: Motion, reference_speed_m_s: float | None) -> FloatArray | 
     if reference_speed_m_s is None:
         return 1.0
     return (motion.speed_m_s / reference_speed_m_s) ** 2
-
-
-AnyLaw = (
-    Viscous
-    | Quadratic
-    | Cubic
-    | Coulomb
-    | Stribeck
-    | LoadFriction
-    | Spring
-    | RubbingSpring
-    | Proximity
-    | Exponential
-    | Tone
-)
-
-
-@dataclass(frozen=True)
-class Acting:
-    """A law and the point of the model at which it acts.
-
-    Attributes
-    ----------
-    law
-        One of the laws of this file where it comes from a configuration file, else any.
-    in_water
-        True for a law of the water, which a run in air does not have.
-    """
-
-    law: AnyLaw | ForceLaw
-    point: Point = Point.TRANSLATION
-    in_water: bool = False
-
-    __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}

@@ -8,6 +8,7 @@ from hardware.description.body import Body
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition import Acquisition, Digitiser
+from sim.acting import Acting
 from sim.carriage import Carriage, CarriageSettings
 from sim.chain import Chain
 from sim.coupled import Coupled, LoadedDrive, reflected_inertia
@@ -15,7 +16,6 @@ from sim.drive import ConstantSpeedDrive, DriveSettings
 from sim.dynamometer import Dynamometers, Gauge
 from sim.hull import Hull, HullCoefficients
 from sim.hull_forces import CrossFlow
-from sim.laws import Acting
 from sim.mechanism import Mechanism, Setting
 from sim.mounting import Mounting
 from sim.photocell import Photocell

@@ -143,7 +143,7 @@ class FreeBody:
         plain = body.kind == LINEAR and all(one.linear for one in body.resistances)
         beyond = not plain or bool(np.any(body.parameters))
         inverse = np.linalg.inv(body.mass)
-        model = (body.kind, body.parameters, inverse, body.stiffness, rows, beyond)
+        model = (body.kind, body.parameters, inverse, body.stiffness, rows, beyond, any(rubbing))
         return model, found.arrays, steps
 
 

@@ -6,19 +6,31 @@ advanced by their exact flow; what is left of the acceleration goes through the 
 Runge-Kutta method in the frame that moves with that flow (Lawson's method, fourth order). A
 reversal is found by halving the step until it is ``2^-LEVELS`` of it.
 
-``model`` is ``(kind, p, minv, K, loads, nonlinear)``, ``tables`` is ``(index, A, B, E, G)`` with
-one set of matrices for each set of coordinates held by friction: :mod:`sim.pendulum.propagators`.
+``model`` is ``(kind, p, minv, K, loads, nonlinear, rubbing)``; ``tables`` is
+``(index, A, B, E, G)`` with one set of matrices for each set of coordinates held by friction: :mod:`sim.pendulum.propagators`.
 """
 
 from typing import Any
 
 import numpy as np
 
-from sim.compiled import compile_loop
+from sim.compiled import available, compile_loop
 from sim.signals import FloatArray
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
 COULOMB = 5  # column of ``loads``
+
+
+def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return a small matrix times a vector."""
+    out = np.zeros(matrix.shape[0])
+    for i in range(matrix.shape[0]):
+        for j in range(vector.size):
+            out[i] += matrix[i, j] * vector[j]
+    return out
+
+
+times = compile_loop(product) if available() else np.dot
 
 
 @compile_loop
@@ -36,12 +48,15 @@ def resist(q: FloatArray, v: FloatArray, applied: FloatArray, loads: FloatArray)
     Columns of ``loads``: linear, quadratic, cubic, power and its exponent, Coulomb (not used here),
     then the restoring terms of ``|q| q``, ``q^3`` and ``q^5``.
     """
-    speed, turn = np.abs(v), np.abs(q)
-    rub = loads[:, 0] + speed * (loads[:, 1] + speed * loads[:, 2])
-    force = applied - rub * v - loads[:, 3] * speed ** loads[:, 4] * np.sign(v)
-    stiff = loads[:, 6] * turn + turn * turn * (loads[:, 7] + turn * turn * loads[:, 8])
-    resisted: FloatArray = force - q * stiff
-    return resisted
+    force = np.empty(q.size)
+    for i in range(q.size):
+        speed, turn = abs(v[i]), abs(q[i])
+        rub = loads[i, 0] + speed * (loads[i, 1] + speed * loads[i, 2])
+        stiff = turn * (loads[i, 6] + turn * (loads[i, 7] + turn * turn * loads[i, 8]))
+        force[i] = applied[i] - rub * v[i] - stiff * q[i]
+        if loads[i, 3] > 0.0:
+            force[i] -= loads[i, 3] * speed ** loads[i, 4] * np.sign(v[i])
+    return force
 
 
 @compile_loop
@@ -95,35 +110,37 @@ def suspended(
     axes[2] = np.sin(q[3]) * e1 + np.cos(q[3]) * e3
     spin = v[2] * ez + roll_rate * e1 + v[3] * beam
     body = np.array(((p[6], 0.0, p[9]), (0.0, p[7], 0.0), (p[9], 0.0, p[8])))
+    inner = p[6] * p[8] - p[9] * p[9]
+    inverse = np.array(((p[8], 0.0, -p[9]), (0.0, inner / p[7], 0.0), (-p[9], 0.0, p[6]))) / inner
     across = np.ascontiguousarray(axes.T)
-    momentum = np.dot(across, np.dot(body, np.dot(axes, spin)))
-    ease = np.dot(across, np.dot(np.linalg.inv(body), axes))
+    momentum = times(across, times(body, times(axes, spin)))
+    ease = np.dot(across, np.dot(inverse, axes))
     # loads: a force at the beam's middle, a couple about it that works on yaw and pitch only
     middle = -depth * axes[2]
     force = np.array((load[0], load[1], 0.0))
     share = 1.0 - sr * sr
     couple = ((load[2] - sr * load[3]) * ez + (load[3] - sr * load[2]) * beam) / share
     c0 = (force + p[5] * ez) / mass
-    w0 = np.dot(ease, couple + cross(middle, force) - cross(spin, momentum))
+    w0 = times(ease, couple + cross(middle, force) - cross(spin, momentum))
     # tensions per length of both lines, from their lengths that do not change
-    matrix, right = np.empty((2, 2)), np.empty(2)
-    line, lever = np.empty((2, 3)), np.empty((2, 3))
+    right, line, lever, eased = np.empty(2), np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
     start = np.array((v[0], v[1], z_rate))
     for i in range(2):
         side = d if i == 0 else -d
         line[i] = np.array((q[0], q[1] - side, z)) + side * beam
         arm = side * beam + middle
         lever[i] = cross(arm, line[i])
+        eased[i] = times(ease, lever[i])
         speed = start + cross(spin, side * beam)
         swung = c0 + cross(spin, cross(spin, arm))
         right[i] = np.dot(line[i], swung) + np.dot(w0, lever[i]) + np.dot(speed, speed)
-    for i in range(2):
-        for j in range(2):
-            matrix[i, j] = np.dot(line[i], line[j]) / mass
-            matrix[i, j] += np.dot(lever[i], np.dot(ease, lever[j]))
-    pull = np.linalg.solve(matrix, right)
-    centre = c0 - (pull[0] * line[0] + pull[1] * line[1]) / mass
-    turning = w0 - np.dot(ease, pull[0] * lever[0] + pull[1] * lever[1])
+    m00 = np.dot(line[0], line[0]) / mass + np.dot(lever[0], eased[0])
+    m01 = np.dot(line[0], line[1]) / mass + np.dot(lever[0], eased[1])
+    m11 = np.dot(line[1], line[1]) / mass + np.dot(lever[1], eased[1])
+    det = m00 * m11 - m01 * m01
+    pull0, pull1 = (right[0] * m11 - m01 * right[1]) / det, (m00 * right[1] - m01 * right[0]) / det
+    centre = c0 - (pull0 * line[0] + pull1 * line[1]) / mass
+    turning = w0 - pull0 * eased[0] - pull1 * eased[1]
     at_beam = centre + cross(turning, middle) + cross(spin, cross(spin, middle))
     rolled = v[2] * ez + roll_rate * e1
     free = turning - roll_rate * v[2] * cross(ez, e1) - v[3] * cross(rolled, beam)
@@ -134,14 +151,16 @@ def suspended(
 @compile_loop
 def accelerate(model: Any, t: float, q: FloatArray, v: FloatArray, load: FloatArray) -> FloatArray:
     """Return the accelerations under an applied load, all forces of the body's own included."""
-    kind, p, minv, K, loads, _ = model
+    kind, p, minv, K, loads, _, _ = model
     force = resist(q, v, load, loads)
     if kind == SUSPENSION:
         return suspended(p, t, q, v, force)
-    force -= np.dot(K, np.sin(q) if kind == PENDULUM else q)
-    force += p[0] * (np.cos(q) if kind == PENDULUM else np.ones(q.size))
-    a: FloatArray = np.dot(minv, force)
-    return a
+    if kind == PENDULUM:
+        force[0] += p[0] * np.cos(q[0]) - K[0, 0] * np.sin(q[0])
+    else:
+        force[0] += p[0]
+        force -= times(K, q)
+    return times(minv, force)
 
 
 @compile_loop
@@ -152,6 +171,8 @@ def motion(model: Any, t: float, x: FloatArray, sign: FloatArray) -> tuple[Float
     coulomb = model[4][:, COULOMB]
     load, held = -sign * coulomb, np.zeros(n)
     a = accelerate(model, t, q, v, load)
+    if not model[6]:
+        return a, held
     stuck = np.nonzero((coulomb > 0.0) & (sign == 0.0))[0]
     if stuck.size > 0:
         columns = np.empty((stuck.size, n))
@@ -181,8 +202,13 @@ def remainder(
     n = sign.size
     rate = np.zeros(2 * n)
     a, _ = motion(model, t, x, sign)
-    rub = -sign * model[4][:, COULOMB]
-    rate[n:] = a - np.dot(A[n:], x) - np.dot(B[n:], rub)
+    for i in range(n):
+        straight = 0.0
+        for j in range(2 * n):
+            straight += A[n + i, j] * x[j]
+        for j in range(n):
+            straight -= B[n + i, j] * sign[j] * model[4][j, COULOMB]
+        rate[n + i] = a[i] - straight
     return rate
 
 
@@ -192,24 +218,21 @@ def advance(
 ) -> FloatArray:
     """Return the state after ``step / 2^level``, no reversal within it."""
     index, A, B, E, G = tables
-    k = index[pattern(sign, model[4])]
+    k = index[pattern(sign, model[4])] if model[6] else 0
     rub = -sign * model[4][:, COULOMB]
     if not model[5]:
-        straight: FloatArray = np.dot(E[k, level], x) + np.dot(G[k, level], rub)
-        return straight
+        return times(E[k, level], x) + times(G[k, level], rub)
     h = step / 2.0**level
-    half, push = E[k, level + 1], np.dot(G[k, level + 1], rub)
+    half, push = E[k, level + 1], times(G[k, level + 1], rub)
     r1 = remainder(model, A[k], B[k], t, x, sign)
-    middle = np.dot(half, x) + push
-    r1_half = np.dot(half, r1)
+    middle = times(half, x) + push
+    r1_half = times(half, r1)
     r2 = remainder(model, A[k], B[k], t + h / 2.0, middle + h / 2.0 * r1_half, sign)
     r3 = remainder(model, A[k], B[k], t + h / 2.0, middle + h / 2.0 * r2, sign)
-    r4 = remainder(
-        model, A[k], B[k], t + h, np.dot(half, middle) + push + h * np.dot(half, r3), sign
-    )
+    late = times(half, middle + h * r3) + push
+    r4 = remainder(model, A[k], B[k], t + h, late, sign)
     moved = middle + h / 6.0 * (r1_half + 2.0 * (r2 + r3))
-    after: FloatArray = np.dot(half, moved) + push + h / 6.0 * r4
-    return after
+    return times(half, moved) + push + h / 6.0 * r4
 
 
 @compile_loop
@@ -239,7 +262,7 @@ def interval(
 ) -> FloatArray:
     """Return the state after ``step``; ``sign`` is brought up to date in place."""
     n = sign.size
-    if not np.any(model[4][:, COULOMB] > 0.0):
+    if not model[6]:
         return advance(model, tables, t, step, 0, x, sign)
     deepest = tables[3].shape[1] - 2
     whole = 1 << deepest

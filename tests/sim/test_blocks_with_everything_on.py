@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Acquisition, Digitiser
+from sim.acting import Acting, Point
 from sim.amplifier import Carrier, FilterKind, LowPass
 from sim.carriage import CarriageSettings, Fluctuation
 from sim.chain import join
 from sim.drive import DriveSettings, SpeedRipple
 from sim.dynamometer import Dynamometers, Gauge
-from sim.laws import Acting, Coulomb, Cubic, LoadFriction, Point, Quadratic, Tone
+from sim.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
 from sim.motor import Cogging, Guides, ShuntMotor
 from sim.mounting import Mounting
 from sim.photocell import Photocell
@@ -68,9 +69,7 @@ RIGS = {
     "loaded": replace(
         everything(), drive=DriveSettings(start_ramp_s=1.1, motor=MOTOR), mounting=Mounting()
     ),
-    "loaded on springs": replace(
-        everything(), drive=DriveSettings(start_ramp_s=1.1, motor=MOTOR)
-    ),
+    "loaded on springs": replace(everything(), drive=DriveSettings(start_ramp_s=1.1, motor=MOTOR)),
 }
 
 
@@ -90,5 +89,7 @@ def test_any_mix_of_blocks(rig: SimulatedRig, sizes: list[int], seed: int) -> No
     joined = join(parts)
     for name, values in whole.items():
         scale = np.abs(values).max(initial=0.0)
-        np.testing.assert_allclose(joined[name], values, rtol=1e-12, atol=1e-12 * scale, err_msg=name)
+        np.testing.assert_allclose(
+            joined[name], values, rtol=1e-12, atol=1e-12 * scale, err_msg=name
+        )
     assert state.next_sample == end.next_sample

@@ -9,10 +9,11 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
+from sim.acting import Acting, Point
 from sim.amplifier import Carrier, FilterKind, LowPass
 from sim.carriage import CarriageSettings
 from sim.drive import DriveSettings, SpeedRipple
-from sim.laws import Acting, Coulomb, Cubic, Point, Quadratic, Spring, Tone
+from sim.laws import Coulomb, Cubic, Quadratic, Spring, Tone
 from sim.linear import ComplexArray
 from sim.mechanism import Setting
 from sim.motor import Cogging, Guides, Servo, ShuntMotor
