@@ -18,6 +18,7 @@ from hardware.description.errors import DataError
 
 FEWEST_PARTS = 4
 MOST_PARTS = 16
+STRAYED = 0.1  # relative difference from the whole record's period: another oscillation
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def local_periods(
     mode: int = 0,
     parts: int | None = None,
 ) -> LocalPeriods:
-    """Cut a record into parts of whole periods and fit each.
+    """Cut a record into parts and fit each; parts that show another oscillation are left out.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ def local_periods(
     Raises
     ------
     DataError
-        If the record has not six periods: too few swings.
+        If the record has not six periods (too few swings), or under four parts are left.
     """
     chosen = fit.modes[mode]
     swings = (time_s[-1] - time_s[0]) / chosen.period_s
@@ -130,11 +131,16 @@ def local_periods(
             continue
         own = fit_damped(time_s[inside], rest[inside], start_periods_s=(chosen.period_s,))
         best = own.modes[0]
+        if not own.converged or abs(best.period_s / chosen.period_s - 1.0) > STRAYED:
+            continue
         middle = 0.5 * (low + high)
         there = best.amplitude * math.exp(-best.decay_1_s * (middle - own.start_s))
         rows.append((middle, there, best.period_s, own.period_uncertainty_s()))
     if len(rows) < FEWEST_PARTS:
-        raise DataError(f"{len(rows)} parts with samples; at least {FEWEST_PARTS} are needed")
+        raise DataError(
+            f"{len(rows)} of {count} parts show the oscillation of {chosen.period_s:.4g} s; at "
+            f"least {FEWEST_PARTS} are needed: take a record with fewer gaps, or less of other motions"
+        )
     return LocalPeriods(*np.array(rows).T)
 
 

@@ -198,14 +198,14 @@ def _table_4() -> list[Figure]:
         what = f"CG {axis} of both"
         figures.append(Figure("bifilar 4", what, "mm", WHOLE[axis], _weighted, inputs))
     rows = (
-        ("I pitch, both", "m", WHOLE["m"], 1156.0, 832.0),
-        ("I yaw, both", "m", WHOLE["m"], 1057.0, 696.0),
-        ("I pitch, hull", "m", HULL["m"], 1448.0, 664.0),
-        ("I yaw, hull", "m", HULL["m"], 1459.0, 674.0),
-        ("I pitch, keel", "m", KEEL["m"], 339.0, 35.0),
-        ("I yaw, keel", "m", KEEL["m"], 263.0, 21.0),
+        ("I pitch, both", WHOLE["m"], 1156.0, 832.0),
+        ("I yaw, both", WHOLE["m"], 1057.0, 696.0),
+        ("I pitch, hull", HULL["m"], 1448.0, 664.0),
+        ("I yaw, hull", HULL["m"], 1459.0, 674.0),
+        ("I pitch, keel", KEEL["m"], 339.0, 35.0),
+        ("I yaw, keel", KEEL["m"], 263.0, 21.0),
     )
-    for what, _, mass, k, printed in rows:
+    for what, mass, k, printed in rows:
         inputs = {"m": mass, "k_mm": P(k, 1.0)}
         figures.append(Figure("bifilar 4", what, "kg m2", P(printed, 1.0), _inertia, inputs))
     figures.append(_combined("k pitch of both", 339.0, 1448.0, ("x", "z"), 1156.0))

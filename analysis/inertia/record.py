@@ -87,6 +87,9 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
     for mode in range(modes):
         local = local_periods(time_s, values, fit, mode=mode)
         decay = fit_power_decay(local.time_s, local.amplitude)
+        if not decay.converged:
+            message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"
+            flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
         found.append(ModeAnalysis(local, zero_amplitude_period(local), decay))
     if pendulum and series.unit == "rad":
         local = found[0].local

@@ -47,7 +47,9 @@ class InertiaResult:
         """
         gyradius = self._gyradius(axis)
         value = self.mass.value * gyradius.value**2
-        spread = value * math.hypot(self.mass.relative, 2.0 * gyradius.relative)
+        by_mass, by_gyradius = self.mass.relative, 2.0 * gyradius.relative
+        tied = 2.0 * self._correlation("mass_kg", f"k_{axis}_m") * by_mass * by_gyradius
+        spread = value * math.sqrt(max(by_mass**2 + by_gyradius**2 + tied, 0.0))
         return Estimate(value, spread, "kg m2", gyradius.degrees_of_freedom)
 
     def about_midpoint(self, plane: Plane) -> Estimate:
@@ -55,24 +57,30 @@ class InertiaResult:
 
         Pitch for the vertical plane, yaw for the horizontal one.
         """
-        own = self.inertia("pitch" if plane is Plane.VERTICAL else "yaw")
-        arms = (self.cg_x, self.cg_z) if plane is Plane.VERTICAL else (self.cg_x,)
-        square = sum(arm.value**2 for arm in arms)
-        # the mass enters both parts: m (k^2 + square)
-        by_mass = (own.value / self.mass.value + square) * self.mass.uncertainty
-        by_gyradius = math.sqrt(
-            max(own.uncertainty**2 - (own.value * self.mass.relative) ** 2, 0.0)
+        axis = "pitch" if plane is Plane.VERTICAL else "yaw"
+        gyradius, mass = self._gyradius(axis), self.mass
+        arms = {"cg_x_m": self.cg_x} | ({"cg_z_m": self.cg_z} if plane is Plane.VERTICAL else {})
+        square = gyradius.value**2 + sum(arm.value**2 for arm in arms.values())
+        terms = {"mass_kg": square * mass.uncertainty}
+        for name, length in {f"k_{axis}_m": gyradius, **arms}.items():
+            terms[name] = 2.0 * mass.value * length.value * length.uncertainty
+        variance = sum(
+            a * b * (1.0 if first == second else self._correlation(first, second))
+            for first, a in terms.items()
+            for second, b in terms.items()
         )
-        by_arms = [2.0 * self.mass.value * arm.value * arm.uncertainty for arm in arms]
-        spread = math.hypot(by_mass, by_gyradius, *by_arms)
-        value = own.value + self.mass.value * square
-        return Estimate(value, spread, "kg m2", own.degrees_of_freedom)
+        spread = math.sqrt(max(variance, 0.0))
+        return Estimate(mass.value * square, spread, "kg m2", gyradius.degrees_of_freedom)
 
     def body(self, plane: Plane) -> Body:
         """Return the model as campaigns, simulator and coefficients know it."""
         return Body(
             self.mass.value, self.about_midpoint(plane).value, self.cg_x.value, self.cg_z.value
         )
+
+    def _correlation(self, first: str, second: str) -> float:
+        backwards = self.correlations.get((second, first), 0.0)
+        return self.correlations.get((first, second), backwards)
 
     def _gyradius(self, axis: str) -> Estimate:
         if axis not in self.gyradii:

@@ -46,6 +46,16 @@ def test_uncertainty_about_the_midpoint() -> None:
     assert inertia.uncertainty == pytest.approx(by_hand.result.uncertainty, rel=1e-6)
 
 
+def test_correlations_enter_the_inertia() -> None:
+    from dataclasses import replace
+
+    tied = replace(RESULT, correlations={("k_yaw_m", "mass_kg"): -1.0})
+    loose, stiff = RESULT.inertia("yaw"), tied.inertia("yaw")
+    expected = loose.value * abs(RESULT.mass.relative - 2.0 * RESULT.gyradii["yaw"].relative)
+    assert stiff.uncertainty == pytest.approx(expected)
+    assert tied.about_midpoint(Plane.HORIZONTAL).uncertainty < loose.uncertainty
+
+
 def test_json_has_every_number_and_no_nan() -> None:
     numbers = json.loads(json.dumps(RESULT.numbers(), allow_nan=False))
     assert numbers["quantities"]["k_pitch_m"]["degrees_of_freedom"] == 5.0
