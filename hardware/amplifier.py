@@ -17,7 +17,7 @@ from hardware.errors import (
     SensorInvalidError,
     StuckSensorError,
 )
-from hardware.roles import Block, Cycle, Role, rows
+from hardware.roles import Block, Cycle, Role, Sample, blocks
 
 _INVALID, _OVERLOADS = 0x01, 0x06  # bits of the analogue input's status (6150)
 _TARE_S = 1.0  # tare takes the mean of the samples since then
@@ -89,7 +89,7 @@ class Amplifier:
         self._recent: deque[tuple[float, ...]] = deque(
             maxlen=max(1, round(_TARE_S * self.sample_rate_hz))
         )
-        self._blocks: list[Block] = []
+        self._untaken: list[Sample] = []
         self._told: set[tuple[str, str]] = set()
         self._repeats = [0] * len(self.channels)
         self._raw: tuple[int | float, ...] = ()
@@ -112,10 +112,11 @@ class Amplifier:
             return
         found = [self._look(i) for i in range(len(self._channels))]
         valid = [not isinstance(one, SensorInvalidError) for one in found]
-        taken = [self._scaled(raw, valid) for _, raw in samples]
-        self._recent.extend(taken)
-        tared = [tuple(v - z for v, z in zip(one, self._zero, strict=True)) for one in taken]
-        self._blocks.append(rows(samples[0][0], tared, len(self._channels)))
+        for number, raw in samples:
+            values = self._scaled(raw, valid)
+            self._recent.append(values)
+            tared = tuple(v - z for v, z in zip(values, self._zero, strict=True))
+            self._untaken.append((number, tared))
         self._tell([one for one in found if one is not None])
 
     def tare(self) -> None:
@@ -142,8 +143,8 @@ class Amplifier:
 
     def take(self) -> tuple[Block, ...]:
         """Return the samples since the last call; shape of each: ``(channels, samples)``."""
-        taken, self._blocks = tuple(self._blocks), []
-        return taken
+        taken, self._untaken = self._untaken, []
+        return blocks(taken)
 
     def reset_fault(self) -> None:
         """Let findings that persist be told again."""

@@ -13,7 +13,7 @@ from hardware.errors import (
     SilentPortError,
 )
 from hardware.lines import SEQUENCE_MODULUS, Kind, Line, Unwrapped, decode
-from hardware.roles import Block, Cycle, Role, rows
+from hardware.roles import Block, Cycle, Role, Sample, blocks
 from hardware.serial_port import PortSettings, SerialPort
 
 
@@ -50,7 +50,7 @@ class SerialInclinometer:
         self._settings = settings
         self._port = SerialPort(name, settings.port)
         self._sequence = Unwrapped(SEQUENCE_MODULUS)
-        self._blocks: list[Block] = []
+        self._samples: list[Sample] = []
         self._heard_s: float | None = None
         self._told: set[type] = set()
 
@@ -80,8 +80,8 @@ class SerialInclinometer:
 
     def take(self) -> tuple[Block, ...]:
         """Return the samples since the last call: one channel, in radians."""
-        taken, self._blocks = tuple(self._blocks), []
-        return taken
+        taken, self._samples = self._samples, []
+        return blocks(taken)
 
     def reset_fault(self) -> None:
         """Open a lost port again and begin anew.
@@ -103,7 +103,7 @@ class SerialInclinometer:
         if line.kind is not Kind.ANGLE:
             raise LineError(self.name, f"a line of kind {line.kind} is no angle; swap the ports")
         angle = line.value * self._settings.rad_per_unit
-        self._blocks.append(rows(self._sequence.take(line.sequence), [(angle,)], 1))
+        self._samples.append((self._sequence.take(line.sequence), (angle,)))
         inside = math.isfinite(angle) and abs(angle) < self._settings.range_rad
         if inside:
             self._told.discard(SensorInvalidError)

@@ -71,6 +71,7 @@ class Master:
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
         self._number = 0
         self._operating = False
+        self._missing = 0
         beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
         self._beat_every = max(1, int(beat_cycles))
 
@@ -176,6 +177,7 @@ class Master:
         elif frame.is_remote_frame or frame.is_extended_id:
             return
         elif (stream := self._streams.get(identifier)) is not None:
+            self._missing -= not stream.fresh
             stream.take(frame.data)
         elif (found := self._supervised.get(identifier)) is not None:
             found[0](found[1], frame.data)
@@ -199,9 +201,9 @@ class Master:
         """Deliver frames until every TPDO has come or its time is over, and whatever is there."""
         faults: list[HardwareError] = []
         end = self.clock() + _RESPONSE_SHARE * self.configuration.period_s
-        missing = len(self._streams) if self._operating else 0
+        self._missing = len(self._streams) if self._operating else 0
         for _ in range(_FRAMES_A_CYCLE):
-            left = end - self.clock() if missing else 0.0
+            left = end - self.clock() if self._missing > 0 else 0.0
             frame = self._receiver.receive(max(left, 0.0))
             if frame is None:
                 return faults
@@ -209,7 +211,6 @@ class Master:
                 self.deliver(frame)
             except HardwareError as error:
                 faults.append(error)
-            missing = sum(not stream.fresh for stream in self._streams.values()) if missing else 0
         return faults
 
     def _drain(self) -> None:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -73,10 +74,18 @@ class Block:
     values: NDArray[np.float64]
 
 
-def rows(first: int, samples: Sequence[tuple[float, ...]], channel_count: int) -> Block:
-    """Make a block of samples that came one by one, each a tuple over the channels."""
-    values = np.array(samples, dtype=np.float64).reshape(len(samples), channel_count).T
-    return Block(first, values)
+Sample = tuple[int, tuple[float, ...]]
+
+
+def blocks(samples: Sequence[Sample]) -> tuple[Block, ...]:
+    """Put samples, each its number and its values over the channels, into blocks without gaps."""
+    cuts = [i for i in range(1, len(samples)) if samples[i][0] != samples[i - 1][0] + 1]
+    edges = [0, *cuts, len(samples)]
+    return tuple(
+        Block(samples[a][0], np.array([one[1] for one in samples[a:b]], dtype=np.float64).T)
+        for a, b in pairwise(edges)
+        if a < b
+    )
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from hardware.drive import (
 )
 from hardware.driver import Driver, NodePlan, Services, join
 from hardware.errors import LimitError, NotReadyError
-from hardware.roles import Block, Cycle, Role, rows
+from hardware.roles import Block, Cycle, Role, Sample, blocks
 
 _TURN = 2.0 * math.pi
 _REST_SHARE = 0.002  # of the largest frequency: below it the shaft stands
@@ -88,7 +88,7 @@ class DriveShaft:
         self._target_hz = 0.0
         self._counts: int | None = None
         self._track: deque[tuple[int, int]] = deque(maxlen=4)
-        self._blocks: list[Block] = []
+        self._samples: list[Sample] = []
 
     @property
     def enabled(self) -> bool:
@@ -182,21 +182,19 @@ class DriveShaft:
 
     def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
         """Take the cycle's positions and keep the drive going."""
-        samples = self.drive.node.streams[0].samples
-        if samples:
-            for number, values in samples:
-                self._track.append((number, self._unwrap(int(values[2]))))
-            per_turn = self.settings.counts_per_turn
-            angles = [(_TURN * counts / per_turn,) for _, counts in self._track][-len(samples) :]
-            self._blocks.append(rows(samples[0][0], angles, 1))
+        for number, values in self.drive.node.streams[0].samples:
+            counts = self._unwrap(int(values[2]))
+            self._track.append((number, counts))
+            angle = _TURN * counts / self.settings.counts_per_turn
+            self._samples.append((number, (angle,)))
         if self.at_speed or not self.moving:
             self.drive.done()
         self.drive.tick()
 
     def take(self) -> tuple[Block, ...]:
         """Return the shaft angles since the last call."""
-        taken, self._blocks = tuple(self._blocks), []
-        return taken
+        taken, self._samples = self._samples, []
+        return blocks(taken)
 
     def position_near(self, raw: int) -> int:
         """Return the count, never wrapping, of a 32-bit position near the present one."""

@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
+from typing import ClassVar
 
 import can
 import canopen
@@ -228,7 +229,7 @@ class Amplifier(Node):
 class PumpedBus(can.BusABC):
     """A bus whose other end are doubles; whoever receives lets them answer."""
 
-    networks: dict[str, Network] = {}
+    networks: ClassVar[dict[str, Network]] = {}
 
     def __init__(self, channel: str, **kwargs: object) -> None:
         super().__init__(channel)

@@ -1,4 +1,4 @@
-"""pyserial's handler of ``double://name``: what a talker says is there at once, no kernel between."""
+"""pyserial's handler of ``double://name``: what a talker says is there at once."""
 
 from typing import ClassVar
 

@@ -101,18 +101,16 @@ def nobody(_question: str) -> str | None:
     return None
 
 
-class SimulatedTime:
+def still() -> float:
     """A clock that nobody moves: the pumped bus answers at once or never."""
-
-    def __call__(self) -> float:
-        return 0.0
+    return 0.0
 
 
 @contextmanager
 def open_rig(
     tables: Mapping[str, Any],
     prompt: Callable[[str], str | None] = nobody,
-    clock: Callable[[], float] = SimulatedTime(),
+    clock: Callable[[], float] = still,
     **options: Any,
 ) -> Iterator[Rig]:
     """A prepared rig."""
@@ -133,7 +131,7 @@ def on_bus(
     """A prepared rig on a bus, and the doubles that ``build`` put on its other end."""
     channel = f"rig {next(_CHANNELS)}"
     side = bench if kind == "pumped" else virtual
-    clock = SimulatedTime() if kind == "pumped" else time.monotonic
+    clock = still if kind == "pumped" else time.monotonic
     with side(channel) as network:
         doubles = build(network)
         whole = {"bus": bus_table(channel, kind, **bus), **tables}

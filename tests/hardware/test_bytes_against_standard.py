@@ -16,11 +16,11 @@ from tests.hardware.rigs import (
     ECCENTRICITY,
     FORCES,
     SHAFT,
-    SimulatedTime,
     bench,
     bus_table,
     nobody,
     on_bus,
+    still,
 )
 
 
@@ -32,7 +32,7 @@ def logged(tables, build, **bus):
         double = build(network)
         configuration = read_rig({"bus": bus_table("bytes", "pumped", **bus), **tables}, DRIVERS)
         note = lambda frame: log.append((frame.arbitration_id, bytes(frame.data).hex()))  # noqa: E731
-        with Rig(configuration, SimulatedTime(), FreeRunning(), nobody, (note,)) as rig:
+        with Rig(configuration, still, FreeRunning(), nobody, (note,)) as rig:
             rig.prepare()
             yield rig, double, log
 
@@ -167,7 +167,7 @@ def test_an_emergency_carries_code_and_register() -> None:
     with on_bus({"shaft": SHAFT}, lambda n: Drive(n, 1)) as (rig, double):
         rig.cycle()
         double.network.send_message(0x081, bytes.fromhex("2023" + "09" + "0102030405"))
-        with pytest.raises(EmergencyError, match="0x2320.*0x09.*0102030405") as caught:
+        with pytest.raises(EmergencyError, match=r"0x2320.*0x09.*0102030405") as caught:
             rig.cycle()
         assert (caught.value.code, caught.value.register) == (0x2320, 0x09)
 

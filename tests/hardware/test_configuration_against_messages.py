@@ -141,7 +141,7 @@ def test_a_driver_package_that_is_broken_is_named() -> None:
     with pytest.raises(ConfigurationError, match="no_such_module:DRIVER cannot be loaded"):
         find_driver("x", "shaft", broken)
     wrong = (EntryPoint("x", "math:pi", "pmm.drivers"),)
-    with pytest.raises(ConfigurationError, match="math:pi is no hardware.driver.Driver"):
+    with pytest.raises(ConfigurationError, match=r"math:pi is no hardware.driver.Driver"):
         find_driver("x", "shaft", wrong)
 
 
@@ -152,7 +152,7 @@ def test_a_drive_without_the_mode_is_refused() -> None:
         return drive
 
     with (
-        pytest.raises(ConfigurationError, match="does not support profile_position.*0x00000004"),
+        pytest.raises(ConfigurationError, match=r"does not support profile_position.*0x00000004"),
         on_bus({"eccentricity": ECCENTRICITY}, lame),
     ):
         pass

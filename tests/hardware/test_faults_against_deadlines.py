@@ -257,7 +257,7 @@ def test_sdos_from_many_threads_do_not_mix() -> None:
 def test_a_frame_of_the_wrong_length_is_no_data(running) -> None:
     rig, drives = running
     drives["shaft"].network.send_message(0x181, b"\x37\x02\x03")
-    with pytest.raises(ProcessDataLostError, match="3 bytes .* has 7"):
+    with pytest.raises(ProcessDataLostError, match=r"3 bytes .* has 7"):
         rig.cycle()
 
 
@@ -281,14 +281,14 @@ def measuring():
 def test_a_saturated_bridge_is_raised_in_its_cycle(measuring, raw: int) -> None:
     rig, amplifier = measuring
     amplifier.raw[1] = raw - (raw < 0)
-    with pytest.raises(BridgeSaturatedError, match="force_fore = -?490.*full scale 490 N"):
+    with pytest.raises(BridgeSaturatedError, match=r"force_fore = -?490.*full scale 490 N"):
         rig.cycle()
 
 
 def test_an_overload_bit_counts_as_saturated_and_an_invalid_value_becomes_nan(measuring) -> None:
     rig, amplifier = measuring
     amplifier.set(0x6150, 0x02, 1)
-    with pytest.raises(BridgeSaturatedError, match="force_aft.*0x02"):
+    with pytest.raises(BridgeSaturatedError, match=r"force_aft.*0x02"):
         rig.cycle()
     amplifier.set(0x6150, 0x01, 1)
     rig.forces[0].take()

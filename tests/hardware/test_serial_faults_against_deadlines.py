@@ -60,7 +60,7 @@ def test_unplugging_is_one_type_whatever_pyserial_raises(cell, talker, where, er
     run(cell, 2)
     talker.say(Kind.TIME, 0.0, 0)
     talker.line.fail_on = {where: error}
-    with pytest.raises(UnpluggedError, match="photocell: reading double://.*plug in"):
+    with pytest.raises(UnpluggedError, match=r"photocell: reading double://.*plug in"):
         cell.cycle()
     talker.line.there = False
     with pytest.raises(PortOpenError):
@@ -240,5 +240,5 @@ def test_an_angle_beyond_the_range_is_raised_once_and_a_gap_shows(talker) -> Non
         assert [one.first for one in blocks] == [0, 4]
         assert blocks[0].values[0, 0] == pytest.approx(math.radians(2.0))
         talker.say(Kind.ANGLE, 0.0, 3.1)
-        with pytest.raises(SensorInvalidError, match="range of 0.0523"):
+        with pytest.raises(SensorInvalidError, match=r"range of 0.0523"):
             rig.cycle()
