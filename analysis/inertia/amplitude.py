@@ -139,7 +139,7 @@ def local_periods(
     if len(rows) < FEWEST_PARTS:
         raise DataError(
             f"{len(rows)} of {count} parts show the oscillation of {chosen.period_s:.4g} s; at "
-            f"least {FEWEST_PARTS} are needed: take a record with fewer gaps, or less of other motions"
+            f"least {FEWEST_PARTS} are needed: a record with fewer gaps, or less of other motions"
         )
     return LocalPeriods(*np.array(rows).T)
 
