@@ -18,7 +18,7 @@ LINEAR: Final = 0
 PENDULUM: Final = 1
 SUSPENSION: Final = 2
 
-# Longest step in radians of the fastest linear mode: 2e-9 of the amplitude a cycle at 0.3 rad.
+# Longest step in radians of the fastest linear mode: 4e-8 rad after eight swings of 0.5 rad.
 LONGEST_STEP_RAD: Final = 0.1
 
 

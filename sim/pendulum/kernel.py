@@ -7,38 +7,20 @@ Runge-Kutta method in the frame that moves with that flow (Lawson's method, four
 reversal is found by halving the step until it is ``2^-LEVELS`` of it.
 
 ``model`` is ``(kind, p, minv, K, loads, nonlinear, rubbing)``; ``tables`` is
-``(index, A, B, E, G)`` with one set of matrices for each set of coordinates held by friction: :mod:`sim.pendulum.propagators`.
+``(index, A, B, E, G)`` with a set of matrices for each set of coordinates that friction holds:
+:mod:`sim.pendulum.propagators`.
 """
 
 from typing import Any
 
 import numpy as np
 
-from sim.compiled import available, compile_loop
+from sim.compiled import compile_loop
+from sim.pendulum.vectors import cross, times
 from sim.signals import FloatArray
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
 COULOMB = 5  # column of ``loads``
-
-
-def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return a small matrix times a vector."""
-    out = np.zeros(matrix.shape[0])
-    for i in range(matrix.shape[0]):
-        for j in range(vector.size):
-            out[i] += matrix[i, j] * vector[j]
-    return out
-
-
-times = compile_loop(product) if available() else np.dot
-
-
-@compile_loop
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return a x b."""
-    return np.array(
-        (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    )
 
 
 @compile_loop
@@ -202,13 +184,8 @@ def remainder(
     n = sign.size
     rate = np.zeros(2 * n)
     a, _ = motion(model, t, x, sign)
-    for i in range(n):
-        straight = 0.0
-        for j in range(2 * n):
-            straight += A[n + i, j] * x[j]
-        for j in range(n):
-            straight -= B[n + i, j] * sign[j] * model[4][j, COULOMB]
-        rate[n + i] = a[i] - straight
+    rub = -sign * model[4][:, COULOMB]
+    rate[n:] = a - times(A[n:], x) - times(B[n:], rub)
     return rate
 
 

@@ -65,10 +65,7 @@ def effects_table() -> str:
         "|---|---|---|---|---|",
     ]
     for one in CATALOGUE:
-        known = [
-            f"`{key}` {p.low:g} to {p.high:g} {p.unit} ({p.typical:g})"
-            for key, p in plausible(one).items()
-        ]
+        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(one).items()]
         cells = (f"`{one.name}`", one.stage, "; ".join(known) or "none", one.summary, one.signature)
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(rows) + "\n"

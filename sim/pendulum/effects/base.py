@@ -26,6 +26,11 @@ class Plausible:
     high: float
     typical: float
 
+    @property
+    def text(self) -> str:
+        """The range with its unit, if it has one."""
+        return f"{self.low:g} to {self.high:g}" + (f" {self.unit}" if self.unit != "1" else "")
+
 
 def parameter(unit: str, low: float, high: float, typical: float) -> Any:
     """Return a dataclass field with that knowledge; its default is the typical value."""
@@ -72,8 +77,7 @@ def check_plausible(effect: PendulumEffect) -> None:
         value = getattr(effect, name)
         if not known.low <= value <= known.high:
             raise ConfigurationError(
-                f"{effect.name}: {name} = {value:g} {known.unit} is outside its plausible range of "
-                f"{known.low:g} to {known.high:g} {known.unit}"
+                f"{effect.name}: {name} = {value:g} is outside its plausible range of {known.text}"
             )
 
 

@@ -3,6 +3,7 @@
 import importlib.util
 import sys
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 import sim.compiled
 from sim.chain import join
-from sim.pendulum import kernel
+from sim.pendulum import kernel, vectors
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import MODEL_HULL_2014, bifilar_bench, swing_bench
 from sim.pendulum.effects import make_effect
@@ -77,14 +78,23 @@ def test_without_numba_the_numbers_are_the_same(make, monkeypatch: pytest.Monkey
     chain = make().chain()
     _, compiled = chain.run(chain.start(50.0, 3), 150)
     monkeypatch.setattr(sim.compiled, "compile_loop", lambda function: function)
-    spec = importlib.util.spec_from_file_location("sim.pendulum.kernel", kernel.__file__)
-    assert spec is not None
-    assert spec.loader is not None
-    plain = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(plain)
+    monkeypatch.setattr(sim.compiled, "available", lambda: False)
+    for module in (vectors, kernel):
+        monkeypatch.setitem(sys.modules, module.__name__, _again(module))
+    plain = sys.modules[kernel.__name__]
     assert not hasattr(plain.run, "py_func")
-    monkeypatch.setitem(sys.modules, "sim.pendulum.kernel", plain)
+    assert plain.times is np.dot
     monkeypatch.setattr(sim.pendulum, "kernel", plain)
     _, interpreted = chain.run(chain.start(50.0, 3), 150)
     for name, values in compiled.items():
         np.testing.assert_allclose(interpreted[name], values, rtol=1e-9, atol=1e-11)
+
+
+def _again(module: ModuleType) -> ModuleType:
+    """Load a module a second time."""
+    spec = importlib.util.spec_from_file_location(module.__name__, module.__file__)
+    assert spec is not None
+    assert spec.loader is not None
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
