@@ -1,0 +1,102 @@
+"""Find effects by name, and build them from what a user types."""
+
+import importlib.util
+import pkgutil
+import sys
+from collections.abc import Iterator
+from difflib import get_close_matches
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import sim.effects
+from hardware.description.errors import ConfigurationError
+from sim.effects.effect import Effect
+
+
+@cache
+def catalogue() -> dict[str, type[Effect]]:
+    """Return every effect of the package by name, in the order of their codes."""
+    for module in pkgutil.iter_modules(sim.effects.__path__):
+        import_module(f"sim.effects.{module.name}")
+    found = {one.name: one for one in _concrete() if one.__module__.startswith("sim.")}
+    return dict(sorted(found.items(), key=lambda item: _order(item[1].code)))
+
+
+def _concrete(kind: Any = Effect) -> Iterator[type[Effect]]:
+    """Yield every subclass, however deep, that is no mere base of others."""
+    for one in kind.__subclasses__():
+        if not getattr(one, "__abstractmethods__", None):
+            yield one
+        yield from _concrete(one)
+
+
+def _order(code: str) -> tuple[str, int, str]:
+    digits = "".join(letter for letter in code[1:] if letter.isdigit())
+    return code[:1], int(digits or 0), code[1 + len(digits) :]
+
+
+def find(name: str, more: dict[str, type[Effect]] | None = None) -> type[Effect]:
+    """Return an effect's class by its name.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is none; the message gives the nearest names.
+    """
+    known = catalogue() | (more or {})
+    if name in known:
+        return known[name]
+    near = get_close_matches(name, known, n=3, cutoff=0.4)
+    hint = f"did you mean {', '.join(near)}?" if near else "pmm effects lists them"
+    raise ConfigurationError(f"no effect {name!r}; {hint}")
+
+
+def build(text: str, more: dict[str, type[Effect]] | None = None) -> Effect:
+    """Build an effect from ``NAME`` or ``NAME:param=value,param=value``.
+
+    Raises
+    ------
+    ConfigurationError
+        If the name, a parameter or a value is wrong; with the nearest names, or the range.
+    """
+    name, _, settings = text.partition(":")
+    kind = find(name.strip(), more)
+    values = dict(_setting(kind, part) for part in settings.split(",") if part.strip())
+    return kind(**values)
+
+
+def _setting(kind: type[Effect], text: str) -> tuple[str, float]:
+    key, _, value = (part.strip() for part in text.partition("="))
+    known = [one.name for one in kind.parameters()]
+    if key not in known:
+        near = get_close_matches(key, known, n=1, cutoff=0.4)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'none'}"
+        raise ConfigurationError(f"effect {kind.name} has no parameter {key!r}; {hint}")
+    try:
+        return key, float(value)
+    except ValueError:
+        raise ConfigurationError(f"effect {kind.name}: {key} = {value!r} is no number") from None
+
+
+def load_file(path: Path) -> dict[str, type[Effect]]:
+    """Return the effects that a user's own Python file defines, by name.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be imported or defines no effect.
+    """
+    spec = importlib.util.spec_from_file_location(f"user_effects_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise ConfigurationError(f"{path}: no Python file of effects")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    found = {one.name: one for one in _concrete() if one.__module__ == spec.name}
+    if not found:
+        raise ConfigurationError(
+            f"{path}: defines no effect (a subclass of sim.effects.effect.Effect)"
+        )
+    return found

@@ -1,0 +1,127 @@
+"""What an effect is: a name, parameters with ranges, a change to the rig, a predicted signature."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from enum import StrEnum
+from typing import Any, ClassVar, TypeAlias
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import SetPoint
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+
+Signature: TypeAlias = Mapping[tuple[str, int], complex]
+"""Change of a channel's harmonic, by channel name and order: ``H = S + i C``, the mean as order 0.
+
+What is not named does not change, to the order of the theory.
+"""
+
+
+class StageName(StrEnum):
+    """Where in the chain an effect acts."""
+
+    DRIVE = "drive"
+    MECHANISM = "mechanism"
+    STRUCTURE = "structure"
+    MODEL = "model and water"
+    DYNAMOMETERS = "dynamometers"
+    ACQUISITION = "acquisition"
+    PHOTOCELL = "photocell"
+    CARRIAGE = "carriage"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect.
+
+    Attributes
+    ----------
+    typical, low, high
+        A usual value, and the plausible range.
+    unit
+        SI; ``"1"`` for a ratio.
+    """
+
+    name: str
+    unit: str
+    typical: float
+    low: float
+    high: float
+    meaning: str
+
+
+def parameter(typical: float, low: float, high: float, unit: str, meaning: str) -> Any:
+    """Declare a field of an effect; its default is the typical value."""
+    return field(
+        default=typical, metadata={"unit": unit, "low": low, "high": high, "meaning": meaning}
+    )
+
+
+@dataclass(frozen=True)
+class Effect(ABC):
+    """One effect; a subclass is a frozen dataclass whose fields are made by :func:`parameter`.
+
+    Attributes
+    ----------
+    code
+        Its number in the literature of the field's effects, for example ``"S3"``.
+    name
+        What a user types, for example ``"coulomb-friction"``.
+    title
+        One line for people.
+    stage
+        Where it acts.
+
+    Raises
+    ------
+    ConfigurationError
+        If a parameter lies outside its plausible range; the message gives the range.
+    """
+
+    code: ClassVar[str]
+    name: ClassVar[str]
+    title: ClassVar[str]
+    stage: ClassVar[StageName]
+
+    def __post_init__(self) -> None:
+        for one in self.parameters():
+            value = getattr(self, one.name)
+            if not one.low <= value <= one.high:
+                raise ConfigurationError(
+                    f"effect {self.name}: {one.name} = {value:g} {one.unit} is outside the "
+                    f"plausible range {one.low:g} to {one.high:g}"
+                )
+
+    @classmethod
+    def parameters(cls) -> tuple[Parameter, ...]:
+        """Return the parameters, in order."""
+        return tuple(
+            Parameter(
+                one.name,
+                one.metadata["unit"],
+                float(one.default),  # type: ignore[arg-type]
+                one.metadata["low"],
+                one.metadata["high"],
+                one.metadata["meaning"],
+            )
+            for one in fields(cls)
+        )
+
+    @abstractmethod
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
+        """Return the rig with this effect, for a run at a set-point; the rig given stays as it was.
+
+        What the rig has of the same kind already is added to, so that several effects compose.
+        """
+
+    @abstractmethod
+    def signature(self, situation: Situation) -> Signature:
+        """Return what theory predicts to first order: the change against the nominal rig.
+
+        For tests, documentation and display only: nothing that diagnoses uses it.
+        """
+
+    def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:  # noqa: ARG002
+        """Return the set-point that is really run; most effects leave it."""
+        return set_point
