@@ -17,13 +17,12 @@ from sim.drive import SHAFT, DriveSettings, Shaft, shaft_over
 from sim.linear import ComplexArray, Hold, causal_hold
 from sim.motor import Motor, closed_loop, droop
 from sim.period import Period, Spectra
-from sim.relaxation import Tail, relax
+from sim.relaxation import LONGEST_SWEEP, Tail, relax
 from sim.sampled import steady_of
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
 
 TORQUE_DEGREE: Final = 3  # of the polynomial by which the torque goes on between samples
-LONGEST_SWEEP: Final = 1024  # samples that are swept together
 
 
 class LoadedState(NamedTuple):

@@ -18,8 +18,8 @@ from sim.hull_system import HullSystem
 from sim.linear import ComplexArray, Hold
 from sim.mounting import Mounting
 from sim.period import Period, Spectra
-from sim.relaxation import relax
-from sim.signals import Signal, Signals
+from sim.relaxation import LONGEST_SWEEP, relax
+from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
 from sim.water.radiation import Radiation, constant
 
@@ -95,13 +95,29 @@ class Hull:
         instants = Instants(
             block.time_s, 1.0 / block.sample_rate_hz, inputs[signals.CARRIAGE_SPEED.name]
         )
-        block_forces = BlockForces(self.laws, self.cross_flow, self.system, instants)
         if not self.system.states:
-            force = block_forces.on_rigid_mounting(struts)
+            force = self._over(instants).on_rigid_mounting(struts)
         else:
-            holds = _holds(self, instants.step_s)
-            state, force = block_forces.with_memory(state, struts, holds)
+            state, force = self._with_memory(state, struts, instants)
         return state, {"force_aft": force[:, 0].copy(), "force_fore": force[:, 1].copy()}
+
+    def _over(self, instants: Instants) -> BlockForces:
+        return BlockForces(self.laws, self.cross_flow, self.system, instants)
+
+    def _with_memory(
+        self, state: HullState, struts: FloatArray, instants: Instants
+    ) -> tuple[HullState, FloatArray]:
+        """Go on in stretches that fit the fastest memory, and one thread of the matrix products."""
+        holds = _holds(self, instants.step_s)
+        forces: list[FloatArray] = []
+        for first in range(0, len(struts), LONGEST_SWEEP):
+            part = slice(first, first + LONGEST_SWEEP)
+            here = instants._replace(
+                time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
+            )
+            state, force = self._over(here).with_memory(state, struts[part], holds)
+            forces.append(force)
+        return state, np.concatenate(forces)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the forces: exact, the laws by harmonic balance."""

@@ -59,13 +59,17 @@ class BlockForces:
             state = self._at_first_sample(struts)
         driven = by_motion.forcing(np.vstack([np.array(state.motion), struts[known:]]))
         history = np.array(state.loads)
+        by_struts, by_states, by_loads = self.system.model_maps
+        rigid = struts @ by_struts
 
         def under(loads: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
             forcing = driven + by_load.forcing(np.vstack([history, loads[known:]]))
             states = np.empty((len(struts), self.system.states))
             states[:known] = state.states
             states[known:] = follow(by_motion.step, forcing, np.array(state.states))
-            return states, *self._model(struts, states, loads)
+            model = rigid + states @ by_states
+            model += loads @ by_loads
+            return states, model[:, :6], model[:, 6:]
 
         def respond(loads: FloatArray) -> FloatArray:
             return self._loads(*under(loads)[1:])
@@ -95,21 +99,6 @@ class BlockForces:
     def _linear(self, motion: FloatArray) -> FloatArray:
         """Return the force of the linear parts for the model's motion, without the memory."""
         return motion @ self.system.per_motion.T
-
-    def _model(
-        self, struts: FloatArray, states: FloatArray, loads: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the model's motion at the struts, six columns, and the linear parts' force."""
-        system, r = self.system, self.system.elastic_count
-        motion = struts
-        if r:
-            bent = (
-                states @ system.state_matrix[r : 2 * r].T + loads @ system.load_input[r : 2 * r].T
-            )
-            bent += struts @ np.hstack(system.motion_inputs)[r : 2 * r].T
-            give = np.hstack([states[:, :r], states[:, r : 2 * r], bent])
-            motion = struts + give @ np.kron(np.eye(3), system.elastic.shape.T)
-        return motion, self._linear(motion) + states[:, 2 * r :] @ system.memory_load.T
 
     def _loads(self, motion: FloatArray, linear: FloatArray) -> FloatArray:
         """Return what is no part of the linear system, at this motion of the model."""

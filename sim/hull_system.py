@@ -126,6 +126,27 @@ class HullSystem:
         pushed = -np.linalg.solve(self._inertia, self.elastic.shape.T @ load)
         return np.vstack([np.zeros((r, 2)), pushed, memory])
 
+    @cached_property
+    def model_maps(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What struts (six columns), states and loads (f, g) give the model.
+
+        Eight columns each: h, h', h'' at both struts, and the force of the linear parts there.
+        """
+        r = self.elastic_count
+        rows = slice(r, 2 * r)
+        shape = self.elastic.shape.T
+        states = np.zeros((self.states, 6))
+        states[:r, :2] = shape
+        states[rows, 2:4] = shape
+        states[:, 4:] = self.state_matrix[rows].T @ shape
+        loads = np.zeros((4, 6))
+        loads[:, 4:] = self.load_input[rows].T @ shape
+        struts = np.eye(6)
+        struts[:, 4:] += np.hstack(self.motion_inputs)[rows].T @ shape
+        with_force = [np.hstack([one, one @ self.per_motion.T]) for one in (struts, states, loads)]
+        with_force[1][2 * r :, 6:] += self.memory_load.T
+        return with_force[0], with_force[1], with_force[2]
+
     def holds(self, step_s: float) -> tuple[Hold, Hold]:
         """Return the steps under the strut motion and under the loads (f, g)."""
         width = self.load_input.shape[1]

@@ -24,6 +24,7 @@ Tail: TypeAlias = tuple[tuple[float, ...], ...]
 TOLERANCE: Final = 1e-13
 ROUNDING: Final = 1e-11  # changes below it that no longer shrink are rounding
 MOST_SWEEPS: Final = 80
+LONGEST_SWEEP: Final = 1024  # samples that are swept together
 _DEPTH: Final = 4
 
 
