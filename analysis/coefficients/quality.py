@@ -15,20 +15,30 @@ from hardware.description.flags import Flag, Severity
 _NOTICED = 1e-3
 _DIGIT = 0.1
 _DISAGREE = 3.0
+_POOLED_FREEDOM = 20.0
 
 
 def run_weights(problem: Problem) -> FloatArray:
     """Return one over the scatter of each run's residual, shape ``(runs, 2)``; 1 if unknown.
 
     Scalars by run and load, and not whole matrices: a covariance from a few periods makes a poor
-    metric, while any weights leave the result unbiased and its propagated covariance right.
+    metric, while any fixed weights leave the result unbiased and its propagated covariance right.
+    A run's own variance counts as far as its degrees of freedom go beside :data:`_POOLED_FREEDOM`
+    of the runs' mean: weights that follow the luck of three periods would be too sure of it.
     """
-    spread = _residual_spread(problem, problem.nominal())
-    if not np.isfinite(spread).all():
-        return np.ones_like(spread)
+    variance = _residual_spread(problem, problem.nominal()) ** 2
+    if not np.isfinite(variance).all():
+        return np.ones_like(variance)
+    own = np.array([_fewest(run) for run in problem.runs])[:, None]
+    trust = 1.0 / (1.0 + _POOLED_FREEDOM / np.maximum(own, 1e-9))
+    variance = trust * variance + (1.0 - trust) * variance.mean(axis=0)
     sizes = np.stack([np.abs(run.loads.values) for run in problem.runs])
     floor = 1e-9 * sizes.max(axis=0) + 1e-300
-    return np.asarray(floor / np.maximum(spread, floor))
+    return np.asarray(floor / np.maximum(np.sqrt(variance), floor))
+
+
+def _fewest(run: Run) -> float:
+    return min((source.degrees_of_freedom for source in run.phasors.sources), default=math.inf)
 
 
 def _residual_spread(problem: Problem, matrices: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.names import Form
-from analysis.coefficients.result import Coefficients
+from analysis.coefficients.normalisation import prime
 from analysis.coefficients.solve import solve
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
@@ -24,7 +24,7 @@ def agree(found: np.ndarray, put_in: np.ndarray, tolerance: float = EXACT) -> No
 
 
 def both(runs: list, form: Form) -> tuple[np.ndarray, np.ndarray]:  # type: ignore[type-arg]
-    result: Coefficients = solve(runs, form)
+    result = solve(runs, form)
     return result.matrix(inertial=True), result.matrix(inertial=False)
 
 
@@ -165,8 +165,6 @@ MARINER_MASS, MARINER_XG = 798e-5, -0.023
 
 
 def test_mariner_put_in_comes_out_in_the_prime_system() -> None:
-    from analysis.coefficients.normalisation import prime
-
     length, speed, density = 2.0, 1.0, 1000.0
     mass, rate = 0.5 * density * length**3, 0.5 * density * length**2 * speed
 

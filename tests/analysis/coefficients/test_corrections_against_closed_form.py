@@ -1,0 +1,193 @@
+"""Gains, lags, filters, cross-talk and offsets that were put on the forces are taken out again."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.coefficients.corrections import (
+    Delay,
+    Gain,
+    LowPass,
+    ZeroReading,
+    calibrated,
+    response_at,
+    without_response,
+    without_zero,
+    zero_at,
+    zero_reading,
+)
+from analysis.coefficients.in_place import in_place
+from analysis.coefficients.measured import DISPLACEMENTS, FORCES, StrutRun
+from analysis.coefficients.phasors import Phasors, Source
+from analysis.coefficients.solve import solve
+from analysis.recording import Recording
+from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.setpoint import Medium, SetPoint
+from tests.analysis.coefficients.ideal import BODY, covariance, ideal_struts, net, scattered
+
+HEAVE = SetPoint(0.8, 0.02)
+OMEGA = 2.0 * math.pi * 0.8
+AIR = replace(HEAVE, medium=Medium.AIR)
+
+
+def with_factors(run: StrutRun, aft: complex, fore: complex) -> StrutRun:
+    return replace(run, phasors=run.phasors.mapped(np.diag([1.0, 1.0, aft, fore])))
+
+
+@pytest.mark.parametrize(
+    "response",
+    [Delay(0.004), LowPass(10.0), LowPass(10.0, 4), LowPass(8.0, 4, "bessel"), Gain(1.03)],
+    ids=str,
+)
+def test_a_known_response_is_taken_out(response) -> None:  # type: ignore[no-untyped-def]
+    clean = ideal_struts(HEAVE)
+    factor = response_at(response, OMEGA)
+    measured = with_factors(clean, factor, factor)
+    again = without_response(measured, dict.fromkeys(FORCES, response))
+    np.testing.assert_allclose(again.phasors.values, clean.phasors.values, rtol=1e-13)
+    assert abs(solve([net(measured)])["b33"] - 190.0) > 1e-3
+    assert solve([net(again)])["b33"] == pytest.approx(190.0, rel=1e-12)
+
+
+def test_filters_against_their_formulas() -> None:
+    assert response_at(LowPass(10.0), OMEGA) == pytest.approx(1.0 / (1.0 + 0.08j), rel=1e-12)
+    assert response_at(Delay(0.01), OMEGA) == pytest.approx(np.exp(-0.01j * OMEGA))
+    half_power = abs(response_at(LowPass(10.0, 4, "bessel"), 20.0 * math.pi))
+    assert half_power == pytest.approx(0.5**0.5, rel=1e-6)
+    for kind, lag_s in (("butterworth", 0.0416), ("bessel", 0.0336)):  # effect A1's catalogue
+        lag = -np.angle(response_at(LowPass(10.0, 4, kind), 0.01)) / 0.01
+        assert lag == pytest.approx(lag_s, abs=5e-5)
+
+
+def test_systems_of_python_control_are_responses() -> None:
+    control = pytest.importorskip("control")
+    cutoff = 20.0 * math.pi
+    system = control.TransferFunction([cutoff], [1.0, cutoff])
+    assert response_at(system, OMEGA) == pytest.approx(response_at(LowPass(10.0), OMEGA))
+    sampled = control.TransferFunction([0.5, 0.5], [1.0, 0.0], 0.005)  # mean of two samples
+    expected = (1.0 + np.exp(-0.005j * OMEGA)) / 2.0
+    assert response_at(sampled, OMEGA) == pytest.approx(expected)
+
+
+def test_a_lag_left_in_is_the_closed_form() -> None:
+    """b_app = b + tau (M w^2 - c): effects A1, to first order in w tau."""
+    late = with_factors(ideal_struts(HEAVE), *2 * [complex(np.exp(-1e-4j * OMEGA))])
+    expected = 190.0 + 1e-4 * (145.0 * OMEGA**2 - 6900.0)
+    assert solve([net(late)])["b33"] == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_channel_that_lets_nothing_through_is_refused() -> None:
+    with pytest.raises(DataError, match=r"force_aft lets 0\.0"):
+        without_response(ideal_struts(HEAVE), {"force_aft": LowPass(0.05)})
+    with pytest.raises(ConfigurationError, match="no phasor 'force_x'"):
+        without_response(ideal_struts(HEAVE), {"force_x": Delay(0.1)})
+    with pytest.raises(ConfigurationError, match="known are butterworth"):
+        LowPass(10.0, 2, "elliptic")
+
+
+@given(st.lists(st.floats(0.9, 1.1), min_size=2, max_size=2),
+       st.lists(st.floats(-0.05, 0.05), min_size=2, max_size=2))  # fmt: skip
+def test_cross_talk_is_taken_out(gains: list[float], talk: list[float]) -> None:
+    sensitivity = np.array([[gains[0], talk[0]], [talk[1], gains[1]]])
+    clean = ideal_struts(HEAVE)
+    whole = np.eye(4)
+    whole[2:, 2:] = sensitivity
+    measured = replace(clean, phasors=clean.phasors.mapped(whole))
+    again = calibrated(measured, np.linalg.inv(sensitivity))
+    np.testing.assert_allclose(again.phasors.values, clean.phasors.values, rtol=1e-12, atol=1e-12)
+
+
+def test_a_singular_calibration_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match="not singular"):
+        calibrated(ideal_struts(HEAVE), np.ones((2, 2)))
+
+
+def zero_run(name: str, aft: float, fore: float, seed: int) -> Recording:
+    noise = 0.1 * np.random.default_rng(seed).standard_normal((2, 4000))
+    values = np.array([[aft], [fore]]) + noise
+    return Recording(name, (FORCE_AFT, FORCE_FORE), values, 200.0)
+
+
+def test_zero_runs_are_interpolated_in_time() -> None:
+    before = zero_reading(zero_run("before", 1.0, -2.0, 1), at_s=0.0)
+    after = zero_reading(zero_run("after", 2.0, -2.0, 2), at_s=1000.0)
+    offsets = zero_at(before, after, 250.0)
+    np.testing.assert_allclose(offsets.values.real, [1.25, -2.0], atol=0.01)
+    spread = offsets.standard_uncertainty.real
+    white = 0.1 / math.sqrt(4000) * math.hypot(0.75, 0.25)
+    np.testing.assert_allclose(spread, white, rtol=0.6)
+    means = np.array([0.0, 0.0, 5.0, 7.0], dtype=np.complex128)
+    phasors = Phasors((*DISPLACEMENTS, *FORCES), ("m", "m", "N", "N"), means)
+    mean = replace(ideal_struts(HEAVE), order=0, phasors=phasors)
+    left = without_zero(mean, offsets).phasors
+    np.testing.assert_allclose(left.values, mean.phasors.values - [0, 0, *offsets.values])
+    with pytest.raises(ConfigurationError, match="not off harmonic 1"):
+        without_zero(ideal_struts(HEAVE), offsets)
+
+
+def test_zero_runs_that_cannot_serve() -> None:
+    good = zero_reading(zero_run("good", 0.0, 0.0, 3), at_s=10.0)
+    with pytest.raises(ConfigurationError, match="does not lie between"):
+        zero_at(good, ZeroReading(20.0, good.offsets), 30.0)
+    gap = zero_run("gap", 0.0, 0.0, 4)
+    gap.samples[0:1, 0:1][0, 0] = np.nan  # type: ignore[index]
+    with pytest.raises(DataError, match="1 of them missing"):
+        zero_reading(gap, at_s=0.0)
+
+
+@pytest.mark.parametrize("phase", [0.0, 1.3, math.pi])
+def test_gain_and_lag_from_a_run_in_air(phase: float) -> None:
+    clean = ideal_struts(replace(AIR, strut_phase_rad=phase))
+    factors = 1.02 * np.exp(-0.003j * OMEGA), 0.97 * np.exp(-0.001j * OMEGA)
+    found = in_place(with_factors(clean, *factors), BODY)
+    np.testing.assert_allclose(found.gain, [1.02, 0.97], rtol=1e-12)
+    np.testing.assert_allclose(found.lag_s, [0.003, 0.001], rtol=1e-9)
+
+
+def test_uncertainty_of_gain_and_lag_against_trials() -> None:
+    generator = np.random.default_rng(5)
+    clean = ideal_struts(AIR, name="air")
+    runs = [scattered(clean, covariance(), 200, generator) for _ in range(400)]
+    found = [in_place(run, BODY) for run in runs]
+    drawn = np.std([[one.gain, one.lag_s] for one in found], axis=0)
+    stated = np.mean([one.standard_uncertainty.T for one in found], axis=0)
+    np.testing.assert_allclose(stated, drawn, rtol=0.12)
+
+
+def test_in_place_refusals() -> None:
+    with pytest.raises(ConfigurationError, match="in air is needed"):
+        in_place(ideal_struts(HEAVE), BODY)
+    ahead = replace(BODY, cg_x_m=0.5, inertia_kg_m2=70.0 * 0.25, cg_z_m=0.0)
+    with pytest.raises(DataError, match="one strut carries"):
+        in_place(ideal_struts(AIR), ahead)
+
+
+def test_referred_to_its_own_motion_against_trials() -> None:
+    """The covariance after a rotation by the data's own angle is that of rotated draws."""
+    generator = np.random.default_rng(8)
+    run = scattered(ideal_struts(HEAVE), covariance() * 25.0, 50, generator)
+    turned = replace(run.phasors, values=run.phasors.values * np.exp(0.7j))
+    referred = turned.referred_to("displacement_aft")
+    assert referred["displacement_aft"].imag == pytest.approx(0.0, abs=1e-15)
+    spread = referred.standard_uncertainty
+    assert spread[0].imag == pytest.approx(0.0, abs=1e-12)
+    root = np.linalg.cholesky(turned.covariance)
+    draws = generator.standard_normal((4000, 8)) @ root.T
+    values = turned.values + draws[:, 0::2] + 1j * draws[:, 1::2]
+    own = values * np.exp(-1j * np.angle(values[:, :1]))
+    np.testing.assert_allclose(spread[2:].real, own.real.std(axis=0)[2:], rtol=0.05)
+    np.testing.assert_allclose(spread[2:].imag, own.imag.std(axis=0)[2:], rtol=0.05)
+
+
+def test_a_phasor_at_rest_has_no_phase() -> None:
+    still = Phasors(("a", "b"), ("m", "N"), np.array([0.0, 1.0 + 1j]))
+    with pytest.raises(ConfigurationError, match="a does not move"):
+        still.referred_to("a")
+    with pytest.raises(ConfigurationError, match="cannot be taken off"):
+        still.minus(still.select(["b"]))
+    assert Source("x", np.eye(4), 3.0).degrees_of_freedom == 3.0

@@ -1,0 +1,160 @@
+"""What a wrong mass, lag or frequency does to a coefficient, from the formulas of one motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analysis.coefficients.model import STATED, Stated
+from analysis.coefficients.names import Form
+from analysis.coefficients.solve import problem_of, solve
+from analysis.coefficients.uncertainty import linear_shares, monte_carlo
+from analysis.motion import mass_matrix
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
+from tests.analysis.coefficients.ideal import (
+    BODY,
+    RESTORING,
+    covariance,
+    ideal_struts,
+    net,
+    pair,
+    scattered,
+)
+
+FREQUENCY_HZ = 0.8
+OMEGA = 2.0 * math.pi * FREQUENCY_HZ
+HEAVE = SetPoint(FREQUENCY_HZ, 0.02)
+
+
+def heave(stated: Stated, name: str) -> float:
+    result = solve([net(ideal_struts(HEAVE))], stated=stated)
+    return float(result.standard_uncertainty[result.index(name)])
+
+
+# F/x = c - w^2 (m + a) + i w b with c = 6900, m = 70, a = 75, b = 190
+STIFF = 6900.0 - OMEGA**2 * 145.0
+CASES = [
+    (Stated(mass_kg=0.2), "a33", 0.2),
+    (Stated(mass_kg=0.2), "b33", 0.0),
+    (Stated(mass_kg=0.2), "a53", 0.2 * 0.02),
+    (Stated(cg_x_m=0.001), "a53", 70.0 * 0.001),
+    (Stated(lag_s=1e-3), "b33", abs(STIFF) * 1e-3),
+    (Stated(lag_s=1e-3), "a33", 190.0 * 1e-3),
+    (Stated(amplitude_relative=0.01), "b33", 1.90),
+    (Stated(amplitude_relative=0.01), "a33", abs(STIFF) / OMEGA**2 * 0.01),
+    (Stated(force_gain_relative=0.01), "b33", 1.90),
+    (Stated(restoring_relative=0.01), "a33", 69.0 / OMEGA**2),
+    (Stated(frequency_relative=0.01), "b33", 1.90),
+    (Stated(frequency_relative=0.01), "a33", 2.0 * 0.01 * abs(75.0 + 70.0)),
+    (Stated(speed_m_s=0.1), "a33", 0.0),
+]
+
+
+@pytest.mark.parametrize(("stated", "name", "expected"), CASES, ids=str)
+def test_stated_uncertainty_of_pure_heave(stated: Stated, name: str, expected: float) -> None:
+    assert heave(stated, name) == pytest.approx(expected, rel=1e-4, abs=1e-9)
+
+
+def test_strut_phase_and_pitch() -> None:
+    """Pitch: the moment's quadrature by an unnoticed lag, and inertia one to one."""
+    run = net(ideal_struts(SetPoint(FREQUENCY_HZ, 0.02, math.pi)))
+    result = solve([run], stated=Stated(inertia_kg_m2=0.3))
+    spread = dict(zip(result.names, result.standard_uncertainty, strict=True))
+    assert spread["a55"] == pytest.approx(0.3, rel=1e-6)
+    stiff = 2400.0 + BODY.mass_kg * 9.80665 * BODY.cg_z_m - OMEGA**2 * (27.5 + 22.0)
+    lag = solve([run], stated=Stated(lag_s=1e-3))
+    assert lag.standard_uncertainty[lag.index("b55")] == pytest.approx(abs(stiff) * 1e-3, rel=1e-4)
+
+
+def test_strut_phase_turns_the_mean_motion_by_half_of_it() -> None:
+    """Phi off by eps turns heave by eps/2 and brings -i eps x / (2 l) of pitch, 2 l = 1 m."""
+    result = solve([net(ideal_struts(HEAVE))], stated=Stated(strut_phase_rad=0.01))
+    coupling = RESTORING[0, 1] - OMEGA**2 * 1.4
+    expected = abs(STIFF / 2.0 - coupling) * 0.01 / OMEGA
+    assert result.standard_uncertainty[result.index("b33")] == pytest.approx(expected, rel=1e-4)
+
+
+def test_speed_acts_on_the_derivatives_of_rotation() -> None:
+    """v = U pitch: Z_q off by Z_wdot dU, as b35 = B35 + U A33 has it."""
+    result = solve(
+        [net(ideal_struts(p, name=f"{k}")) for k, p in enumerate(pair())],
+        Form.MANOEUVRING,
+        stated=Stated(speed_m_s=0.05),
+    )
+    assert result.standard_uncertainty[result.index("Z_q")] == pytest.approx(75.0 * 0.05, rel=1e-6)
+    assert result.standard_uncertainty[result.index("Z_w")] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_mass_is_common_to_all_runs_and_does_not_average_out() -> None:
+    one = heave(Stated(mass_kg=0.2), "a33")
+    runs = [net(ideal_struts(HEAVE, name=f"{k}")) for k in range(5)]
+    many = solve(runs, stated=Stated(mass_kg=0.2))
+    assert many.standard_uncertainty[many.index("a33")] == pytest.approx(one, rel=1e-6)
+
+
+def test_shares_add_up_and_name_the_greatest() -> None:
+    generator = np.random.default_rng(1)
+    run = net(scattered(ideal_struts(HEAVE, name="heave"), covariance(), 10, generator))
+    stated = Stated(mass_kg=1.0, lag_s=1e-4, amplitude_relative=0.001)
+    result = solve([run], stated=stated)
+    shares = result.share_of("a33")
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert next(iter(shares)) == "mass_kg"
+    assert set(shares) == {"scatter of heave", "mass_kg", "lag_s", "amplitude_relative"}
+    total = sum(share.variance for share in result.shares)
+    np.testing.assert_allclose(total, np.diagonal(result.covariance), rtol=1e-12)
+
+
+@pytest.mark.parametrize("form", list(Form))
+def test_monte_carlo_beside_the_linear_budget(form: Form) -> None:
+    generator = np.random.default_rng(2)
+    runs = [
+        net(scattered(ideal_struts(p, name=f"{k}"), covariance(), 60, generator))
+        for k, p in enumerate(pair())
+    ]
+    stated = Stated(mass_kg=0.1, lag_s=2e-4, amplitude_relative=0.002, frequency_relative=1e-4)
+    problem = problem_of(runs, form)
+    linear, _ = linear_shares(problem, stated)
+    trials = monte_carlo(problem, stated, trials=20_000, seed=5)
+    spread = np.sqrt(np.diagonal(linear))
+    np.testing.assert_allclose(trials.standard_uncertainty, spread, rtol=0.04)
+    np.testing.assert_allclose(trials.mean, problem.flat(problem.nominal()[None])[0],
+                               atol=0.05 * spread.max())  # fmt: skip
+    correlation = linear / np.outer(spread, spread)
+    drawn = trials.covariance / np.outer(trials.standard_uncertainty, trials.standard_uncertainty)
+    np.testing.assert_allclose(drawn, correlation, atol=0.05)
+    again = monte_carlo(problem, stated, trials=20_000, seed=5)
+    np.testing.assert_array_equal(again.low, trials.low)
+
+
+def test_every_stated_quantity_acts_on_something() -> None:
+    runs = [net(ideal_struts(p, name=f"{k}")) for k, p in enumerate(pair())]
+    for name in STATED:
+        result = solve(runs, Form.MANOEUVRING, stated=Stated(**{name: 1e-3}))
+        assert result.standard_uncertainty.max() > 1e-4, name
+
+
+def test_digits_lost_at_low_frequency_are_said() -> None:
+    """At 0.1 Hz the inertia is a small part of the restoring."""
+    slow = SetPoint(0.1, 0.02)
+    result = solve([net(ideal_struts(slow))])
+    omega = 2.0 * math.pi * 0.1
+    part = omega**2 * 75.0 / 6900.0
+    k = result.index("a33")
+    assert result.retained[k] == pytest.approx(part, rel=1e-6)
+    (flag,) = [f for f in result.flags if f.channel == "a33"]
+    assert flag.code == "digits_lost"
+    assert f"{100 * part:.2g} %" in flag.message
+    assert not [f for f in solve([net(ideal_struts(HEAVE))]).flags if f.channel == "a33"]
+
+
+def test_net_load_covariance_is_the_linear_map() -> None:
+    """Run.net by mapping against the same by hand: cov = J cov J^T."""
+    run = net(scattered(ideal_struts(HEAVE), covariance(), 9, np.random.default_rng(0)))
+    known = RESTORING + np.diag([0.0, BODY.mass_kg * 9.80665 * BODY.cg_z_m])
+    known = known - OMEGA**2 * mass_matrix(BODY, Plane.VERTICAL)
+    slope = np.hstack((-np.kron(known, np.eye(2)), np.eye(4)))
+    np.testing.assert_allclose(
+        run.net().covariance, slope @ run.phasors.covariance @ slope.T, rtol=1e-10
+    )
