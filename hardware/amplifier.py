@@ -20,6 +20,7 @@ from hardware.errors import (
 from hardware.roles import Block, Cycle, Role, Sample, blocks
 
 _INVALID, _OVERLOADS = 0x01, 0x06  # bits of the analogue input's status (6150)
+_PATIENCE_CYCLES = 2
 _TARE_S = 1.0  # tare takes the mean of the samples since then
 
 
@@ -85,6 +86,10 @@ class Amplifier:
         self._channels = settings.channels
         self._values = tuple(entry(one.object) for one in settings.channels)
         self._status = tuple(entry(one.status) if one.status else None for one in settings.channels)
+        self._value_streams = tuple(
+            stream for stream in self._node.streams if set(stream.layout.entries) & {*self._values}
+        )
+        self._partial: dict[int, dict[Entry, int | float]] = {}
         self._zero = [0.0] * len(self.channels)
         self._recent: deque[tuple[float, ...]] = deque(
             maxlen=max(1, round(_TARE_S * self.sample_rate_hz))
@@ -99,7 +104,7 @@ class Amplifier:
         for text, value in self._settings.settings.items():
             self._node.sdo.write(entry(text), value)
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Take the cycle's values.
 
         Raises
@@ -107,7 +112,7 @@ class Amplifier:
         BridgeSaturatedError, SensorInvalidError, StuckSensorError
             Once, until the channel is in order again.
         """
-        samples = self._samples()
+        samples = self._samples(cycle.number)
         if not samples:
             return
         found = [self._look(i) for i in range(len(self._channels))]
@@ -153,18 +158,25 @@ class Amplifier:
     def close(self) -> None:
         """Nothing to let go of: the bus is the master's."""
 
-    def _samples(self) -> list[tuple[int, tuple[int | float, ...]]]:
-        """Return the cycle's raw values over the channels, gathered from all TPDOs."""
-        by_number: dict[int, dict[Entry, int | float]] = {}
-        for stream in self._node.streams:
+    def _samples(self, newest: int) -> list[tuple[int, tuple[int | float, ...]]]:
+        """Return the raw values over the channels of the samples that are complete now.
+
+        Where the channels come in several TPDOs, one of them may be a cycle late: a sample waits
+        for it that long, and what has not come by then is NaN.
+        """
+        for stream in self._value_streams:
             for number, values in stream.samples:
-                by_number.setdefault(number, {}).update(
+                self._partial.setdefault(number, {}).update(
                     zip(stream.layout.entries, values, strict=True)
                 )
-        return [
-            (number, tuple(values.get(at, math.nan) for at in self._values))
-            for number, values in sorted(by_number.items())
-        ]
+        ready = []
+        for number in sorted(self._partial):
+            whole = all(at in self._partial[number] for at in self._values)
+            if not whole and number > newest - _PATIENCE_CYCLES:
+                break
+            found = self._partial.pop(number)
+            ready.append((number, tuple(found.get(at, math.nan) for at in self._values)))
+        return ready
 
     def _scaled(self, raw: tuple[int | float, ...], valid: list[bool]) -> tuple[float, ...]:
         return tuple(

@@ -177,7 +177,7 @@ class Master:
         elif frame.is_remote_frame or frame.is_extended_id:
             return
         elif (stream := self._streams.get(identifier)) is not None:
-            self._missing -= not stream.fresh
+            self._missing -= 1
             stream.take(frame.data)
         elif (found := self._supervised.get(identifier)) is not None:
             found[0](found[1], frame.data)
@@ -201,7 +201,10 @@ class Master:
         """Deliver frames until every TPDO has come or its time is over, and whatever is there."""
         faults: list[HardwareError] = []
         end = self.clock() + _RESPONSE_SHARE * self.configuration.period_s
-        self._missing = len(self._streams) if self._operating else 0
+        if self._operating:
+            # A stream that missed its last SYNC owes two frames: so a late one is not taken for
+            # the present one's.
+            self._missing = sum(self._number - stream.last for stream in self._streams.values())
         for _ in range(_FRAMES_A_CYCLE):
             left = end - self.clock() if self._missing > 0 else 0.0
             frame = self._receiver.receive(max(left, 0.0))

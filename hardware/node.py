@@ -30,11 +30,6 @@ class Stream:
         self._owner = owner
         self._frames: list[Values] = []
 
-    @property
-    def fresh(self) -> bool:
-        """Whether a frame has come since the last :meth:`close`."""
-        return bool(self._frames)
-
     def take(self, data: bytes | bytearray) -> None:
         """Take a frame.
 
@@ -55,11 +50,11 @@ class Stream:
 
     def close(self, number: int) -> None:
         """Number what came until now: the last frame belongs to SYNC ``number``."""
-        frames, due = self._frames, number - self.last
+        frames = self._frames
         if len(frames) == 1:
             self.samples = [(number, frames[0])]
         else:
-            kept = frames[-due:] if due else []
+            kept = frames[self.last - number :] if number > self.last else []
             first = number - len(kept) + 1
             self.samples = [(first + i, values) for i, values in enumerate(kept)]
         if frames:

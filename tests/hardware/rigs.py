@@ -134,7 +134,8 @@ def on_bus(
     clock = still if kind == "pumped" else time.monotonic
     with side(channel) as network:
         doubles = build(network)
-        whole = {"bus": bus_table(channel, kind, **bus), **tables}
+        patience = {} if kind == "pumped" else {"allowed_gap_cycles": 30}
+        whole = {"bus": bus_table(channel, kind, **patience, **bus), **tables}
         with open_rig(whole, clock=clock) as rig:
             yield rig, doubles
 
