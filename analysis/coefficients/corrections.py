@@ -24,13 +24,14 @@ _BLOCKS = 10  # of a zero run: their scatter sees slow noise too
 
 @dataclass(frozen=True)
 class Delay:
-    """A channel that is late by ``lag_s``: sampling skew, converter, transmission."""
+    """A channel that is late by ``lag_s`` (skew, converter) and reads ``gain`` times the truth."""
 
     lag_s: float
+    gain: float = 1.0
 
     def __call__(self, s: complex) -> complex:
         """Return the response."""
-        return complex(np.exp(-s * self.lag_s))
+        return complex(self.gain * np.exp(-s * self.lag_s))
 
 
 @dataclass(frozen=True)
@@ -68,17 +69,6 @@ class LowPass:
             found = signal.butter(self.order, cutoff, analog=True, output="ba")
         above, below = (np.asarray(part) for part in found)
         return complex(np.polyval(above, s) / np.polyval(below, s))
-
-
-@dataclass(frozen=True)
-class Gain:
-    """A channel that reads ``gain`` times the truth."""
-
-    gain: float
-
-    def __call__(self, s: complex) -> complex:  # noqa: ARG002
-        """Return the response, the same at all frequencies."""
-        return complex(self.gain)
 
 
 def without_response(run: StrutRun, responses: Mapping[str, Response]) -> StrutRun:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.coefficients.corrections import Delay
 from analysis.coefficients.measured import DISPLACEMENTS, FORCES, StrutRun
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.run import from_struts
@@ -39,6 +40,14 @@ class InPlace:
     lag_s: FloatArray
     standard_uncertainty: FloatArray
     frequency_hz: float
+
+    @property
+    def responses(self) -> dict[str, Delay]:
+        """What :func:`analysis.coefficients.corrections.without_response` takes out with it."""
+        return {
+            name: Delay(float(lag), float(gain))
+            for name, lag, gain in zip(FORCES, self.lag_s, self.gain, strict=True)
+        }
 
 
 def in_place(run: StrutRun, body: Body) -> InPlace:

@@ -161,6 +161,18 @@ class Run:
                 f"{self.name}: {dry.name} cannot be its dry run: {'; '.join(faults)}"
             )
 
+    def referred_to(self, motion: str) -> "Run":
+        """Return the run with all phases from this motion's own (``translation``, ``rotation``).
+
+        Coefficients do not change; tables of loads against motion read more easily.
+
+        Raises
+        ------
+        ConfigurationError
+            If it does not move in that way.
+        """
+        return replace(self, phasors=self.phasors.referred_to(motion))
+
     def about(self, ahead_m: float) -> "Run":
         """Return the run with its coefficients wanted about a point ahead of the midpoint, m.
 

@@ -1,0 +1,32 @@
+"""The example of docs/coefficients.md runs, and ends near what was put in."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "coefficients.md"
+
+
+def test_the_example_runs() -> None:
+    (block,) = re.findall(r"```python\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, object] = {}
+    exec(compile(block, str(DOCUMENT), "exec"), names)  # noqa: S102 - our own document
+    result, table, beside = names["result"], names["table"], names["beside"]
+    put_in = {"Z_wdot": -75.0, "Z_w": -190.0, "M_qdot": -22.0, "M_q": -55.0}
+    for name, value in put_in.items():
+        k = result.index(name)  # type: ignore[attr-defined]
+        assert abs(result[name] - value) <= result.half_width(0.999)[k]  # type: ignore[index, attr-defined]
+    assert table.normalisation == "prime (rho/2, L = 2.5 m, U = 1.2 m/s)"  # type: ignore[attr-defined]
+    ratio = beside.standard_uncertainty / result.standard_uncertainty  # type: ignore[attr-defined]
+    np.testing.assert_allclose(ratio, 1.0, atol=0.1)
+
+
+def test_every_flag_is_in_the_document() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8")
+    folder = Path(__file__).parents[3] / "analysis" / "coefficients"
+    codes = set()
+    for path in folder.glob("*.py"):
+        codes |= set(re.findall(r'Flag\(\s*"(\w+)"', path.read_text(encoding="utf-8")))
+    assert len(codes) >= 7
+    assert not [code for code in codes if f"`{code}`" not in text]
