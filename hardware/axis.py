@@ -21,6 +21,7 @@ from hardware.driver import Driver, NodePlan, Services, join
 from hardware.errors import HomingError, LimitError, NotReadyError
 from hardware.roles import Cycle, Reading, Role
 
+_STALE_CYCLES = 10  # a homing that was over before is believed after so many
 _MARGIN = 1.5  # a move may take so much longer than its profile
 
 
@@ -103,6 +104,7 @@ class DriveAxis:
         self._settings = settings
         self._rate_hz = services.sample_rate_hz
         self._step = _Step.IDLE
+        self._stale_cycles = 0
         self._target = 0
 
     @property
@@ -235,6 +237,7 @@ class DriveAxis:
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it first")
         self.settled = False
+        self._stale_cycles = 0
         self.drive.mode, self.drive.extra = mode, Control(0)
         self.drive.within(4 * STEP_CYCLES + _MARGIN * time_s * self._rate_hz, what)
         self._step = _Step.MODE
@@ -265,7 +268,10 @@ class DriveAxis:
             raise HomingError(self.name, f"homing failed (status word 0x{int(status):04X})")
         attained = Status.HOMING_ATTAINED in status and Status.TARGET_REACHED in status
         if self._step is _Step.START:
-            self._step = _Step.UNDER_WAY
+            # Bits of an earlier homing stand until the drive has taken the command.
+            self._stale_cycles += 1
+            if not attained or self._stale_cycles > _STALE_CYCLES:
+                self._step = _Step.UNDER_WAY
         elif self._step is _Step.UNDER_WAY and attained:
             self.homed = self.settled = True
             self._abandon()

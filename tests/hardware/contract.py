@@ -32,7 +32,7 @@ def _nothing(_value: float) -> None:
 class Bench:
     """A rig with the device under test, and what the world does to it.
 
-    ``within`` is how many cycles a command may take; ``sleep`` lets a real device have its time.
+    ``within`` is how many cycles a command may take.
     """
 
     rig: Rig

@@ -50,6 +50,22 @@ def test_the_axes_stay_while_the_shaft_turns_and_move_again_when_it_stands() -> 
         assert rig.phase.reading.value == pytest.approx(0.1, abs=1e-3)
 
 
+def test_an_axis_is_homed_again_as_well_as_the_first_time() -> None:
+    with on_bus({"eccentricity": ECCENTRICITY}, three) as (rig, drives):
+        enabled(rig)
+        homed(rig, rig.eccentricity)
+        rig.eccentricity.move_to(0.02)
+        rig.run_until(lambda: rig.eccentricity.settled, 50, "move")
+        drives[1].step = drives[1]._show  # the drive takes its time: old bits stand
+        rig.eccentricity.home()
+        for _ in range(5):
+            rig.cycle()
+        assert not rig.eccentricity.homed
+        del drives[1].step
+        rig.run_until(lambda: rig.eccentricity.homed, 50, "home")
+        assert rig.eccentricity.reading.value == 0.0
+
+
 def test_the_shaft_stays_while_an_axis_moves() -> None:
     tables = {"shaft": SHAFT, "eccentricity": ECCENTRICITY}
     with on_bus(tables, three) as (rig, _):
