@@ -15,7 +15,7 @@ def test_what_is_left_open_is_named_and_closed(monkeypatch: pytest.MonkeyPatch) 
     leaks = Leaks(monkeypatch)
     bus = can.Bus(interface="virtual", channel="left", ignore_config=True)
     port = serial.serial_for_url("loop://")
-    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)  # noqa: S603
+    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     stop = threading.Event()
     thread = threading.Thread(target=stop.wait, name="left thread")
     thread.start()
