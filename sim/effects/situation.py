@@ -4,12 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hardware.description.setpoint import SetPoint
+from hardware.description import channels
+from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
+from sim.hull_system import HullSystem
 from sim.linear import ComplexArray
 from sim.periodic import SteadyState, steady_run
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray
+
+# The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.
+STRUT_FORCES = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
+RECORDED_FORCES = (
+    signals.recorded(channels.FORCE_AFT).name,
+    signals.recorded(channels.FORCE_FORE).name,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +53,31 @@ class Situation:
         """``exp(i phi)`` of each strut's crank, shape ``(2,)``."""
         return np.exp(1j * np.array([0.0, self.set_point.strut_phase_rad]))
 
+    @property
+    def in_water(self) -> bool:
+        """False for a run in air."""
+        return self.set_point.medium is Medium.WATER
+
+    @property
+    def system(self) -> HullSystem:
+        """The nominal model and water as a linear system."""
+        hull = self.rig.chain(self.set_point).stage("hull")
+        system: HullSystem = hull.system  # type: ignore[attr-defined]
+        return system
+
+    @property
+    def recorded_waves(self) -> tuple[str, ...]:
+        """The recorded channels of forces and displacements: what is analysed for harmonics."""
+        beside = (channels.SHAFT_ANGLE, channels.CARRIAGE_SPEED)
+        lines = self.rig.acquisition.lines
+        return tuple(
+            signals.recorded(one.channel).name for one in lines if one.channel not in beside
+        )
+
     def impedance(self, order: int) -> ComplexArray:
         """Return force per strut displacement at a multiple of the frequency, shape ``(2, 2)``."""
-        hull = self.rig.chain(self.set_point).stage("hull")
         s = 1j * order * self.omega
-        system = hull.system  # type: ignore[attr-defined]
+        system = self.system
         radiation = system.radiation
         memory = system.memory_load @ np.linalg.solve(
             s * np.eye(radiation.states) - radiation.state_matrix,
@@ -58,21 +87,25 @@ class Situation:
 
     def force(self, order: int = 1) -> ComplexArray:
         """Return the nominal force at the struts, shape ``(2,)``; the mean for order 0."""
-        names = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
-        return np.array([self._phasor(name, order) for name in names])
+        return np.array([self.phasor(name, order) for name in STRUT_FORCES])
 
     def displacement(self, order: int = 1) -> ComplexArray:
         """Return the nominal displacement of the struts, shape ``(2,)``."""
         names = (signals.DISPLACEMENT_AFT.name, signals.DISPLACEMENT_FORE.name)
-        return np.array([self._phasor(name, order) for name in names])
+        return np.array([self.phasor(name, order) for name in names])
 
-    def _phasor(self, name: str, order: int) -> complex:
+    def phasor(self, name: str, order: int) -> complex:
+        """Return one signal's nominal harmonic ``S + i C``; the mean for order 0."""
         harmonic = complex(self.nominal.spectra[name][order])
         # Re(X exp(i n w t)) = S sin + C cos with S = -Im X, C = Re X.
         return harmonic if order == 0 else complex(-harmonic.imag, harmonic.real)
 
 
-def at_struts(values: ComplexArray | FloatArray, order: int) -> dict[tuple[str, int], complex]:
-    """Name the force phasors of both struts, shape ``(2,)``, as a part of a signature."""
-    names = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
+def at_struts(
+    values: ComplexArray | FloatArray, order: int, names: tuple[str, str] = STRUT_FORCES
+) -> dict[tuple[str, int], complex]:
+    """Name the force phasors of both struts, shape ``(2,)``, as a part of a signature.
+
+    ``names`` says where the change shows first: in the struts' forces, or only in their records.
+    """
     return {(name, order): complex(value) for name, value in zip(names, values, strict=True)}
