@@ -1,6 +1,7 @@
 """How far the simulated signature of an effect is from the one that its theory states."""
 
 from collections.abc import Iterable, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from sim.effects.effect import Effect, Signature
 from sim.effects.situation import Situation
 from sim.periodic import SteadyState, steady_run
 from sim.rig import SimulatedRig
+
+# Of the nominal signal: a smaller change is none.
+SMALLEST: Final = 1e-6
 
 
 def phasor(state: SteadyState, name: str, order: int) -> complex:
@@ -46,19 +50,28 @@ def mismatch(
     """Return the largest distance from the theory over the set-points, relative to its norm.
 
     All orders up to the highest that the theory names are compared, those that it says do not
-    change among them. NaN where it states no change at any set-point: a change that does not repeat
-    with the shaft, or no change at all.
+    change among them; each quantity (the forces, the displacements) for itself, relative to what
+    the theory states of it, or to 1e-6 of the nominal signal where that is more. NaN where it
+    states no change at any set-point: a change that does not repeat with the shaft, or none at all.
     """
     worst = float("nan")
     for set_point in set_points:
-        theory = effect.signature(Situation.of(rig, set_point))
-        norm = float(np.linalg.norm(list(theory.values())))
-        if norm == 0.0:
+        situation = Situation.of(rig, set_point)
+        theory = effect.signature(situation)
+        if not any(theory.values()):
             continue
-        names = sorted({name for name, _ in theory})
         highest = max(order for _, order in theory)
+        names = sorted({name for name, _ in theory})
         keys = [(name, order) for name in names for order in range(highest + 1)]
         found = simulated_signature(effect, rig, set_point, keys, orders)
-        gap = [found[key] - theory.get(key, 0.0) for key in keys]
-        worst = float(np.fmax(worst, np.linalg.norm(gap) / norm))
+        for quantity in {_quantity(name) for name in names}:
+            own = [key for key in keys if _quantity(key[0]) == quantity]
+            stated = np.array([theory.get(key, 0.0) for key in own])
+            gap = np.array([found[key] for key in own]) - stated
+            least = SMALLEST * np.linalg.norm([phasor(situation.nominal, *key) for key in own])
+            worst = float(np.fmax(worst, np.linalg.norm(gap) / max(np.linalg.norm(stated), least)))
     return worst
+
+
+def _quantity(name: str) -> str:
+    return name.removesuffix("_aft").removesuffix("_fore")

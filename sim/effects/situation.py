@@ -1,5 +1,6 @@
 """A run of the nominal rig in closed form: what the signatures of effects are built from."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from sim.signals import FloatArray
 
 # The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.
 STRUT_FORCES = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
+STRUT_DISPLACEMENTS = (signals.DISPLACEMENT_AFT.name, signals.DISPLACEMENT_FORE.name)
 RECORDED_FORCES = (
     signals.recorded(channels.FORCE_AFT).name,
     signals.recorded(channels.FORCE_FORE).name,
@@ -84,6 +86,27 @@ class Situation:
             radiation.input_matrix @ (s * system.to_motion + system.incidence),
         )
         return np.asarray(s**2 * system.mass + s * system.damping + system.stiffness + memory)
+
+    def moved(
+        self, changes: Mapping[int, ComplexArray], frequency_ratio: float = 1.0
+    ) -> dict[tuple[str, int], complex]:
+        """Return the signature of a change of the struts' motion.
+
+        Parameters
+        ----------
+        changes
+            What the displacement's phasors change by, per strut and order.
+        frequency_ratio
+            Real frequency over the one that was set.
+        """
+        found: dict[tuple[str, int], complex] = {}
+        for order in sorted({*changes, 1}):
+            change = np.asarray(changes.get(order, np.zeros(2)), dtype=np.complex128)
+            before, after = self.impedance(order), self.impedance(order * frequency_ratio)
+            force = (after - before) @ self.displacement(order) + after @ change
+            found |= at_struts(force, order)
+            found |= at_struts(change, order, STRUT_DISPLACEMENTS)
+        return found
 
     def force(self, order: int = 1) -> ComplexArray:
         """Return the nominal force at the struts, shape ``(2,)``; the mean for order 0."""
