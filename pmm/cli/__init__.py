@@ -13,6 +13,7 @@ from hardware.description.errors import DataError, PmmError
 _COMMANDS = {
     "analyse": "pmm.cli.analyse",
     "demo": "pmm.cli.demo",
+    "effects": "pmm.cli.effects",
     "simulate": "pmm.cli.simulate",
 }
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended

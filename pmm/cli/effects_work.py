@@ -1,0 +1,237 @@
+"""What ``pmm effects`` does: list the catalogue, or show one effect whole."""
+
+import inspect
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.campaign_file import read_campaign
+from pmm.cli.screen import busy, messages, output
+from sim.effects.agreement import simulated_signature
+from sim.effects.catalogue import build, catalogue, load_file
+from sim.effects.effect import Effect, Signature
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+JSON_SCHEMA = "pmm-effects-1"
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of ``pmm effects``, by their names there."""
+
+    effect: str | None
+    campaign: str | None
+    plane: str
+    frequency_hz: float
+    amplitude_mm: float
+    phase_deg: float
+    speed_m_s: float
+    air: bool
+    effects_file: str | None
+    plot: str | None
+    as_json: bool
+
+    @property
+    def set_point(self) -> SetPoint:
+        """The set-point of the signature."""
+        return SetPoint(
+            self.frequency_hz,
+            1e-3 * self.amplitude_mm,
+            math.radians(self.phase_deg),
+            self.speed_m_s,
+            Medium.AIR if self.air else Medium.WATER,
+        )
+
+
+@dataclass(frozen=True)
+class Shown:
+    """An effect at a set-point: what theory says, and what the simulator does."""
+
+    effect: Effect
+    set_point: SetPoint
+    theory: Signature
+    simulated: Signature
+
+
+def user_effects(path: str | None) -> dict[str, type[Effect]]:
+    """Return the effects of a user's own file, by name; none without a file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file defines none, or one whose name the catalogue has already.
+    """
+    found = {} if path is None else load_file(Path(path))
+    taken = sorted(set(found) & set(catalogue()))
+    if taken:
+        raise ConfigurationError(
+            f"{path}: {', '.join(taken)}: the catalogue has an effect of that name; rename yours"
+        )
+    return found
+
+
+def run(request: Request) -> None:
+    """List the catalogue, or show one effect.
+
+    Raises
+    ------
+    ConfigurationError
+        If a name, a parameter or a value is wrong, or the set-point beyond the rig's limits.
+    """
+    more = user_effects(request.effects_file)
+    if request.effect is None:
+        if request.plot is not None:
+            raise ConfigurationError("--plot draws the signature of one effect; name it")
+        _list({**catalogue(), **more}, as_json=request.as_json)
+        return
+    effect, rig = build(request.effect, more), _rig(request)
+    shown = _shown(effect, rig, request.set_point)
+    figures = [] if request.plot is None else _draw(effect, rig, request)
+    if request.as_json:
+        click.echo(json.dumps(_document(shown), indent=1))
+        return
+    _print(output(), shown)
+    for path in figures:
+        output().print(str(path), soft_wrap=True)
+
+
+def _rig(request: Request) -> SimulatedRig:
+    if request.campaign is not None:
+        return read_campaign(request.campaign).rig().ideal()
+    return (vertical_rig() if request.plane == "vertical" else horizontal_rig()).ideal()
+
+
+def _shown(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Shown:
+    theory = effect.signature(Situation.of(rig, set_point))
+    keys = theory or [(name, n) for name in ("force_aft", "force_fore") for n in range(4)]
+    return Shown(effect, set_point, theory, simulated_signature(effect, rig, set_point, keys))
+
+
+def _draw(effect: Effect, rig: SimulatedRig, request: Request) -> list[Path]:
+    from pmm.report.signature_figure import save_signature_figure
+
+    with busy("solving"):
+        written = save_signature_figure(effect, rig, request.set_point, Path(str(request.plot)))
+    if not written:
+        messages().print(
+            f"{effect.name}: no figure; what it does does not repeat with the shaft, so that it "
+            "has no harmonic signature: see pmm simulate --plot"
+        )
+    return written
+
+
+def described(kind: type[Effect]) -> dict[str, Any]:
+    """Return what the catalogue says of an effect, as JSON can hold it."""
+    return {
+        "code": kind.code,
+        "name": kind.name,
+        "stage": str(kind.stage),
+        "title": kind.title,
+        "description": inspect.cleandoc(kind.__doc__ or ""),
+        "parameters": [asdict(one) for one in kind.parameters()],
+    }
+
+
+def _document(shown: Shown) -> dict[str, Any]:
+    return {
+        "schema": JSON_SCHEMA,
+        "effects": [
+            {
+                **described(type(shown.effect)),
+                "values": asdict(shown.effect),
+                "set_point": asdict(shown.set_point),
+                "theory": _rows(shown.theory),
+                "simulated": _rows(shown.simulated),
+            }
+        ],
+    }
+
+
+def _rows(signature: Signature) -> list[dict[str, Any]]:
+    return [
+        {
+            "channel": channel,
+            "order": order,
+            "in_phase": complex(value).real,
+            "quadrature": complex(value).imag,
+        }
+        for (channel, order), value in signature.items()
+    ]
+
+
+def _list(effects: Mapping[str, type[Effect]], *, as_json: bool) -> None:
+    if as_json:
+        document = {"schema": JSON_SCHEMA, "effects": [described(one) for one in effects.values()]}
+        click.echo(json.dumps(document, indent=1))
+        return
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for heading in ("code", "name", "stage", "what it is", "parameters: typical (low to high)"):
+        table.add_column(heading, overflow="fold")
+    for one in effects.values():
+        table.add_row(one.code, one.name, str(one.stage), one.title, _parameters(one))
+    console = output()
+    console.print(table)
+    console.print(f"{len(effects)} effects; pmm effects NAME shows one whole")
+
+
+def _parameters(kind: type[Effect]) -> str:
+    return "\n".join(
+        f"{one.name} = {one.typical:g} ({one.low:g} to {one.high:g}) {one.unit}"
+        for one in kind.parameters()
+    )
+
+
+def _print(console: "Console", shown: Shown) -> None:
+    from rich.table import Table
+
+    effect = shown.effect
+    console.print(f"{effect.code}  {effect.name}  ({effect.stage})", style="bold")
+    console.print(f"{effect.title}\n")
+    console.print(described(type(effect))["description"] + "\n")
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for heading in ("parameter", "value", "typical", "plausible", "unit", "meaning"):
+        table.add_column(heading, justify="right" if heading in ("value", "typical") else "left")
+    for one in effect.parameters():
+        value, wide = f"{getattr(effect, one.name):g}", f"{one.low:g} to {one.high:g}"
+        table.add_row(one.name, value, f"{one.typical:g}", wide, one.unit, one.meaning)
+    console.print(table)
+    _print_signature(console, shown)
+
+
+def _print_signature(console: "Console", shown: Shown) -> None:
+    from rich.table import Table
+
+    at = shown.set_point
+    console.print(
+        f"\nchange of the harmonics at {at.frequency_hz:g} Hz, {1e3 * at.eccentricity_m:g} mm, "
+        f"{math.degrees(at.strut_phase_rad):g} deg, {at.carriage_speed_m_s:g} m/s, in {at.medium}"
+    )
+    if not shown.theory:
+        console.print("theory states none here")
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for heading in ("channel", "n"):
+        table.add_column(heading)
+    for heading in ("theory: in phase", "quadrature", "simulated: in phase", "quadrature"):
+        table.add_column(heading, justify="right")
+    for key, found in shown.simulated.items():
+        table.add_row(key[0], str(key[1]), *_cells(shown.theory.get(key)), *_cells(found))
+    console.print(table)
+
+
+def _cells(value: complex | None) -> Sequence[str]:
+    if value is None:
+        return ("", "")
+    return [f"{part:.5g}" for part in (complex(value).real, complex(value).imag)]
