@@ -3,12 +3,16 @@
 from collections.abc import Sequence
 
 from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
 
 def switch_on(
-    effects: Sequence[Effect], rig: SimulatedRig, set_point: SetPoint, run_index: int = 0
+    effects: Sequence[Effect],
+    rig: SimulatedRig,
+    set_point: SetPoint,
+    run: CampaignRun | None = None,
 ) -> tuple[SimulatedRig, SetPoint]:
     """Return the rig with all effects, and the set-point that is really run.
 
@@ -16,9 +20,13 @@ def switch_on(
     ----------
     effects
         Each adds to what those before it have done.
-    run_index
-        Number of the run in its campaign, from 0: for effects that build up over a campaign.
+    run
+        The run's place in its campaign, for effects that build up or die out over a campaign;
+        ``None`` for a run by itself, in which they are as their parameters say.
     """
+    if run is not None:
+        effects = [effect.at_run(run) for effect in effects]
+    run_index = 0 if run is None else run.index
     for effect in effects:
         set_point = effect.change_set_point(set_point, run_index)
     for effect in effects:

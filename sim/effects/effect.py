@@ -4,10 +4,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, Self, TypeAlias
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -15,6 +16,12 @@ Signature: TypeAlias = Mapping[tuple[str, int], complex]
 """Change of a channel's harmonic, by channel name and order: ``H = S + i C``, the mean as order 0.
 
 What is not named does not change, to the order of the theory.
+"""
+
+Lines: TypeAlias = Mapping[tuple[str, float], complex]
+"""What an effect adds beside the harmonics, by channel name and frequency in Hz.
+
+``S + i C`` of ``S sin(2 pi f t) + C cos(2 pi f t)``, with t from the first sample of the run.
 """
 
 
@@ -125,3 +132,18 @@ class Effect(ABC):
     def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:  # noqa: ARG002
         """Return the set-point that is really run; most effects leave it."""
         return set_point
+
+    def lines(self, situation: Situation) -> Lines:  # noqa: ARG002
+        """Return what theory predicts beside the multiples of the shaft's frequency.
+
+        Most effects repeat with the shaft and have no such lines.
+        """
+        return {}
+
+    def at_run(self, run: CampaignRun) -> Self:  # noqa: ARG002
+        """Return the effect as it is during one run of a campaign; most are always the same.
+
+        One that builds up or dies out over a campaign takes its own parameters for the time from
+        the run's place, so that a run by itself is described by the parameters alone.
+        """
+        return self
