@@ -1,7 +1,7 @@
 """A run of the nominal rig in closed form: what the signatures of effects are built from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,8 +63,13 @@ class Situation:
     @property
     def system(self) -> HullSystem:
         """The nominal model and water as a linear system."""
-        hull = self.rig.chain(self.set_point).stage("hull")
-        system: HullSystem = hull.system  # type: ignore[attr-defined]
+        return self.system_of(self.rig, self.set_point)
+
+    @staticmethod
+    def system_of(rig: SimulatedRig, set_point: SetPoint) -> HullSystem:
+        """Return a rig's model and water as a linear system."""
+        still = replace(rig, drive=replace(rig.drive, motor=None))
+        system: HullSystem = still.chain(set_point).stage("hull").system  # type: ignore[attr-defined]
         return system
 
     @property
@@ -76,7 +81,7 @@ class Situation:
             signals.recorded(one.channel).name for one in lines if one.channel not in beside
         )
 
-    def impedance(self, order: int) -> ComplexArray:
+    def impedance(self, order: float) -> ComplexArray:
         """Return force per strut displacement at a multiple of the frequency, shape ``(2, 2)``."""
         s = 1j * order * self.omega
         system = self.system

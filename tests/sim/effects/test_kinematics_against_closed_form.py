@@ -1,0 +1,49 @@
+"""Effects of the linkage against Fourier series, over frequency, amplitude, phase and medium."""
+
+import numpy as np
+import pytest
+
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.effect import Effect
+from sim.effects.k1_connecting_rod import ConnectingRod
+from sim.effects.k2_slot_tilt import SlotTilt
+from sim.effects.k3_eccentricity_error import EccentricityError
+from sim.effects.k4_strut_phase_error import StrutPhaseError
+from sim.effects.k5_foreshortening import Foreshortening
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from tests.sim.effects.against_theory import mismatch
+
+PHASES = (0.0, np.pi / 3.0, np.pi)
+IN_WATER = [SetPoint(f, a, p) for f in (0.4, 0.9) for a in (0.01, 0.03) for p in PHASES]
+AHEAD = [SetPoint(0.7, a, p, 1.2) for a in (0.01, 0.03) for p in PHASES]
+IN_AIR = [SetPoint(0.7, a, p, 0.0, Medium.AIR) for a in (0.01, 0.03) for p in PHASES]
+SET_POINTS = IN_WATER + AHEAD + IN_AIR
+SMALL = [SetPoint(f, 0.01, p) for f in (0.4, 0.9) for p in PHASES]
+
+CASES = [
+    (ConnectingRod(), 1e-6),  # the series ends at (e/L)^5
+    # The series ends at the first power of the offset, whose square is (o/L)^2 of the second order.
+    (ConnectingRod(0.5, rod_offset_m=0.002), 1e-3),
+    (SlotTilt(), 1e-10),
+    (SlotTilt(-0.01, 0.02), 1e-10),
+    (EccentricityError(), 1e-10),
+    (EccentricityError(-5e-4, 3e-4), 1e-10),
+    (StrutPhaseError(), 1e-10),
+]
+
+
+@pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
+@pytest.mark.parametrize(("effect", "tolerance"), CASES)
+def test_signature(effect: Effect, tolerance: float, rig: SimulatedRig) -> None:
+    assert mismatch(effect, rig.ideal(), SET_POINTS) < tolerance
+
+
+@pytest.mark.parametrize("effect", [SlotTilt(), EccentricityError(), StrutPhaseError()])
+def test_signature_on_cranks_with_rods(effect: Effect) -> None:
+    # The rod's series ends at (e/L)^5.
+    assert mismatch(effect, horizontal_rig(1.5).ideal(), SET_POINTS) < 1e-6
+
+
+def test_foreshortening() -> None:
+    # The leading term leaves out (e/l)^2 of itself, 4e-4 here, times the numbers of the next one.
+    assert mismatch(Foreshortening(), vertical_rig().ideal(), SMALL) < 1e-3
