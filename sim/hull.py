@@ -52,7 +52,10 @@ class Hull:
     laws, cross_flow
         Forces that depend on the motion at once.
     carriage_speed_m_s
-        Mean carriage speed, about which the memory is linear. The speed itself is a signal.
+        Mean speed of the flow past the model, about which the memory is linear. The carriage's
+        speed itself is a signal.
+    flow_factor
+        Speed of the flow past the model over the carriage's.
     """
 
     plane: Plane
@@ -64,6 +67,7 @@ class Hull:
     laws: tuple[Acting, ...] = ()
     cross_flow: CrossFlow | None = None
     carriage_speed_m_s: float = 0.0
+    flow_factor: float = 1.0
 
     name: ClassVar[str] = "hull"
     reads: ClassVar[tuple[Signal, ...]] = (
@@ -92,9 +96,8 @@ class Hull:
             return state, {signal.name: np.empty(0) for signal in self.writes}
         columns = [inputs[signal.name] for signal in self.reads[:6]]
         struts = np.column_stack(columns)
-        instants = Instants(
-            block.time_s, 1.0 / block.sample_rate_hz, inputs[signals.CARRIAGE_SPEED.name]
-        )
+        flow = self.flow_factor * inputs[signals.CARRIAGE_SPEED.name]
+        instants = Instants(block.time_s, 1.0 / block.sample_rate_hz, flow)
         if not self.system.states:
             force = self._over(instants).on_rigid_mounting(struts)
         else:
@@ -121,7 +124,7 @@ class Hull:
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the forces: exact, the laws by harmonic balance."""
-        speed = float(inputs[signals.CARRIAGE_SPEED.name][0].real)
+        speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
         system = replace(self, carriage_speed_m_s=speed).system
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         impedance, _ = system.impedance(period.s)

@@ -44,6 +44,9 @@ class SimulatedRig:
         Stiffness of gauges and frame.
     forces, cross_flow
         Forces that depend on the motion at once; those of the water are ignored in air.
+    flow_factor
+        Mean flow past the model over the carriage's speed: more than 1 where the tank is narrow
+        (:func:`sim.water.tank.blockage_speed_factor`).
     photocell
         ``None`` for a rig without one.
     """
@@ -59,6 +62,7 @@ class SimulatedRig:
     mounting: Mounting = field(default_factory=Mounting)
     forces: tuple[Acting, ...] = ()
     cross_flow: CrossFlow | None = None
+    flow_factor: float = 1.0
     dynamometers: Dynamometers = field(default_factory=Dynamometers)
     acquisition: Acquisition = field(default_factory=Acquisition)
     photocell: Photocell | None = field(default_factory=Photocell)
@@ -110,7 +114,8 @@ class SimulatedRig:
             self.mounting,
             tuple(one for one in self.forces if in_water or not one.in_water),
             self.cross_flow if in_water else None,
-            carriage_speed_m_s,
+            carriage_speed_m_s * self.flow_factor,
+            self.flow_factor,
         )
 
     def ideal(self) -> "SimulatedRig":

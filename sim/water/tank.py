@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
@@ -81,14 +82,18 @@ class Tank:
         return omega
 
 
-def with_walls(radiation: Radiation, tank: Tank, plane: Plane) -> Radiation:
+def with_walls(
+    radiation: Radiation, tank: Tank, plane: Plane, constant_damping: ArrayLike = 0.0
+) -> Radiation:
     """Return the radiation in the tank: that of open water with the tank's modes added.
 
     A mode drives both degrees of freedom as they radiate at its frequency: it adds ``strength``
     times the damping matrix there, with two states for each independent motion that radiates.
+    ``constant_damping`` is what radiates besides, at all frequencies alike: shape ``(2, 2)``.
     """
     omega = tank.mode_frequencies_rad_s(plane)
-    for one, damping in zip(omega, radiation.damping(omega), strict=True):
+    radiated = radiation.damping(omega) + np.asarray(constant_damping)
+    for one, damping in zip(omega, radiated, strict=True):
         shapes = _factor(tank.strength * damping)
         gain = math.sqrt(2.0 * tank.damping_ratio * one)
         for shape in shapes:
