@@ -14,8 +14,10 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.saturation import saturation_flags
-from analysis.resolver.steady import Stretch, find_steady
+from analysis.resolver.set_point import set_point_flags
+from analysis.resolver.steady import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
+from analysis.resolver.turning import frequency_flags
 from analysis.resolver.weights import REACH
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.errors import ConfigurationError, DataError
@@ -94,10 +96,12 @@ def analyse(
     DataError
         If a channel or the reference is missing, or less than one whole period is left.
     ConfigurationError
-        If the settings contradict each other.
+        If the settings contradict each other, or ask for what cannot be: a gate beyond the record
+        or longer than the steady stretch, harmonics beyond the sampling.
     """
     _check(settings)
-    reference = choose_reference(recording, choice)
+    _check_opening(recording, settings)
+    reference = choose_reference(recording, choice, settings.opens_s)
     chosen = recording.select(settings.channels or _default_channels(recording, reference))
     edges = _edges(chosen, reference, settings)
     sums = period_sums(chosen, reference, settings.harmonics, edges_cycles=edges)
@@ -106,8 +110,9 @@ def analyse(
     steady = sums[stretch.start : stretch.stop]
     size = settings.gate_periods or steady.period_count
     if size > steady.period_count:
-        raise DataError(
-            f"{recording.name}: a gate of {size} periods does not fit the steady stretch of "
+        window = "steady stretch" if settings.opens_s is None else "window given"
+        raise ConfigurationError(
+            f"{recording.name}: a gate of {size} periods does not fit the {window} of "
             f"{steady.period_count} ({steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s)"
         )
     gates = [steady[k : k + size] for k in range(0, steady.period_count - size + 1, size)]
@@ -121,6 +126,8 @@ def analyse(
         readings,
         recording.flags
         + reference.flags
+        + set_point_flags(recording, reference, gates[0], readings[0])
+        + frequency_flags(chosen.channel_names, values, reference)
         + flags
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
@@ -146,20 +153,24 @@ def _check(settings: Settings) -> None:
         raise ConfigurationError("a number of periods needs the time at which the gate opens")
 
 
+def _check_opening(recording: Recording, settings: Settings) -> None:
+    if settings.opens_s is None or recording.start_s <= settings.opens_s <= recording.end_s:
+        return
+    raise ConfigurationError(
+        f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
+        f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
+    )
+
+
 def _edges(recording: Recording, reference: PhaseReference, settings: Settings) -> FloatArray:
     if settings.opens_s is None:
         return whole_periods(recording, reference)
-    if not recording.start_s <= settings.opens_s <= recording.end_s:
-        raise DataError(
-            f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
-            f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
-        )
     first = float(reference.cycles_at(np.array([settings.opens_s]))[0])
     edges = whole_periods(recording, reference, first)
     edges = edges[edges >= first - 1e-9]
     count = len(edges) - 1 if settings.periods is None else settings.periods
     if not 1 <= count < len(edges):
-        raise DataError(
+        raise ConfigurationError(
             f"{recording.name}: {max(len(edges) - 1, 0)} whole periods follow "
             f"{settings.opens_s:g} s, but {max(count, 1)} are asked for"
         )
@@ -175,15 +186,39 @@ def _stretch(
         return everything, ()
     found = find_steady(values, settings.steady_tolerance)
     if found.period_count >= min(_ENOUGH_STEADY, len(values.ramp)):
-        return found, ()
+        return found, _limit_flags(recording, values, found, settings)
     everything = replace(everything, spread=found.spread, channel=found.channel)
     message = (
-        f"no {_ENOUGH_STEADY} periods keep within {100.0 * settings.steady_tolerance:g} % of each "
-        f"other in every channel; all {len(values.ramp)} periods were used. Choose fewer channels, "
+        f"no {_ENOUGH_STEADY} periods in a row keep within {100.0 * settings.steady_tolerance:g} % "
+        f"of the usual amplitude about their middle in every channel; all {len(values.ramp)} "
+        "periods were used. Choose fewer channels, "
         "a wider tolerance, or say when the gate opens"
     )
     name = recording.channel_names[found.channel]
     return everything, (Flag("not_steady", Severity.WARNING, message, name),)
+
+
+def _limit_flags(
+    recording: Recording, values: PeriodValues, found: Stretch, settings: Settings
+) -> tuple[Flag, ...]:
+    """Say where one channel alone ends the steady stretch."""
+    tolerance, total = settings.steady_tolerance, len(values.ramp)
+    flags = []
+    for limit in limits(values, found, tolerance):
+        name = recording.channel_names[limit.channel]
+        side = "before" if limit.period < found.start else "after"
+        does = (
+            "it has missing samples"
+            if not np.isfinite(limit.spread)
+            else f"its first harmonic strays by {100.0 * limit.spread:.3g} % of its usual amplitude"
+            f" (limit {100.0 * tolerance:g} %)"
+        )
+        message = (
+            f"this channel alone limits the steady stretch to {found.period_count} of {total} "
+            f"periods: in the period {side} it {does}"
+        )
+        flags.append(Flag("stretch_limited", Severity.NOTE, message, name))
+    return tuple(flags)
 
 
 def _reading(

@@ -96,8 +96,8 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
     for row in np.flatnonzero(sure.any(axis=1) & moves):
         share = 100.0 * change[row].max() / amplitude[row]
         message = (
-            f"the first harmonic still changes by {share:.1f} % over the gate; open it later, or "
-            "gate fewer periods"
+            f"the first harmonic still changes by {share:.1f} % of its amplitude from the gate's "
+            "first period to its last; open it later, or gate fewer periods"
         )
         flags.append(Flag("transient", Severity.WARNING, message, result.channel_names[row]))
     return flags

@@ -3,8 +3,10 @@
 from dataclasses import dataclass, replace
 
 from analysis.recording import Recording
+from analysis.resolver.gaps import gap_in_words, without_gaps
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import (
+    NoReferenceError,
     PhaseReference,
     ReferenceSource,
     from_encoder,
@@ -38,26 +40,34 @@ class ReferenceChoice:
     angle_offset_rad: float = 0.0
 
 
-def choose_reference(recording: Recording, choice: ReferenceChoice) -> PhaseReference:
+def choose_reference(
+    recording: Recording, choice: ReferenceChoice, holds_s: float | None = None
+) -> PhaseReference:
     """Build the reference that was asked for, or the best one that the recording has.
+
+    Parameters
+    ----------
+    holds_s
+        A time at which the phase is needed: where samples of a signal or an encoder are missing,
+        the stretch around it is used, and not the longest.
 
     Raises
     ------
-    DataError
+    NoReferenceError
         If it cannot be had; the message says what was looked for.
     ConfigurationError
         If two are asked for, or a calibration is given that the reference does not have.
     """
     if choice.channel is not None and choice.frequency_hz is not None:
         raise ConfigurationError("give a reference channel or a frequency, not both")
-    reference = _build(recording, choice)
+    reference = _build(recording, choice, holds_s)
     _check_calibration(recording, reference, choice)
     return reference
 
 
-def _build(recording: Recording, choice: ReferenceChoice) -> PhaseReference:
+def _build(recording: Recording, choice: ReferenceChoice, holds_s: float | None) -> PhaseReference:
     if choice.channel is not None:
-        return _from_channel(recording, choice.channel, choice.angle_offset_rad)
+        return _from_channel(recording, choice.channel, choice.angle_offset_rad, holds_s)
     if choice.frequency_hz is not None:
         return _from_frequency(recording, choice.frequency_hz)
     if recording.photocell_edges_s is not None and len(recording.photocell_edges_s):
@@ -68,21 +78,27 @@ def _build(recording: Recording, choice: ReferenceChoice) -> PhaseReference:
         )
     for name in (SHAFT_ANGLE.name, DISPLACEMENT_AFT.name):
         if name in recording.channel_names:
-            return _from_channel(recording, name, choice.angle_offset_rad)
+            return _from_channel(recording, name, choice.angle_offset_rad, holds_s)
     if recording.set_point is not None:
         return _from_frequency(recording, recording.set_point.frequency_hz)
-    raise DataError(
+    raise NoReferenceError(
         f"{recording.name}: no reference found: no photocell edges, no channel "
         f"{SHAFT_ANGLE.name!r} or {DISPLACEMENT_AFT.name!r}, no set-point; give the frequency or "
         f"name a reference channel (channels: {', '.join(recording.channel_names)})"
     )
 
 
-def _from_channel(recording: Recording, name: str, angle_offset_rad: float) -> PhaseReference:
-    if name == SHAFT_ANGLE.name:
-        encoder = from_encoder(recording.time_s(), recording.values(name), angle_offset_rad)
-        return replace(encoder, channel=name)
-    return from_signal(recording, name)
+def _from_channel(
+    recording: Recording, name: str, angle_offset_rad: float, holds_s: float | None
+) -> PhaseReference:
+    if name != SHAFT_ANGLE.name:
+        return from_signal(recording, name, holds_s)
+    whole, flags = without_gaps(recording.select([name]), name, holds_s)
+    try:
+        encoder = from_encoder(whole.time_s(), whole.values(name), angle_offset_rad)
+    except DataError as error:
+        raise NoReferenceError(f"{recording.name}: {error}{gap_in_words(flags)}") from None
+    return replace(encoder, channel=name, flags=flags + encoder.flags)
 
 
 def _from_frequency(recording: Recording, frequency_hz: float) -> PhaseReference:

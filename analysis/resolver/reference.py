@@ -23,6 +23,10 @@ FloatArray = NDArray[np.float64]
 KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep
 
 
+class NoReferenceError(DataError):
+    """Nothing in the recording tells the phase; a frequency or another channel may."""
+
+
 class ReferenceSource(StrEnum):
     """What told the phase."""
 
@@ -117,7 +121,7 @@ def from_encoder(
         If an angle is missing or the shaft makes less than one turn.
     """
     if not np.all(np.isfinite(angle_rad)):
-        raise DataError("the shaft angle has missing samples; give another reference")
+        raise NoReferenceError("the shaft angle has missing samples; give another reference")
     turns = np.unwrap(angle_rad) / (2.0 * np.pi)
     flags: tuple[Flag, ...] = ()
     if turns[-1] < turns[0]:
@@ -126,7 +130,7 @@ def from_encoder(
     turns = turns + angle_offset_rad / (2.0 * np.pi)
     revolutions = turns[-1] - turns[0]
     if revolutions < 1.0:
-        raise DataError(
+        raise NoReferenceError(
             f"the shaft makes {revolutions:.2f} turns; at least one whole one is needed"
         )
     step = max(1, int(len(turns) / revolutions / KNOTS_PER_REVOLUTION))

@@ -1,13 +1,22 @@
 """The phase from a measured signal: a stroke, a strut's displacement, a wave maker's position."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import solve_periods
-from analysis.resolver.reference import PhaseReference, ReferenceSource, from_frequency
+from analysis.resolver.gaps import gap_in_words, without_gaps
+from analysis.resolver.reference import (
+    NoReferenceError,
+    PhaseReference,
+    ReferenceSource,
+    from_frequency,
+)
 from analysis.resolver.sums import period_sums
 from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -17,44 +26,82 @@ _FASTEST = 0.9  # of the Nyquist frequency: beyond it a period has too few sampl
 _MOVING = 0.5  # of the usual amplitude: below it the signal is starting, stopping or at rest
 _JUMP_CYCLES = 0.1  # from one period to the next: noise, not a motion
 _BY_CHANCE = 0.1  # periods of noise alone that would keep time so well: more is no motion
+_FEW_PERIODS = 5  # that keep time: fewer may be noise that happens to
 _ROUNDING = 1e-12  # of the largest value: a spectrum as small is that of a constant or a ramp
 
 
-def from_signal(recording: Recording, name: str) -> PhaseReference:
+def from_signal(recording: Recording, name: str, holds_s: float | None = None) -> PhaseReference:
     """Build a reference from the fundamental of one channel.
 
     The frequency is found in the spectrum, then the phase period by period, so that a change of
     speed is followed; whole cycles are where the fundamental passes zero upwards. The reference
-    covers the longest stretch in which the signal moves.
+    covers the longest stretch in which the signal moves and no sample of it is missing.
+
+    Parameters
+    ----------
+    holds_s
+        Where samples are missing: take the stretch that holds this time, not the longest.
 
     Raises
     ------
-    DataError
-        If the channel has missing samples, or no motion of steady frequency is found in it.
+    NoReferenceError
+        If no motion of steady frequency is found; the message says where samples are missing.
     """
-    signal = recording.select([name])
-    values = signal.values(name)
-    if not np.isfinite(values).all():
-        raise DataError(
-            f"{recording.name}: channel {name!r} has missing samples and cannot be the reference"
-        )
-    frequency_hz = _coarse_frequency_hz(values, recording.sample_rate_hz)
-    if frequency_hz * (recording.end_s - recording.start_s) < 1.0:
-        raise _no_reference(recording, name, "not one whole period")
+    signal, flags = without_gaps(recording.select([name]), name, holds_s)
+    try:
+        found = _in_whole(signal, name)
+    except DataError as error:
+        raise NoReferenceError(f"{error}{gap_in_words(flags)}") from None
+    return replace(found, flags=flags + found.flags)
+
+
+def _in_whole(signal: Recording, name: str) -> PhaseReference:
+    """Build the reference of a signal without gaps."""
+    duration_s = signal.end_s - signal.start_s
+    frequency_hz = _coarse_frequency_hz(signal.values(name), signal.sample_rate_hz)
+    if frequency_hz * duration_s < 1.0:
+        raise _no_reference(signal, name, _no_period(signal))
     middle_s, cycles = _follow(signal, frequency_hz)
     refined = _slope(middle_s, cycles) if len(cycles) > 2 else frequency_hz
     middle_s, cycles = _follow(signal, refined)
-    periods = refined * (recording.end_s - recording.start_s)
-    if len(cycles) < 2 or _by_chance(cycles, periods) > _BY_CHANCE:
-        raise _no_reference(recording, name, f"nothing that keeps time near {frequency_hz:.3g} Hz")
+    if len(cycles) < 2 or _by_chance(cycles, refined * duration_s) > _BY_CHANCE:
+        raise _no_reference(signal, name, _no_time_kept(frequency_hz, duration_s))
     # The phase is known at the middle of each period; knots at whole cycles make them straight.
     followed = PhaseReference(ReferenceSource.SIGNAL, middle_s, cycles)
     whole = np.arange(np.ceil(cycles[0] - 0.5), np.floor(cycles[-1] + 0.5) + 1.0)
-    return PhaseReference(ReferenceSource.SIGNAL, followed.times_at(whole), whole, channel=name)
+    times_s, flags = followed.times_at(whole), _few_flags(name, len(cycles))
+    return PhaseReference(ReferenceSource.SIGNAL, times_s, whole, flags, name)
 
 
-def _no_reference(recording: Recording, name: str, found: str) -> DataError:
-    return DataError(
+def _few_flags(name: str, kept: int) -> tuple[Flag, ...]:
+    if kept >= _FEW_PERIODS:
+        return ()
+    message = (
+        f"only {kept} periods of the reference keep time (fewer than {_FEW_PERIODS}): noise may do "
+        "so by chance; make sure that this channel carries the motion, or give the frequency"
+    )
+    return (Flag("few_reference_periods", Severity.WARNING, message, name),)
+
+
+def _no_period(signal: Recording) -> str:
+    duration_s = signal.end_s - signal.start_s
+    if not np.ptp(signal.values(signal.channel_names[0])):
+        return f"it is constant over {duration_s:.3g} s"
+    return f"not one whole period in {duration_s:.3g} s; the record is too short, or does not move"
+
+
+def _no_time_kept(frequency_hz: float, duration_s: float) -> str:
+    nothing = f"nothing that keeps time near {frequency_hz:.3g} Hz"
+    periods = frequency_hz * duration_s
+    if periods > _FEW_PERIODS:
+        return nothing
+    return (
+        f"{nothing}, and {duration_s:.3g} s is too short for more than {periods:.1f} such periods"
+    )
+
+
+def _no_reference(recording: Recording, name: str, found: str) -> NoReferenceError:
+    return NoReferenceError(
         f"{recording.name}: no reference found in channel {name!r}: {found}; name another channel, "
         "or give the frequency"
     )

@@ -35,6 +35,38 @@ class Stretch:
         return self.stop - self.start
 
 
+@dataclass(frozen=True)
+class Limit:
+    """A period beside a stretch that one channel alone keeps out of it.
+
+    ``channel`` is its row; ``spread`` is how far it would stray in the stretch with that period,
+    to either side and relative to its usual amplitude; NaN where it has missing samples.
+    """
+
+    period: int
+    channel: int
+    spread: float
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What the first harmonics are judged by.
+
+    Phasors have shape ``(periods, channels)``, the usual amplitudes ``size`` and what is
+    ``allowed`` to either side ``(channels,)``; ``present`` says where there is motion.
+    """
+
+    phasors: ComplexArray
+    size: FloatArray
+    allowed: FloatArray
+    present: NDArray[np.bool_]
+
+    @property
+    def parts(self) -> FloatArray:
+        """In-phase parts, then quadrature, shape ``(periods, 2 * channels)``."""
+        return np.concatenate((self.phasors.real, self.phasors.imag), axis=1)
+
+
 def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
     """Find the longest stretch in which every channel's first harmonic keeps within a tolerance.
 
@@ -50,6 +82,37 @@ def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
     Stretch
         May be as short as one period; it is for the caller to say how many are enough.
     """
+    judged = _judge(values, tolerance)
+    finite = np.isfinite(judged.phasors).all(axis=1)
+    usable = np.asarray(finite & judged.present.all(axis=1))
+    start, stop = _longest_within(judged.parts, 2.0 * np.tile(judged.allowed, 2), usable)
+    return _describe(judged.phasors, start, stop, judged.size)
+
+
+def limits(values: PeriodValues, stretch: Stretch, tolerance: float) -> list[Limit]:
+    """Return the periods beside a stretch that a single channel keeps out of it.
+
+    Parameters
+    ----------
+    values, tolerance
+        Those with which :func:`find_steady` found the stretch.
+    """
+    judged = _judge(values, tolerance)
+    found = []
+    for period in (stretch.start - 1, stretch.stop):
+        if not 0 <= period < len(judged.phasors):
+            continue
+        rows = slice(min(period, stretch.start), max(period + 1, stretch.stop))
+        half_range = np.ptp(judged.parts[rows], axis=0).reshape(2, -1).max(axis=0) / 2.0
+        out = ~(half_range <= judged.allowed) | ~judged.present[period]
+        if out.sum() == 1:
+            channel = int(np.argmax(out))
+            spread = float(half_range[channel] / max(judged.size[channel], 1e-300))
+            found.append(Limit(period, channel, spread))
+    return found
+
+
+def _judge(values: PeriodValues, tolerance: float) -> _Judged:
     phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
     size = np.array([_usual(column) for column in np.abs(phasors).T])
     mean = values.coefficients[:, :, 0]
@@ -59,10 +122,7 @@ def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
     # A channel of noise alone says nothing about where the motion is.
     telling = size > 2.0 * _NOISE * noise
     present = (np.abs(phasors) > _PRESENT * size) | ~telling
-    usable = np.asarray(np.isfinite(phasors).all(axis=1) & present.all(axis=1))
-    parts = np.concatenate((phasors.real, phasors.imag), axis=1)
-    start, stop = _longest_within(parts, 2.0 * np.tile(allowed, 2), usable)
-    return _describe(phasors, start, stop, size)
+    return _Judged(phasors, size, allowed, np.asarray(present))
 
 
 def _usual(amplitude: FloatArray) -> float:

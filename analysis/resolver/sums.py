@@ -23,7 +23,7 @@ from analysis.resolver.general import General, Taper
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight import Gates, Sums, sum_straight
 from analysis.resolver.weights import REACH
-from hardware.description.errors import DataError
+from hardware.description.errors import ConfigurationError, DataError
 
 FloatArray = NDArray[np.float64]
 
@@ -134,8 +134,10 @@ def period_sums(
     Raises
     ------
     DataError
-        If a period has too few samples for the highest order, lies outside the record, or there is
-        no whole period.
+        If a period has too few samples for any order, lies outside the record, or there is no whole
+        period.
+    ConfigurationError
+        If a period has too few samples for the highest order.
     """
     orders = np.arange(1.0, orders + 1.0) if isinstance(orders, int) else orders
     cycles = whole_periods(recording, reference) if edges_cycles is None else edges_cycles
@@ -199,7 +201,9 @@ def _sample_numbers(recording: Recording, cycles: FloatArray, edges_s: FloatArra
 def _check_sampling(recording: Recording, gates: Gates, orders: FloatArray) -> None:
     fewest = float((gates.closing - gates.opening).min())
     if fewest <= 2.0 * orders.max():
-        raise DataError(
+        # Where not even the fundamental is carried, fewer harmonics would not help.
+        kind = DataError if fewest <= 2.0 else ConfigurationError
+        raise kind(
             f"{recording.name}: {fewest:.1f} samples a period cannot carry harmonic "
             f"{orders.max():g}; take fewer harmonics or sample faster than "
             f"{2.0 * orders.max():g} times the frequency"

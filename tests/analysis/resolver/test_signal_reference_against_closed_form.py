@@ -148,8 +148,15 @@ def test_a_ramp_is_no_reference() -> None:
         reference_of(np.arange(1000.0))
 
 
-def test_missing_samples_are_refused() -> None:
-    values = np.sin(np.arange(1000) / 5.0)
-    values[500] = np.nan
-    with pytest.raises(DataError, match="'force_0' has missing samples"):
-        reference_of(values)
+def test_a_record_that_is_too_short_is_called_so() -> None:
+    with pytest.raises(DataError, match=r"not one whole period in 0\.58 s; the record is too sho"):
+        reference_of(np.arange(30.0))
+    with pytest.raises(DataError, match=r"it is constant over 19\.98 s|it is constant over 20 s"):
+        reference_of(np.full(1000, 3.0))
+
+
+@pytest.mark.parametrize("periods", [3, 4, 5, 8])
+def test_few_periods_that_keep_time_are_a_warning(periods: int) -> None:
+    time = np.arange(int(RATE_HZ * (periods + 0.5))) / RATE_HZ
+    codes = {flag.code for flag in reference_of(np.sin(2.0 * np.pi * time)).flags}
+    assert codes == ({"few_reference_periods"} if periods < 5 else set())

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from analysis.resolver.estimate import solve_periods
 from analysis.resolver.reference import from_frequency
-from analysis.resolver.steady import Stretch, find_steady
+from analysis.resolver.steady import Stretch, find_steady, limits
 from analysis.resolver.sums import period_sums
 from tests.analysis.resolver.signals import FloatArray, recording
 
@@ -123,3 +123,21 @@ def test_slow_growth_is_allowed_only_within_the_tolerance() -> None:
     found = stretch_of((1.0 + 0.01 * TIME) * MOTION)
     # 1 % a period against 2 % to either side of 1.36, the usual size, in the larger part.
     assert 5 <= found.period_count <= 7
+
+
+def test_a_channel_that_alone_ends_the_stretch_is_named() -> None:
+    late = np.where(TIME < 20.0, MOTION, 1.3 * MOTION)
+    run = recording(np.stack((MOTION, late)), RATE_HZ)
+    values = solve_periods(period_sums(run, from_frequency(1.0, 0.0, run.end_s)))
+    found = find_steady(values, 0.05)
+    (limit,) = limits(values, found, 0.05)
+    assert limit.channel == 1
+    assert limit.period == (found.stop if found.start == 0 else found.start - 1)
+    assert limit.spread == pytest.approx(0.15 / 1.3, rel=0.1)
+
+
+def test_where_all_channels_end_the_stretch_none_is_named() -> None:
+    late = np.where(TIME < 20.0, MOTION, 1.3 * MOTION)
+    run = recording(np.stack((late, 2.0 * late)), RATE_HZ)
+    values = solve_periods(period_sums(run, from_frequency(1.0, 0.0, run.end_s)))
+    assert limits(values, find_steady(values, 0.05), 0.05) == []
