@@ -174,16 +174,18 @@ class LoadFriction(ForceLaw):
 
 @dataclass(frozen=True)
 class Spring(ForceLaw):
-    """``k x + k_2 x^2 + k_3 x^3``: a cable, a flaring hull."""
+    """``F_0 + k x + k_2 x^2 + k_3 x^3``: a cable, a flaring hull."""
 
     stiffness_n_m: float = 0.0
     stiffness_n_m2: float = 0.0
     stiffness_n_m3: float = 0.0
+    preload_n: float = 0.0
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
         x = motion.position
-        return x * (self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3))
+        slope = self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3)
+        return self.preload_n + x * slope
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ def simulated_signature(
     set_point: SetPoint,
     keys: Iterable[tuple[str, int]],
     orders: int = 12,
+    points: int = 128,
 ) -> Signature:
     """Return what the effect changes in the exact periodic steady state.
 
@@ -38,14 +39,21 @@ def simulated_signature(
     ----------
     keys
         Channel name and order of the harmonics that are wanted.
+    points
+        Of the period; the error of a law that jumps falls with their square.
     """
-    nominal = steady_run(rig, set_point, orders=orders)
-    changed = steady_run(*switch_on((effect,), rig, set_point), orders=orders)
+    nominal = steady_run(rig, set_point, orders=orders, points=points)
+    real = switch_on((effect,), rig, set_point)
+    changed = steady_run(*real, orders=orders, points=points)
     return {key: phasor(changed, *key) - phasor(nominal, *key) for key in keys}
 
 
 def mismatch(
-    effect: Effect, rig: SimulatedRig, set_points: Sequence[SetPoint], orders: int = 12
+    effect: Effect,
+    rig: SimulatedRig,
+    set_points: Sequence[SetPoint],
+    orders: int = 12,
+    points: int = 128,
 ) -> float:
     """Return the largest distance from the theory over the set-points, relative to its norm.
 
@@ -63,7 +71,7 @@ def mismatch(
         highest = max(order for _, order in theory)
         names = sorted({name for name, _ in theory})
         keys = [(name, order) for name in names for order in range(highest + 1)]
-        found = simulated_signature(effect, rig, set_point, keys, orders)
+        found = simulated_signature(effect, rig, set_point, keys, orders, points)
         for quantity in {_quantity(name) for name in names}:
             own = [key for key in keys if _quantity(key[0]) == quantity]
             stated = np.array([theory.get(key, 0.0) for key in own])
