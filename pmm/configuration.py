@@ -46,7 +46,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         If it cannot be read; the message gives the line.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -155,6 +155,7 @@ _NOT_BELOW_0 = (
     "seed",
     "settling_periods",
     "start_ramp_s",
+    "waiting_s",
 )
 
 

@@ -3,11 +3,13 @@
 from collections.abc import Iterable
 
 from analysis.readers.columns import ChannelColumn, ColumnMap, PhotocellColumn, TimeColumn
+from analysis.readers.headers import TIME_NAMES
 from hardware.description.errors import ConfigurationError
-from hardware.description.units import unit
+from hardware.description.units import is_unit, unit
 
 TIME_OPTION = "time"
 PHOTOCELL_OPTION = "photocell"
+COMMAND_LINE = "column map on the command line"
 
 
 def parse_source(name: str, text: str) -> ChannelColumn:
@@ -30,17 +32,45 @@ def parse_source(name: str, text: str) -> ChannelColumn:
     return ChannelColumn(name, column, unit_name, sign)
 
 
+def _is_time(channel: ChannelColumn) -> bool:
+    """Whether a mapped column is that of time stamps: called so, and in a unit of time."""
+    names = {channel.name.casefold(), channel.column.casefold()}
+    in_time = channel.unit is not None and unit(channel.unit).si == "s"
+    return in_time and not names.isdisjoint(TIME_NAMES)
+
+
+def _is_plain(name: str) -> bool:
+    """Whether an option without "=" is a column that keeps its name."""
+    signed_or_unit = name.startswith("-") or (":" in name and not name.endswith(("]", ")")))
+    return not signed_or_unit and name.casefold() not in TIME_NAMES
+
+
+def _without_name(pair: str) -> str:
+    """Say what an option that lacks its "=" should look like."""
+    column, _, unit_name = pair.strip().lstrip("-").partition(":")
+    name = column.strip() or "NAME"
+    in_time = is_unit(unit_name) and unit(unit_name).si == "s"
+    if in_time or name.casefold() in TIME_NAMES:
+        return f"{pair!r}: for the time column write {TIME_OPTION}={name}:{unit_name or 'ms'}"
+    plain = name.partition(" [")[0].replace(" ", "_")
+    return f"{pair!r}: write NAME=COLUMN or NAME=COLUMN:UNIT, for example {plain}={pair.strip()}"
+
+
 def parse_options(pairs: Iterable[str]) -> ColumnMap:
     """Build a column map from ``NAME=SOURCE`` options; see :meth:`ColumnMap.from_options`."""
     parsed: dict[str, ChannelColumn] = {}
     faults = []
     for pair in pairs:
         name, equals, source = (part.strip() for part in pair.partition("="))
+        if not equals and not _is_plain(name):
+            faults.append(_without_name(pair))
+            continue
         try:
             channel = parse_source(name, source if equals else name)
         except ConfigurationError as error:
             faults.append(f"{pair!r}: {error}")
             continue
+        name = TIME_OPTION if _is_time(channel) else name
         if not name:
             faults.append(f"{pair!r}: no name before '='; write NAME=COLUMN or NAME=COLUMN:UNIT")
         elif name in parsed:
@@ -58,5 +88,5 @@ def parse_options(pairs: Iterable[str]) -> ColumnMap:
         channels=tuple(parsed.values()),
         time=TimeColumn(time.column, time.unit) if time else None,
         photocell=PhotocellColumn(photocell.column) if photocell else None,
-        origin="column map on the command line",
+        origin=COMMAND_LINE,
     )

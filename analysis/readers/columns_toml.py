@@ -21,7 +21,7 @@ from hardware.description.errors import ConfigurationError
 def read_column_map(path: Path) -> ColumnMap:
     """Read a column map from a TOML file; see :meth:`ColumnMap.from_toml`."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such column map") from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

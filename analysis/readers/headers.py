@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from hardware.description.errors import DataError
+from hardware.description.errors import ConfigurationError
 from hardware.description.units import is_unit
 
 TIME_NAMES = ("time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd")
@@ -57,7 +57,7 @@ def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
 
     Raises
     ------
-    DataError
+    ConfigurationError
         If no column is called so (the message suggests the nearest), or several are.
     """
     wanted = parse_header(0, selector)
@@ -73,9 +73,11 @@ def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
             return found[0]
         if found:
             numbers = " or ".join(header.generic for header in found)
-            raise DataError(f"{where}: {len(found)} columns are {selector!r}; ask for {numbers}")
+            raise ConfigurationError(
+                f"{where}: {len(found)} columns are {selector!r}; ask for {numbers}"
+            )
     texts = {header.name: header.text or header.generic for header in headers}
     near = [texts[name] for name in get_close_matches(wanted.name, texts, n=3, cutoff=0.5)]
     hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
     known = ", ".join(texts.values())
-    raise DataError(f"{where}: no column {selector!r}{hint} (columns: {known})")
+    raise ConfigurationError(f"{where}: no column {selector!r}{hint} (columns: {known})")

@@ -38,8 +38,8 @@ def read_recording(
         If a column map or a sample rate is given that cannot be.
     """
     path = Path(path)
-    kind, name = _kind(path)
     _check_there(path)
+    kind, name = _kind(path)
     if kind == NETCDF_SUFFIX:
         if columns is not None or sample_rate_hz is not None:
             raise ConfigurationError(
@@ -71,6 +71,6 @@ def _check_there(path: Path) -> None:
     if path.is_dir():
         raise DataError(f"{path}: a folder, not a recording")
     if not path.exists():
-        raise DataError(f"{path}: no such file")
+        raise DataError(f"{path}: no such file" + ("" if path.suffix else " or folder"))
     if not path.stat().st_size:
         raise DataError(f"{path}: the file is empty")

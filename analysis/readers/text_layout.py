@@ -38,6 +38,12 @@ class FoundLayout:
     first_line: int
     missing: tuple[str, ...]
 
+    @property
+    def fewest_cells(self) -> int:
+        """Cells that every row must have: up to the last column that has a name."""
+        named = [header.number for header in self.headers if header.text]
+        return named[-1] if named else len(self.headers)
+
     def cells(self, line: str) -> list[str]:
         """Split a line into cells, without the blanks around them."""
         return split_line(line, self.separator)
@@ -99,6 +105,14 @@ def too_many_cells(where: str, line: int, cells: int, columns: int) -> DataError
     return DataError(
         f"{where}: line {line} has {cells} cells, the header has {columns}; correct the line, or "
         "say separator, decimal or skip_rows (lines before the header) in the column map"
+    )
+
+
+def too_few_cells(where: str, line: int, cells: int, columns: int) -> DataError:
+    """Return the error of a line that has fewer cells than the header."""
+    return DataError(
+        f"{where}: line {line} has {cells} cells, the header has {columns}; complete the line "
+        "(a missing value is an empty cell between two separators), or take it out"
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.readers.columns import ChannelColumn, ColumnMap
+from analysis.readers.columns_options import COMMAND_LINE
 from analysis.readers.headers import Header, find_header
 from analysis.recording import FloatArray
 from hardware.description.channels import Channel
@@ -70,14 +71,15 @@ def plan_columns(headers: tuple[Header, ...], columns: ColumnMap, where: str) ->
     Raises
     ------
     DataError
-        If a mapped column is not there, no time column is found and no sample rate given, or two
-        channels would have the same name.
+        If no time column is found and no sample rate given.
+    ConfigurationError
+        If a mapped column is not there.
     """
     time, found_time = _time(headers, columns, where)
     photocell = columns.photocell.column if columns.photocell else None
     level = find_header(headers, photocell, where) if photocell else None
     channels = [
-        ChannelPlan(spec, find_header(headers, spec.column, where), mapped=True)
+        ChannelPlan(spec, _mapped(headers, spec, columns, where), mapped=True)
         for spec in columns.channels
     ]
     if columns.keep_others or not channels:
@@ -92,6 +94,17 @@ def plan_columns(headers: tuple[Header, ...], columns: ColumnMap, where: str) ->
         text = f"the column {found_time.text!r} is not used: the sample rate was given"
         flags = (Flag("time_not_used", Severity.NOTE, text),)
     return ColumnPlan(time, level, tuple(channels), flags)
+
+
+def _mapped(
+    headers: tuple[Header, ...], spec: ChannelColumn, columns: ColumnMap, where: str
+) -> Header:
+    try:
+        return find_header(headers, spec.column, where)
+    except ConfigurationError as error:
+        if spec.name != spec.column or columns.origin != COMMAND_LINE:
+            raise
+        raise ConfigurationError(f"{error}; write NAME=COLUMN or NAME=COLUMN:UNIT") from None
 
 
 def _time(
@@ -169,8 +182,11 @@ def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float
     """
     name = own_unit or header.unit
     if name is None:
-        text = f"the time column {header.text!r} has no unit; seconds are assumed"
-        return 1.0, (Flag("time_unit_assumed", Severity.NOTE, text),)
+        text = (
+            f"the time column {header.text!r} states no unit; seconds are assumed. If they are "
+            f"others, name the unit in the column map: time={header.text}:ms"
+        )
+        return 1.0, (Flag("time_unit_assumed", Severity.WARNING, text),)
     try:
         found = unit(name)
     except ConfigurationError as error:

@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.headers import Header
-from analysis.readers.text_layout import FoundLayout, too_many_cells
+from analysis.readers.text_layout import FoundLayout, too_few_cells, too_many_cells
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
+
+_GZIP_MARK = b"\x1f\x8b"
 
 
 def read_bytes(path: Path) -> bytes:
@@ -43,6 +45,8 @@ def unpack(data: bytes, path: Path) -> str:
         except EOFError:
             raise DataError(f"{path}: the gzip file is cut short; copy it again") from None
         except (gzip.BadGzipFile, zlib.error) as error:
+            if not data.startswith(_GZIP_MARK):
+                raise DataError(f"{path}: not a gzip file, whatever its name says") from None
             raise DataError(f"{path}: not a sound gzip file ({error}); copy it again") from None
     if not data.strip():
         raise DataError(f"{path}: the file is empty")
@@ -78,8 +82,8 @@ def read_numbers(
     Raises
     ------
     DataError
-        For text where numbers belong (with line, column and the text), rows with more cells than
-        the header, and a file without rows.
+        For text where numbers belong (with line, column and the text), rows with more or fewer
+        cells than the header, and a file without rows.
     """
     body, flags = _complete_rows(_after_line(text, layout.first_line), layout)
     if not body.strip():
@@ -103,7 +107,7 @@ def _complete_rows(body: str, layout: FoundLayout) -> tuple[str, tuple[Flag, ...
     stripped = body.rstrip("\n")
     start = stripped.rfind("\n") + 1
     cells = layout.cells(stripped[start:])
-    if stripped.strip() and len(cells) < len(layout.headers):
+    if stripped.strip() and len(cells) < layout.fewest_cells:
         message = (
             f"the file ends within a row ({len(cells)} of {len(layout.headers)} cells); "
             "that row is left out"
@@ -139,7 +143,18 @@ def _read_fast(body: str, layout: FoundLayout, wanted: Sequence[Header]) -> Floa
         )
     except (ValueError, pd.errors.ParserError):
         return None
+    if frame[layout.fewest_cells - 1].isna().any() and _any_short(body, layout):
+        return None
     return np.array([frame[header.number - 1].to_numpy() for header in wanted], dtype=np.float64)
+
+
+def _any_short(body: str, layout: FoundLayout) -> bool:
+    """Whether a row has too few cells; pandas fills them up without a word."""
+    fewest, separator = layout.fewest_cells, layout.separator
+    rows = (line for line in io.StringIO(body) if line.strip())
+    if separator == " " or '"' in body:
+        return any(len(layout.cells(line)) < fewest for line in rows)
+    return any(line.count(separator) < fewest - 1 for line in rows)
 
 
 def _read_carefully(
@@ -153,6 +168,8 @@ def _read_carefully(
         cells = layout.cells(line)
         if len(cells) > len(layout.headers):
             raise too_many_cells(where, number, len(cells), len(layout.headers))
+        if len(cells) < layout.fewest_cells:
+            raise too_few_cells(where, number, len(cells), len(layout.headers))
         cells += [""] * (len(layout.headers) - len(cells))
         rows.append(
             [_number(cells, header, layout, f"{where}: line {number}") for header in wanted]

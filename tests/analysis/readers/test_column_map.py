@@ -1,5 +1,6 @@
 """Column maps from TOML and from options, and one message for all that is wrong with one."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from analysis.readers import (
     PhotocellColumn,
     TextLayout,
     TimeColumn,
+    read_recording,
 )
 from hardware.description.errors import ConfigurationError
 
@@ -151,3 +153,37 @@ def test_faults_of_options(pairs: list[str], message: str) -> None:
 def test_all_faults_of_options_come_at_once() -> None:
     with pytest.raises(ConfigurationError, match=r"'a='.*unknown unit 'q'"):
         ColumnMap.from_options(["a=", "b=c:q"])
+
+
+@pytest.mark.parametrize("option", ["Tijd=Tijd:ms", "time=Tijd:ms", "t=klok:ms", "a=Time:ms"])
+def test_a_column_called_time_in_a_unit_of_time_is_the_time(option: str) -> None:
+    found = ColumnMap.from_options([option, "force_aft=F1:N"])
+    assert found.time == TimeColumn(option.split("=")[1].removesuffix(":ms"), "ms")
+    assert [channel.name for channel in found.channels] == ["force_aft"]
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ("Tijd:ms", "'Tijd:ms': for the time column write time=Tijd:ms"),
+        ("Tijd", "'Tijd': for the time column write time=Tijd:ms"),
+        ("F1:kN", "'F1:kN': write NAME=COLUMN or NAME=COLUMN:UNIT, for example F1=F1:kN"),
+        ("-F1", "'-F1': write NAME=COLUMN or NAME=COLUMN:UNIT, for example F1=-F1"),
+    ],
+)
+def test_an_option_without_a_name_shows_the_form(option: str, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=re.escape(message)):
+        ColumnMap.from_options([option])
+
+
+def test_a_plain_name_that_is_no_column_shows_the_form(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("Time [s],F [N]\n0,1\n1,2\n")
+    with pytest.raises(ConfigurationError, match=r"no column 'force'.*write NAME=COLUMN or"):
+        read_recording(path, ColumnMap.from_options(["force"]))
+
+
+def test_a_mark_before_a_map_does_not_matter(tmp_path: Path) -> None:
+    path = tmp_path / "map.toml"
+    path.write_bytes(b"\xef\xbb\xbftime = 'T:ms'\n")
+    assert ColumnMap.from_toml(path).time == TimeColumn("T", "ms")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import ColumnMap, read_recording
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError, DataError, PmmError
 
 GOOD = "Time [s],F [N]\n" + "".join(f"{n / 100:.2f},{n % 7}.5\n" for n in range(200))
 
@@ -18,14 +18,51 @@ def written(folder: Path, text: str, name: str = "run.csv") -> Path:
     return path
 
 
-def refused(path: Path, message: str, columns: ColumnMap | None = None) -> None:
-    with pytest.raises(DataError, match=message) as caught:
+def refused(
+    path: Path,
+    message: str,
+    columns: ColumnMap | None = None,
+    kind: type[PmmError] = DataError,
+) -> None:
+    with pytest.raises(kind, match=message) as caught:
         read_recording(path, columns)
     assert str(path) in str(caught.value)
 
 
 def test_missing_file(tmp_path: Path) -> None:
-    refused(tmp_path / "no.csv", "no such file")
+    refused(tmp_path / "no.csv", "no such file$")
+    refused(tmp_path / "run_1", "no such file or folder$")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("Time [s],F [N],G [N]\n0,1,2\n1,2\n2,3,4\n", "line 3 has 2 cells, the header has 3"),
+        ("Time [s],F [N],G [N]\n0,1\n1,2,3\n2,3,4\n", "line 2 has 2 cells, the header has 3"),
+        ('Time [s],F [N],"G, a [N]"\n0,1,2\n1,"2"\n2,3,4\n', "line 3 has 2 cells"),
+        ("Time [s];F [N];G [N]\n0;1,5;2\n\n1;2,5\n2;3;4\n", "line 4 has 2 cells"),
+        ("Time[s] F[N] G[N]\n0 1 2\n1 2\n2 3 4\n", "line 3 has 2 cells"),
+    ],
+)
+def test_short_row(tmp_path: Path, text: str, message: str) -> None:
+    refused(written(tmp_path, text), message)
+
+
+def test_empty_last_cells_are_missing_values_and_no_short_rows(tmp_path: Path) -> None:
+    rows = [f"{n},{n % 5},{'' if n == 7 else n % 3}" for n in range(20)]
+    text = "\n".join(["Time [s],F [N],G [N]", *rows]) + "\n"
+    assert {flag.code for flag in read_recording(written(tmp_path, text)).flags} == {"repaired"}
+
+
+def test_separators_that_end_the_header_ask_for_no_cells(tmp_path: Path) -> None:
+    text = "Time [s],F [N],\n" + "".join(f"{n},{n % 5}\n" for n in range(20))
+    assert read_recording(written(tmp_path, text)).sample_count == 20
+
+
+def test_a_short_last_row_is_left_out(tmp_path: Path) -> None:
+    recording = read_recording(written(tmp_path, f"{GOOD}2.00\n"))
+    assert recording.sample_count == 200
+    assert [flag.code for flag in recording.flags] == ["row_cut"]
 
 
 def test_folder(tmp_path: Path) -> None:
@@ -60,7 +97,7 @@ def test_truncated_gzip(tmp_path: Path) -> None:
 
 
 def test_not_gzip(tmp_path: Path) -> None:
-    refused(written(tmp_path, GOOD, "run.csv.gz"), "not a sound gzip file")
+    refused(written(tmp_path, GOOD, "run.csv.gz"), "not a gzip file, whatever its name says$")
 
 
 def test_damaged_gzip(tmp_path: Path) -> None:
@@ -164,13 +201,15 @@ def test_two_channels_of_one_name(tmp_path: Path) -> None:
 
 def test_mapped_column_is_not_there(tmp_path: Path) -> None:
     columns = ColumnMap.from_options(["force_aft=Fx:N"])
-    refused(written(tmp_path, GOOD), r"no column 'Fx'.*did you mean 'F \[N\]'", columns)
+    message = r"no column 'Fx'.*did you mean 'F \[N\]'"
+    refused(written(tmp_path, GOOD), message, columns, ConfigurationError)
 
 
 def test_mapped_column_is_there_twice(tmp_path: Path) -> None:
     text = "Time [s],F,F\n0,1,2\n1,2,3\n"
     columns = ColumnMap.from_options(["force_aft=F:N"])
-    refused(written(tmp_path, text), "2 columns are 'F'; ask for column_2 or column_3", columns)
+    message = "2 columns are 'F'; ask for column_2 or column_3"
+    refused(written(tmp_path, text), message, columns, ConfigurationError)
 
 
 @pytest.mark.parametrize("rate", [0.0, -5.0, float("nan"), float("inf")])
