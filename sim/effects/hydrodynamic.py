@@ -1,0 +1,162 @@
+"""What effects of the water share: loads of changed coefficients, and motions at a point.
+
+No effect itself. Matrices are (force, moment) per (translation, rotation), as in
+:class:`sim.hull_coefficients.HullCoefficients`.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from sim.acting import Acting, Point
+from sim.effects.effect import Signature
+from sim.effects.situation import Situation, at_struts
+from sim.hull_coefficients import HullCoefficients, Matrix
+from sim.laws import ForceLaw
+from sim.linear import ComplexArray
+from sim.rig import SimulatedRig
+from sim.signals import FloatArray
+from sim.water.radiation import Radiation, constant
+
+HIGHEST = 3  # order that a signature names
+STRUTS = (Point.AFT, Point.FORE)
+
+
+def with_laws(rig: SimulatedRig, *laws: tuple[Point, ForceLaw]) -> SimulatedRig:
+    """Return the rig with further laws of the water."""
+    added = tuple(Acting(law, point, in_water=True) for point, law in laws)
+    return replace(rig, forces=(*rig.forces, *added))
+
+
+def radiation_of(rig: SimulatedRig) -> Radiation:
+    """Return the water's memory; none is one without states."""
+    return constant(np.zeros((2, 2))) if rig.radiation is None else rig.radiation
+
+
+def added_mass_at(rig: SimulatedRig, omega_rad_s: float) -> FloatArray:
+    """Return the whole added mass at a frequency, shape ``(2, 2)``."""
+    found: FloatArray = np.array(rig.water.added_mass) + radiation_of(rig).added_mass(omega_rad_s)
+    return found
+
+
+def damping_at(rig: SimulatedRig, omega_rad_s: float) -> FloatArray:
+    """Return the whole damping at a frequency, shape ``(2, 2)``."""
+    found: FloatArray = np.array(rig.water.damping) + radiation_of(rig).damping(omega_rad_s)
+    return found
+
+
+def with_more(
+    rig: SimulatedRig, added_mass: FloatArray | None = None, damping: FloatArray | None = None
+) -> SimulatedRig:
+    """Return the rig with added mass and damping on top of what its water has."""
+    water: HullCoefficients = rig.water
+    if added_mass is not None:
+        water = replace(water, added_mass=_rows(np.array(water.added_mass) + added_mass))
+    if damping is not None:
+        water = replace(water, damping=_rows(np.array(water.damping) + damping))
+    return replace(rig, water=water)
+
+
+def scaled(matrix: Matrix, factor: float) -> Matrix:
+    """Return a matrix of coefficients times a number."""
+    return _rows(np.array(matrix) * factor)
+
+
+def _rows(matrix: FloatArray) -> Matrix:
+    (a, b), (c, d) = matrix.tolist()
+    return (a, b), (c, d)
+
+
+def through_water(situation: Situation, order: int = 1) -> ComplexArray:
+    """Return the phasors of translation and rotation velocity through the water, shape ``(2,)``."""
+    system, s = situation.system, 1j * order * situation.omega
+    velocity: ComplexArray = (s * system.to_motion + system.incidence) @ situation.displacement(
+        order
+    )
+    return velocity
+
+
+def load(situation: Situation, per_velocity: Callable[[complex], ComplexArray]) -> Signature:
+    """Return the signature, orders 0 to 3, of a load per velocity through the water.
+
+    ``per_velocity`` gives the matrix at a Laplace variable s; added mass A is s A. Empty in air.
+    """
+    found: dict[tuple[str, int], complex] = {}
+    if not situation.in_water:
+        return found
+    for order in range(HIGHEST + 1):
+        matrix = per_velocity(1j * order * situation.omega)
+        force = situation.system.to_motion.T @ matrix @ through_water(situation, order)
+        found |= at_struts(force, order)
+    return found
+
+
+def of_law(
+    situation: Situation,
+    points: tuple[Point, ...],
+    wave: Callable[[int, float, float, Point], complex],
+    highest: int,
+) -> Signature:
+    """Return the signature of a law at some points, from the motion with one harmonic there.
+
+    Parameters
+    ----------
+    wave
+        Given the order, amplitude and phase of what the law depends on (the velocity at
+        translation and rotation, the displacement at the struts) and the point: ``S + i C`` of the
+        force there.
+    """
+    if not situation.in_water:
+        return {}
+    total = np.zeros((highest + 1, 2), dtype=np.complex128)
+    for point in points:
+        along, motion = _at(situation, point)
+        size, phase = abs(motion), float(np.angle(motion))
+        total += np.outer([wave(order, size, phase, point) for order in range(highest + 1)], along)
+    found: dict[tuple[str, int], complex] = {}
+    for order in range(highest + 1):
+        found |= at_struts(total[order], order)
+    return found
+
+
+def _at(situation: Situation, point: Point) -> tuple[FloatArray, complex]:
+    """Return a point's direction in strut coordinates, and what a law there depends on."""
+    if point in STRUTS:
+        strut = STRUTS.index(point)
+        return np.eye(2)[strut], complex(situation.displacement()[strut])
+    row = 1 if point is Point.ROTATION else 0
+    return situation.system.to_motion[row], complex(through_water(situation)[row])
+
+
+def faster(situation: Situation, flow_m_s: float) -> Signature:
+    """Return what a faster flow past the model adds: a rotation meets it at an angle of attack.
+
+    Exact: the load is linear in the speed. Memory and added mass answer to that velocity as well.
+    """
+    found: dict[tuple[str, int], complex] = {}
+    if not situation.in_water:
+        return found
+    for order in range(HIGHEST + 1):
+        force = per_speed(situation, 1j * order * situation.omega) @ situation.displacement(order)
+        found |= at_struts(flow_m_s * force, order)
+    return found
+
+
+def per_speed(situation: Situation, s: complex, s_memory: complex | None = None) -> ComplexArray:
+    """Return force per displacement and speed at the struts, at the Laplace variable ``s``.
+
+    ``s_memory`` is where the memory answers, if not there as well.
+    """
+    rig, system = situation.rig, situation.system
+    radiation = radiation_of(rig)
+    at = s if s_memory is None else s_memory
+    answer = np.linalg.solve(
+        at * np.eye(radiation.states) - radiation.state_matrix, radiation.input_matrix
+    )
+    constant_part = np.array(rig.water.damping) + s * (
+        np.array(rig.water.added_mass) + radiation.added_mass_infinite
+    )
+    loads = constant_part + radiation.output_matrix @ answer
+    found: ComplexArray = system.to_motion.T @ loads @ system.turn
+    return found

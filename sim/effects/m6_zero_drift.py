@@ -1,0 +1,45 @@
+"""M6: a zero that wanders off during a run."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.measured import HIGHEST, with_gauges
+from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
+from sim.rig import SimulatedRig
+
+
+@dataclass(frozen=True)
+class ZeroDrift(Effect):
+    """A reading that rises linearly in time: in phase at every order, with 1/n.
+
+    It does not repeat with the shaft. The signature is what an analysis finds that takes whole
+    periods from a pulse on and fits no trend: independent of how many periods these are. The mean,
+    which grows with the time since the zero was taken, is left out of it.
+    """
+
+    code: ClassVar[str] = "M6"
+    name: ClassVar[str] = "zero-drift"
+    title: ClassVar[str] = "Drift of the dynamometers' zero"
+    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+
+    aft_n_s: float = parameter(1e-3, -0.02, 0.02, "N/s", "drift of the aft dynamometer")
+    fore_n_s: float = parameter(0.0, -0.02, 0.02, "N/s", "drift of the fore dynamometer")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with these drifts on top of what the gauges have."""
+        drifts = (self.aft_n_s, self.fore_n_s)
+        return with_gauges(
+            rig, lambda one, i: replace(one, zero_drift_n_s=one.zero_drift_n_s + drifts[i])
+        )
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return ``-d/(n pi)`` in phase, d the drift over one period."""
+        per_period = np.array([self.aft_n_s, self.fore_n_s]) / situation.set_point.frequency_hz
+        predicted: dict[tuple[str, int], complex] = {}
+        for order in range(1, HIGHEST + 1):
+            predicted |= at_struts(-per_period / (order * np.pi), order, RECORDED_FORCES)
+        return predicted

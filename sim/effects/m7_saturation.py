@@ -1,0 +1,73 @@
+"""M7: a dynamometer, or its amplifier, that stops at a largest force."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.dynamometer import Gauge
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.measured import HIGHEST, with_gauges
+from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
+from sim.rig import SimulatedRig
+from sim.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class Saturation(Effect):
+    """The reading stays within ``-lower_n`` to ``upper_n``: flat tops beyond a threshold.
+
+    Alike to both sides it leaves odd orders; to one side, a mean and even orders as well.
+    """
+
+    code: ClassVar[str] = "M7"
+    name: ClassVar[str] = "saturation"
+    title: ClassVar[str] = "Saturation of the dynamometers"
+    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+
+    upper_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest positive reading")
+    lower_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest negative reading, its size")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with these limits, or the narrower ones that the gauges have."""
+
+        def limited(one: Gauge, _: int) -> Gauge:
+            lowest = -np.inf if one.lowest_n is None else one.lowest_n
+            highest = np.inf if one.highest_n is None else one.highest_n
+            return replace(
+                one,
+                lowest_n=float(max(lowest, -self.lower_n)),
+                highest_n=float(min(highest, self.upper_n)),
+            )
+
+        return with_gauges(rig, limited)
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return what is cut off a force with one harmonic, and a mean."""
+        mean, force = situation.force(0).real, situation.force()
+        size, phase = np.abs(force), np.angle(force)
+        predicted: dict[tuple[str, int], complex] = {}
+        for order in range(HIGHEST + 1):
+            above = _excess(size, self.upper_n - mean, order)
+            below = _excess(size, self.lower_n + mean, order)
+            # cos(n t) about the crest (t = 0 where the phase is a quarter turn), and the trough.
+            crest, trough = (
+                1j * np.exp(1j * order * (phase - side * np.pi / 2.0)) if order else 1.0
+                for side in (1.0, -1.0)
+            )
+            values = below * trough - above * crest
+            predicted |= at_struts(values, order, RECORDED_FORCES)
+        return predicted
+
+
+def _excess(size: FloatArray, limit: FloatArray, order: int) -> FloatArray:
+    """Return the cosine coefficient of what rises above a limit, of ``size cos(t)``."""
+    half = np.arccos(np.clip(limit / size, -1.0, 1.0))
+
+    def wave(k: int) -> FloatArray:
+        found: FloatArray = half if k == 0 else np.sin(k * half) / k
+        return found
+
+    both = wave(order - 1) + wave(order + 1) - 2.0 * np.cos(half) * wave(order)
+    return size / np.pi * both * (0.5 if order == 0 else 1.0)

@@ -1,0 +1,100 @@
+"""M8: a day that gets warmer, or colder, over a campaign."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.dynamometer import Gauge
+from sim.effects.campaign import CampaignRun
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import radiation_of, scaled, through_water
+from sim.effects.measured import of_forces, with_gauges
+from sim.effects.situation import Situation
+from sim.linear import ComplexArray
+from sim.rig import SimulatedRig
+
+SECONDS_AN_HOUR = 3600.0
+
+
+@dataclass(frozen=True)
+class Temperature(Effect):
+    """Gain, zero, viscosity and density follow the temperature; it changes from run to run.
+
+    With the rise D since the campaign began, the gauges read ``F (1 + g D) + z D``, the water's
+    loads go with ``1 + r D``, and its damping with ``1 + b D`` besides: the viscosity falls by 2 %
+    a kelvin, and friction with about its 0.15th power. In a campaign the hours are those of the
+    run: a run that is repeated at the end shows it, and a random order makes it scatter.
+    """
+
+    code: ClassVar[str] = "M8"
+    name: ClassVar[str] = "temperature"
+    title: ClassVar[str] = "Temperature: gain, zero, viscosity and density over the run order"
+    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+
+    rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature")
+    hours: float = parameter(4.0, 0.0, 72.0, "h", "time since it was as in the calibration")
+    gain_1_k: float = parameter(2e-4, -2e-3, 2e-3, "1/K", "gain of the gauges")
+    zero_n_k: float = parameter(0.05, -1.0, 1.0, "N/K", "zero of the gauges")
+    damping_1_k: float = parameter(-3e-3, -0.02, 0.02, "1/K", "damping, by the viscosity")
+    density_1_k: float = parameter(-2e-4, -4e-4, 0.0, "1/K", "density of the water")
+
+    @property
+    def rise_k(self) -> float:
+        """Rise of the temperature."""
+        return self.rate_k_h * self.hours
+
+    def at_run(self, run: CampaignRun) -> Self:
+        """Return the effect at the run's time."""
+        return replace(self, hours=run.since_start_s / SECONDS_AN_HOUR)
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig as it is when warm."""
+        gain, zero = 1.0 + self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
+
+        def warm(one: Gauge, _: int) -> Gauge:
+            return replace(one, gain=one.gain * gain, offset_n=one.offset_n + zero)
+
+        dense, viscous = self._factors
+        water = replace(
+            rig.water,
+            added_mass=scaled(rig.water.added_mass, dense),
+            damping=scaled(rig.water.damping, dense * viscous),
+            restoring=scaled(rig.water.restoring, dense),
+        )
+        radiation = rig.radiation
+        if radiation is not None:
+            radiation = replace(
+                radiation,
+                added_mass_infinite=radiation.added_mass_infinite * dense,
+                output_matrix=radiation.output_matrix * dense,
+            )
+        return with_gauges(replace(rig, water=water, radiation=radiation), warm)
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the changed loads as the gauges with changed gain and zero read them."""
+        gain, zero = self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
+
+        def change(order: int, force: ComplexArray) -> ComplexArray:
+            more = self._more(situation, order) if situation.in_water else np.zeros(2)
+            found: ComplexArray = gain * force + (1.0 + gain) * more
+            return found + zero if order == 0 else found
+
+        return of_forces(situation, change)
+
+    @property
+    def _factors(self) -> tuple[float, float]:
+        return 1.0 + self.density_1_k * self.rise_k, 1.0 + self.damping_1_k * self.rise_k
+
+    def _more(self, situation: Situation, order: int) -> ComplexArray:
+        """Return what the water's loads change by."""
+        (dense, viscous), water = self._factors, situation.rig.water
+        s, to = 1j * order * situation.omega, situation.system.to_motion
+        radiation, damping = radiation_of(situation.rig), np.array(water.damping)
+        added = np.array(water.added_mass) + radiation.added_mass_infinite
+        memory = radiation.memory(order * situation.omega)
+        loads = (dense - 1.0) * (s * added + memory) + (dense * viscous - 1.0) * damping
+        restoring = (dense - 1.0) * np.array(water.restoring) @ to @ situation.displacement(order)
+        more: ComplexArray = to.T @ (loads @ through_water(situation, order) + restoring)
+        return more

@@ -1,0 +1,99 @@
+"""Effects of the measurement against closed forms, over frequency, amplitude, phase, medium."""
+
+import numpy as np
+import pytest
+
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.campaign import in_order
+from sim.effects.effect import Effect
+from sim.effects.m1_gain_error import GainError
+from sim.effects.m2_cross_talk import CrossTalk
+from sim.effects.m3_quadratic_gauge import QuadraticGauge
+from sim.effects.m4_gauge_hysteresis import GaugeHysteresis
+from sim.effects.m5_zero_offset import ZeroOffset
+from sim.effects.m6_zero_drift import ZeroDrift
+from sim.effects.m7_saturation import Saturation
+from sim.effects.m8_temperature import Temperature
+from sim.effects.situation import RECORDED_FORCES, Situation
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from tests.sim.effects.against_theory import mismatch
+from tests.sim.effects.in_time import by_cycles, in_time
+
+VERTICAL = vertical_rig().ideal()
+CRANK = horizontal_rig(rod_length_m=1.5).ideal()
+SET_POINTS = [
+    SetPoint(frequency, amplitude, phase, speed, medium)
+    for frequency in (0.4, 0.9)
+    for amplitude in (0.01, 0.03)
+    for phase in (0.0, np.pi / 2.0, np.pi)
+    for speed, medium in ((0.0, Medium.WATER), (1.2, Medium.WATER), (0.0, Medium.AIR))
+]
+
+
+@pytest.mark.parametrize(
+    ("effect", "rig", "tolerance"),
+    [
+        (GainError(0.005, -0.02), VERTICAL, 1e-9),
+        (GainError(0.005, -0.02), CRANK, 1e-9),
+        (CrossTalk(0.01, -0.03, 0.05), VERTICAL, 1e-9),
+        (CrossTalk(0.01, -0.03), CRANK, 1e-9),
+        (QuadraticGauge(1e-5), VERTICAL, 1e-9),
+        (QuadraticGauge(1e-5), CRANK, 1e-9),
+        # The points of the period miss the turn of the force by up to half a step: (pi/128)^2.
+        (GaugeHysteresis(1e-5), VERTICAL, 1e-3),
+        (ZeroOffset(0.3, -0.1), VERTICAL, 1e-9),
+        (Temperature(), VERTICAL, 1e-9),
+        (Temperature(hours=8.0, rate_k_h=-1.0), CRANK, 1e-9),
+    ],
+)
+def test_signature(effect: Effect, rig: SimulatedRig, tolerance: float) -> None:
+    assert mismatch(effect, rig, SET_POINTS) < tolerance
+
+
+@pytest.mark.parametrize("limits", [(0.9, 0.9), (0.5, 0.5), (0.8, 5.0), (5.0, 0.6)])
+@pytest.mark.parametrize("set_point", SET_POINTS[::4])
+def test_saturation(limits: tuple[float, float], set_point: SetPoint) -> None:
+    """Limits as parts of the force, so that all set-points reach them.
+
+    The corners have harmonics with 1/n^2, of which the period's points fold some back: 1e-3.
+    """
+    peak = float(np.abs(Situation.of(VERTICAL, set_point).force()).max())
+    effect = Saturation(limits[0] * peak, limits[1] * peak)
+    assert mismatch(effect, VERTICAL, [set_point], points=1024) < 1e-3
+
+
+def test_saturation_at_nine_tenths() -> None:
+    """A symmetric limit at 0.9 of the force leaves 3.2 % at the third order."""
+    situation = Situation.of(VERTICAL, SetPoint(0.9, 0.03))
+    force = situation.force()[0]
+    effect = Saturation(0.9 * abs(force), 0.9 * abs(force))
+    third = effect.signature(situation)[RECORDED_FORCES[0], 3]
+    assert abs(third / force) == pytest.approx(0.032, abs=5e-4)
+
+
+@pytest.mark.parametrize("periods", [1, 7])
+@pytest.mark.parametrize("set_point", SET_POINTS[::7])
+def test_drift_in_the_time_domain(set_point: SetPoint, periods: int) -> None:
+    """Whole periods from the pulse, by the trapezoid rule: (2 pi n/512)^2/12 of it at order n."""
+    effect = ZeroDrift(2e-3, -1e-3)
+    theory = effect.signature(Situation.of(VERTICAL, set_point))
+    nominal = in_time(VERTICAL, set_point, periods, 512)
+    changed = in_time(effect.change(VERTICAL, set_point), set_point, periods, 512)
+    gap = [
+        by_cycles(changed, name, periods)[order] - by_cycles(nominal, name, periods)[order] - value
+        for (name, order), value in theory.items()
+    ]
+    assert np.linalg.norm(gap) < 1e-3 * np.linalg.norm(list(theory.values()))
+
+
+def test_temperature_follows_the_order_of_the_runs() -> None:
+    """The same set-point, first and last: its zero has moved by rate times time."""
+    effect = Temperature(rate_k_h=0.5, zero_n_k=0.05)
+    set_points = [SET_POINTS[0], *SET_POINTS[:3], SET_POINTS[0]]
+    runs = in_order(set_points, duration_s=600.0, waiting_s=1200.0)
+    situation = Situation.of(VERTICAL, SET_POINTS[0])
+    first, last = (effect.at_run(runs[i]).signature(situation) for i in (0, -1))
+    assert first[RECORDED_FORCES[0], 0] == 0.0
+    assert last[RECORDED_FORCES[0], 0] == pytest.approx(0.5 * 2.0 * 0.05, rel=1e-12)
+    at_last = effect.at_run(runs[-1])
+    assert mismatch(at_last, VERTICAL, [SET_POINTS[0]]) < 1e-9
