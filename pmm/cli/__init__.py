@@ -13,6 +13,7 @@ from hardware.description.errors import DataError, PmmError
 _COMMANDS = {
     "analyse": "pmm.cli.analyse",
     "demo": "pmm.cli.demo",
+    "inertia": "pmm.cli.inertia",
     "effects": "pmm.cli.effects",
     "simulate": "pmm.cli.simulate",
 }

@@ -1,0 +1,107 @@
+"""``pmm inertia``: from the record of any pendulum to a model's mass properties."""
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+JOBS = ("swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan")
+
+
+class Jobs(click.Group):
+    """The group of the jobs, in the order in which they are explained."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        """Return the jobs' names."""
+        return list(JOBS)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the job that is meant, or say which one may be."""
+        if args[0] not in JOBS and not args[0].startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(args[0], JOBS, n=1, cutoff=0.4)
+            hint = f"did you mean {near[0]!r}?" if near else f"jobs: {', '.join(JOBS)}"
+            ctx.fail(f"no job {args[0]!r}; {hint}")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Jobs)
+def inertia() -> None:
+    """Find mass, centre of gravity, inertia and gyradii, with a budget.
+
+    Each job reads a small TOML file that names the records and the geometry with their
+    uncertainties (docs/inertia-files.md). Exit status: 0 done, 1 the data say no (a target missed,
+    a known weight not met, a record that carries no period), 2 the file is wrong.
+
+    \b
+    pmm inertia bifilar examples/inertia/hull.toml --output model.toml --plot plots
+    """  # noqa: D301
+
+
+def _job(name: str) -> Callable[[Callable[..., None]], click.Command]:
+    """Make a job's command, with the options that all of them have."""
+
+    def make(function: Callable[..., None]) -> click.Command:
+        options = (
+            click.argument("file", metavar="FILE"),
+            click.option("--json", "as_json", is_flag=True, help="Print one JSON document."),
+            click.option("--output", metavar="TOML", help="Write the section [model] there."),
+            click.option("--overwrite", is_flag=True, help="Replace that file if it is there."),
+            click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG."),
+        )
+        for option in reversed(options):
+            function = option(function)
+        return inertia.command(name)(function)
+
+    return make
+
+
+def _run(name: str, options: dict[str, Any]) -> None:
+    from pmm.cli.inertia_running import Request, run
+
+    run(Request(name, **options))
+
+
+@_job("swing")
+def swing(**options: Any) -> None:
+    """Swing: alone, with the model, checked with a known body and a second pivot."""
+    _run("swing", options)
+
+
+@_job("bifilar")
+def bifilar(**options: Any) -> None:
+    """Bifilar suspension: yaw, pitch or roll, depth, principal axes."""
+    _run("bifilar", options)
+
+
+@_job("pendulum")
+def pendulum(**options: Any) -> None:
+    """Compound pendulum: about one axis, or two (Lamboley)."""
+    _run("pendulum", options)
+
+
+@_job("incline")
+def incline(**options: Any) -> None:
+    """Inclining test: depth of the centre of gravity."""
+    _run("incline", options)
+
+
+@_job("combine")
+def combine(**options: Any) -> None:
+    """Put parts together and take others off."""
+    _run("combine", options)
+
+
+@_job("ballast")
+def ballast(**options: Any) -> None:
+    """Find where given weights go for a target mass, centre and gyradius."""
+    _run("ballast", options)
+
+
+@_job("plan")
+def plan(**options: Any) -> None:
+    """Forecast a test: uncertainty, best line length, resonance."""
+    _run("plan", options)

@@ -1,0 +1,77 @@
+"""What ``pmm inertia`` does: run a job, then print, plot and write the model's section."""
+
+import json
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pmm.cli.inertia_printing import print_outcome
+from pmm.cli.screen import busy, messages, output
+from pmm.inertia.document import document
+from pmm.inertia.model_file import check_output, model_section
+from pmm.inertia.outcome import Outcome
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+# Job -> module and function.
+_RUNS = {
+    "swing": ("swing", "run"),
+    "bifilar": ("bifilar", "run"),
+    "pendulum": ("pendulum", "run"),
+    "incline": ("incline", "run"),
+    "combine": ("parts", "run_combine"),
+    "ballast": ("parts", "run_ballast"),
+    "plan": ("plan", "run"),
+}
+
+
+@dataclass(frozen=True)
+class Request:
+    """A job and the options of its command, by their names there."""
+
+    job: str
+    file: str
+    as_json: bool
+    output: str | None
+    overwrite: bool
+    plot: str | None
+
+
+def run(request: Request) -> None:
+    """Do a job; what it found is printed even where it then may not be written.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        If the file is wrong, the data do not carry what is asked, or the section cannot be
+        written.
+    """
+    target = None if request.output is None else Path(request.output)
+    if target is not None:
+        check_output(target, overwrite=request.overwrite)
+    module, function = _RUNS[request.job]
+    job: Callable[[str], Outcome] = getattr(import_module(f"pmm.inertia.{module}"), function)
+    with busy(f"{request.job}: {request.file}"):
+        outcome = job(request.file)
+    if request.as_json:
+        click.echo(json.dumps(document(outcome), indent=1, allow_nan=False))
+    else:
+        print_outcome(output(), outcome)
+    if request.plot is not None:
+        _plot(outcome, Path(request.plot), Path(request.file).stem)
+    if target is not None:
+        target.write_text(model_section(outcome), encoding="utf-8")
+        messages().print(f"written: {target}")
+    if outcome.said_no:
+        click.get_current_context().exit(1)
+
+
+def _plot(outcome: Outcome, folder: Path, stem: str) -> None:
+    from pmm.report.inertia_plots import save_figures
+
+    written = save_figures(outcome, folder, stem)
+    messages().print(f"written: {len(written)} figures in {folder}")

@@ -1,0 +1,181 @@
+"""``pmm inertia bifilar``: yaw, pitch, roll and depth of a body on two lines."""
+
+from collections.abc import Iterator, Mapping
+
+from analysis.inertia.bifilar import yaw_from_period
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.monte_carlo import Assessment
+from analysis.inertia.spread import Geometry, compare_geometries
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag
+from hardware.description.oscillator import Plane
+from pmm.inertia.bifilar_axes import plane_axes
+from pmm.inertia.bifilar_tables import BifilarTable
+from pmm.inertia.given import flags_of, given, gravity_of
+from pmm.inertia.outcome import (
+    Finding,
+    Outcome,
+    PlaneAxes,
+    assessed,
+    compare,
+    once,
+)
+from pmm.inertia.properties import AXES, properties
+from pmm.inertia.reading import Job, read_job
+from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.suspended import Suspended, hang
+
+
+def run(path: str) -> Outcome:
+    """Do what a bifilar suspension's file says.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        If the file is wrong, or the data do not carry what is asked.
+    """
+    job = read_job(path, BifilarTable)
+    table = job.table
+    hung = [hang(job, one) for one in table.suspensions]
+    findings = [finding for one in hung for finding in _findings(one, several=len(hung) > 1)]
+    flags = [*flags_of(table), *(flag for one in hung for flag in one.flags)]
+    periods = [runs for one in hung for runs in one.periods]
+    notes: list[str] = []
+    gyradii, used = _results(table, hung, findings, flags, notes)
+    axes = _tilts(job, gyradii, used, findings, periods, flags)
+    body, missing = properties(
+        table.name,
+        table.model,
+        gyradii,
+        take_off=table.take_off,
+        budgets=[one.budget for one in used.values()],
+        flags=flags,
+    )
+    if body is not None and table.take_off:
+        findings += _own_findings(body.mass, body.gyradii)
+    return Outcome(
+        "bifilar",
+        table.name,
+        tuple(findings),
+        once(flags),
+        tuple(periods),
+        body,
+        missing,
+        table.plane or _plane(gyradii),
+        compare(findings, table.targets),
+        tuple(notes),
+        axes=axes,
+    )
+
+
+def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:
+    """Return the plane that the gyradii are for, where there is but one."""
+    if ("pitch" in gyradii) == ("yaw" in gyradii):
+        return None
+    return Plane.VERTICAL if "pitch" in gyradii else Plane.HORIZONTAL
+
+
+def _findings(one: Suspended, *, several: bool) -> Iterator[Finding]:
+    where = f"{one.table.name}: " if several else ""
+    prefix = f"{one.table.name}_" if several else ""
+    for key, assessment in one.found.items():
+        if key == "depth":
+            yield assessed(f"{prefix}depth_m", f"{where}CG below the suspension", assessment)
+        else:
+            axis, _, method = key.partition(" by ")
+            ending = f"_by_{method}" if method else ""
+            by = f" by {method}" if method else ""
+            name = f"{prefix}k_{axis}{ending}_m"
+            yield assessed(name, f"{where}{axis} gyradius{by}", assessment)
+
+
+def _results(
+    table: BifilarTable,
+    hung: list[Suspended],
+    findings: list[Finding],
+    flags: list[Flag],
+    notes: list[str],
+) -> tuple[dict[str, Estimate], dict[str, Assessment]]:
+    """Return each axis' gyradius: of the chosen method, over all suspensions that have it."""
+    gyradii: dict[str, Estimate] = {}
+    used: dict[str, Assessment] = {}
+    for axis in AXES:
+        chosen = [(one, assessment) for one in hung if (assessment := _chosen(table, one, axis))]
+        if not chosen:
+            continue
+        used[axis] = chosen[0][1]
+        gyradii[axis] = used[axis].result
+        if len(chosen) > 1:
+            rows = [
+                Geometry(one.table.name, found.result, one.table.half_spacing_m, one.table.line_m)
+                for one, found in chosen
+            ]
+            spread = compare_geometries(rows)
+            gyradii[axis] = spread.gyradius
+            flags += spread.flags
+            notes.append(
+                f"{axis}: {len(rows)} suspensions {'agree' if spread.agree else 'disagree'} "
+                f"(probability {spread.probability:.2g})"
+            )
+        findings[:] = [one for one in findings if one.name != f"k_{axis}_m"]
+        whole = used[axis] if len(chosen) == 1 else None
+        findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
+    if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
+        method = next(key for key, one in hung[0].found.items() if one is used["yaw"])
+        notes.append(f"the {method} is the result (method in the file chooses another)")
+    return gyradii, used
+
+
+def _chosen(table: BifilarTable, one: Suspended, axis: str) -> Assessment | None:
+    """Return the method's that the file names, or else the surest."""
+    if axis != "yaw":
+        return one.found.get(axis)
+    if table.method is not None:
+        return one.found.get(f"yaw by {table.method}")
+    own = [found for key, found in one.found.items() if key.startswith("yaw by")]
+    return min(own, key=lambda found: found.result.uncertainty) if own else None
+
+
+def _tilts(
+    job: Job[BifilarTable],
+    gyradii: dict[str, Estimate],
+    used: dict[str, Assessment],
+    findings: list[Finding],
+    periods: list[PeriodRuns],
+    flags: list[Flag],
+) -> PlaneAxes | None:
+    """Roll from tilted yaw tests, where it was not measured, and the principal axes."""
+    table, level = job.table, gyradii.get("yaw")
+    if not table.tilted:
+        return None
+    if level is None:
+        raise ConfigurationError(f"{job.path}: tilted needs the level yaw test too; add yaw")
+    tests = []
+    for number, one in enumerate(table.tilted, 1):
+        runs = read_period(job, one, f"tilted[{number}]")
+        periods.append(runs)
+        flags += runs.flags
+        at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
+        spacing, line = (
+            given(one if getattr(one, key) is not None else at, key)
+            for key in ("half_spacing_m", "line_m")
+        )
+        gyradius = yaw_from_period(runs.period, spacing, line, gravity_of(table)).result
+        angle = given(one, "angle_deg" if one.angle_deg is not None else "angle_rad")
+        tests.append((angle, gyradius))
+    found, axes = plane_axes(level, gyradii.get("roll"), tests, table.monte_carlo_seed + 30)
+    findings += found
+    for row in found:
+        if row.name == "k_roll_m" and row.assessment is not None:
+            gyradii["roll"], used["roll"] = row.estimate, row.assessment
+    return axes
+
+
+def _own_findings(mass: Estimate, gyradii: Mapping[str, Estimate]) -> list[Finding]:
+    """Return what is left after taking parts off, under names of their own."""
+    rows = [Finding("own_mass_kg", "model alone: mass", mass)]
+    rows += [
+        Finding(f"own_k_{axis}_m", f"model alone: {axis} gyradius", value)
+        for axis, value in gyradii.items()
+    ]
+    return rows

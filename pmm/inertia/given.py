@@ -1,0 +1,87 @@
+"""Values of a file with their standard uncertainties: ``mass_kg`` and ``u_mass_kg`` beside it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from analysis.inertia.corrections import gravity_in_air
+from analysis.inertia.estimate import Distribution, Estimate
+from hardware.description.flags import Flag, Severity
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+# Endings of keys, longest first: the unit of the estimate, and the factor to it.
+_ENDINGS = {
+    "_kg_m3": ("kg/m3", 1.0),
+    "_kg_m2": ("kg m2", 1.0),
+    "_kg_m": ("kg m", 1.0),
+    "_m_s2": ("m/s2", 1.0),
+    "_deg": ("rad", math.pi / 180.0),
+    "_rad": ("rad", 1.0),
+    "_kg": ("kg", 1.0),
+    "_m": ("m", 1.0),
+    "_s": ("s", 1.0),
+}
+# Gravity at sea level runs from 9.780 to 9.832 m/s2; half of that, evenly.
+_GRAVITY_ANYWHERE = Estimate(
+    STANDARD_GRAVITY_M_S2, 0.026 / math.sqrt(3.0), "m/s2", distribution=Distribution.UNIFORM
+)
+
+
+def unit_of(key: str) -> tuple[str, float]:
+    """Return the SI unit that a key's ending names, and the factor to it."""
+    return next((unit for ending, unit in _ENDINGS.items() if key.endswith(ending)), ("1", 1.0))
+
+
+def given(table: object, key: str) -> Estimate:
+    """Return the value of a key with the standard uncertainty beside it, in SI units."""
+    unit, factor = unit_of(key)
+    value, spread = getattr(table, key), getattr(table, f"u_{key}")
+    return Estimate(factor * value, factor * spread, unit)
+
+
+def given_or_none(table: object, key: str) -> Estimate | None:
+    """Return the value of a key that may be left out."""
+    return None if getattr(table, key) is None else given(table, key)
+
+
+def gravity_of(table: Any) -> Estimate:
+    """Return gravity less buoyancy; that of anywhere at sea level where none is given."""
+    plain = _GRAVITY_ANYWHERE if table.gravity_m_s2 is None else given(table, "gravity_m_s2")
+    if not getattr(table, "body_density_kg_m3", None):
+        return plain
+    value = gravity_in_air(plain.value, table.air_density_kg_m3, table.body_density_kg_m3)
+    return Estimate(
+        value, plain.uncertainty * value / plain.value, plain.unit, distribution=plain.distribution
+    )
+
+
+def flags_of(table: Any) -> tuple[Flag, ...]:
+    """Return flags for a gravity that was not given, and values without uncertainty."""
+    flags = []
+    if table.gravity_m_s2 is None:
+        message = (
+            f"no gravity_m_s2 is given; {_GRAVITY_ANYWHERE.value:g} +- "
+            f"{_GRAVITY_ANYWHERE.uncertainty:.2g} m/s2 (anywhere at sea level) is used: look up "
+            "your place's"
+        )
+        flags.append(Flag("gravity_not_given", Severity.NOTE, message))
+    bare = sorted(set(without_uncertainty(table)))
+    if bare:
+        message = f"taken to be exact, as no uncertainty stands beside: {', '.join(bare)}"
+        flags.append(Flag("no_uncertainty", Severity.NOTE, message))
+    return tuple(flags)
+
+
+def without_uncertainty(table: Any, place: str = "") -> Iterator[str]:
+    """Yield the keys whose values have an uncertainty of 0, at any depth."""
+    names = {one.name for one in fields(table)}
+    for name in sorted(names):
+        value = getattr(table, name)
+        if isinstance(value, float) and f"u_{name}" in names and not getattr(table, f"u_{name}"):
+            yield f"{place}{name}"
+        for number, one in enumerate(value if isinstance(value, tuple) else (value,), 1):
+            if is_dataclass(one):
+                own = getattr(one, "name", None) or number
+                inner = f"{name}[{own}]" if isinstance(value, tuple) else name
+                yield from without_uncertainty(one, f"{place}{inner}.")

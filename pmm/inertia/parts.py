@@ -1,0 +1,235 @@
+"""``pmm inertia combine`` and ``ballast``: bodies put together, taken off, and weights placed."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from analysis.inertia.ballast import Target, Weight, place_ballast
+from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.parts import Part, combine
+from analysis.inertia.result import InertiaResult
+from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
+from pmm.inertia.given import without_uncertainty
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, TargetTable, compare
+from pmm.inertia.properties import AXES, PartTable
+from pmm.inertia.reading import one_of, read_job
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class CombineJob:
+    """The file of ``pmm inertia combine``; the datum is the midpoint between the struts."""
+
+    parts: tuple[PartTable, ...]
+    without: tuple[PartTable, ...] = ()
+    name: str = "combined"
+    targets: tuple[TargetTable, ...] = ()
+    plane: Plane | None = None
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """Something to combine."""
+        if table.get("parts") == []:
+            yield "parts", "is empty; add a table [[parts]]"
+
+
+@dataclass(frozen=True)
+class WeightTable:
+    """A weight to place: the corners of the box for its centre, or its fixed place."""
+
+    name: str
+    mass_kg: float
+    low_m: Triple | None = None
+    high_m: Triple | None = None
+    position_m: Triple | None = None
+    gyradii_m: Triple = (0.0, 0.0, 0.0)
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """A box with both corners, or a place."""
+        yield from one_of(table, "low_m", "position_m")
+        if ("low_m" in table) != ("high_m" in table):
+            yield "low_m" if "high_m" in table else "high_m", "is missing: a box has two corners"
+
+    def weight(self) -> Weight:
+        """Return it as the solver knows it."""
+        low = self.position_m or self.low_m or (0.0, 0.0, 0.0)
+        high = self.position_m or self.high_m or low
+        return Weight(self.name, self.mass_kg, low, high, self.gyradii_m)
+
+
+@dataclass(frozen=True)
+class WantedTable:
+    """What the ballasted model shall have; anything will do where a key is left out."""
+
+    mass_kg: float | None = None
+    cg_x_m: float | None = None
+    cg_y_m: float | None = None
+    cg_z_m: float | None = None
+    k_roll_m: float | None = None
+    k_pitch_m: float | None = None
+    k_yaw_m: float | None = None
+    tolerance_kg: float = 0.01
+    tolerance_m: float = 0.001
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """Something has to be wanted."""
+        if not set(table) - {"tolerance_kg", "tolerance_m"}:
+            yield "", "asks for nothing; give mass_kg, cg_x_m ... or k_yaw_m"
+
+
+@dataclass(frozen=True)
+class BallastJob:
+    """The file of ``pmm inertia ballast``."""
+
+    base: PartTable
+    weights: tuple[WeightTable, ...]
+    wanted: WantedTable
+    name: str = "ballasted"
+    plane: Plane | None = None
+    seed: int = 0
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+
+def run_combine(path: str) -> Outcome:
+    """Put parts together and take others off.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        If the file is wrong, or no mass would be left.
+    """
+    table = read_job(path, CombineJob).table
+    whole = combine(
+        table.name,
+        [one.part() for one in table.parts],
+        without=[one.part() for one in table.without],
+    )
+    findings = _findings(whole)
+    bare = sorted(without_uncertainty(table))
+    flags = _exact(bare)
+    body = _body(table.name, whole, flags)
+    checks = compare(findings, table.targets)
+    return Outcome(
+        "combine",
+        table.name,
+        findings,
+        flags,
+        body=body,
+        plane=table.plane,
+        comparisons=checks,
+        axes=_axes(whole),
+    )
+
+
+def _axes(whole: Part) -> PlaneAxes | None:
+    """Return the principal axes in the centre plane, where the body has an extent in it."""
+    mass, xx, zz, xz = (float(whole.parameters[k]) for k in (0, 4, 6, 8))
+    if min(xx, zz) <= 0.0 or xx == zz:
+        return None
+    angle = 0.5 * math.atan(2.0 * xz / (zz - xx))
+    s, c = math.sin(angle), math.cos(angle)
+    near_x = xx * c * c + zz * s * s - 2.0 * xz * s * c
+    near_z = xx * s * s + zz * c * c + 2.0 * xz * s * c
+    if min(near_x, near_z) <= 0.0:
+        return None
+    roll, _, yaw = whole.gyradii
+    measured = ((0.0, yaw), (0.5 * math.pi, roll))
+    return PlaneAxes(math.sqrt(near_x / mass), math.sqrt(near_z / mass), angle, measured)
+
+
+def run_ballast(path: str) -> Outcome:
+    """Find where the weights go.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is wrong.
+    """
+    table = read_job(path, BallastJob).table
+    wanted, base = table.wanted, table.base.part()
+    target = Target(
+        wanted.mass_kg,
+        (wanted.cg_x_m, wanted.cg_y_m, wanted.cg_z_m),
+        (wanted.k_roll_m, wanted.k_pitch_m, wanted.k_yaw_m),
+        wanted.tolerance_kg,
+        wanted.tolerance_m,
+    )
+    weights = [one.weight() for one in table.weights]
+    found = place_ballast(base, weights, target, seed=table.seed)
+    rows = [found.positions_m[k] for k in range(len(weights))]
+    placed = [
+        PartTable(
+            one.name,
+            one.mass_kg,
+            x_m=float(place[0]),
+            y_m=float(place[1]),
+            z_m=float(place[2]),
+            **{f"k_{axis}_m": k for axis, k in zip(AXES, one.gyradii_m, strict=True)},
+        ).part()
+        for one, place in zip(weights, rows, strict=True)
+    ]
+    whole = combine(table.name, [base, *placed])
+    findings = _findings(whole)
+    flags = () if found.feasible else (_infeasible(found.message),)
+    return Outcome(
+        "ballast",
+        table.name,
+        findings,
+        flags,
+        body=_body(table.name, whole, flags) if found.feasible else None,
+        missing=() if found.feasible else ("a feasible ballasting",),
+        plane=table.plane,
+        notes=(found.message,) if found.feasible else (),
+        placements=tuple(
+            (one.name, one.mass_kg, float(place[0]), float(place[1]), float(place[2]))
+            for one, place in zip(weights, rows, strict=True)
+        ),
+    )
+
+
+def _infeasible(message: str) -> Flag:
+    return Flag("not_feasible", Severity.VOID, message)
+
+
+def _exact(bare: list[str]) -> tuple[Flag, ...]:
+    if not bare:
+        return ()
+    message = f"taken to be exact, as no uncertainty stands beside: {', '.join(bare)}"
+    return (Flag("no_uncertainty", Severity.NOTE, message),)
+
+
+def _findings(whole: Part) -> tuple[Finding, ...]:
+    rows = [Finding("mass_kg", "mass", whole.mass)]
+    places = zip("xyz", ("forward", "to starboard", "down"), whole.centre_of_gravity, strict=True)
+    rows += [Finding(f"cg_{axis}_m", f"CG {words}", value) for axis, words, value in places]
+    for axis, value in zip(AXES, whole.gyradii, strict=True):
+        rows.append(Finding(f"k_{axis}_m", f"{axis} gyradius", value))
+    for axis, value in zip(AXES, whole.inertia, strict=True):
+        rows.append(Finding(f"i_{axis}_kg_m2", f"{axis} inertia about the CG", value))
+    return tuple(rows)
+
+
+def _body(name: str, whole: Part, flags: tuple[Flag, ...]) -> InertiaResult:
+    """Return the mass properties; what has no gyradius there was given none."""
+    x, y, z = whole.centre_of_gravity
+    gyradii: dict[str, Estimate] = {
+        axis: value for axis, value in zip(AXES, whole.gyradii, strict=True) if value.value > 0.0
+    }
+    if not gyradii:
+        gyradii = {"yaw": exactly(0.0, "m")}
+    side = abs(y.value) > 2.0 * y.uncertainty + 1e-6
+    flag = Flag(
+        "cg_off_centre",
+        Severity.WARNING,
+        f"the centre of gravity lies {1e3 * y.value:.3g} mm off the centre plane; a campaign's "
+        "model lies in it",
+    )
+    return InertiaResult(name, whole.mass, x, z, gyradii, (), (*flags, *((flag,) if side else ())))

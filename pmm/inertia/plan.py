@@ -1,0 +1,209 @@
+"""``pmm inertia plan``: what a test would give, before it is made."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from analysis.inertia.double_pendulum import Reading, gyradius_error_per_period
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspension
+from analysis.inertia.swing import SwingState, forecast_swing
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag
+from pmm.inertia.given import flags_of, given, gravity_of
+from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once
+from pmm.inertia.reading import read_job
+
+
+@dataclass(frozen=True)
+class ExpectedTable:
+    """Design or CAD values of the model; ``depth_m`` is its CG's below the suspension points."""
+
+    mass_kg: float
+    u_mass_kg: float = 0.0
+    k_roll_m: float | None = None
+    k_pitch_m: float | None = None
+    k_yaw_m: float | None = None
+    depth_m: float | None = None
+
+
+@dataclass(frozen=True)
+class PlannedSuspension:
+    """A bifilar suspension to be judged."""
+
+    half_spacing_m: float
+    line_m: float
+    u_half_spacing_m: float = 0.0
+    u_line_m: float = 0.0
+    period_scatter_relative: float = 1e-3
+
+
+@dataclass(frozen=True)
+class PlannedSwing:
+    """The empty swing as measured, and where on it the model will be."""
+
+    mass_kg: float
+    cg_below_pivot_m: float
+    period_s: float
+    model_cg_below_pivot_m: float
+    u_mass_kg: float = 0.0
+    u_cg_below_pivot_m: float = 0.0
+    u_period_s: float = 0.0
+    period_scatter_relative: float = 1e-3
+    moment_relative: float = 1e-3
+    axis: Literal["roll", "pitch", "yaw"] = "pitch"
+
+
+@dataclass(frozen=True)
+class PlanJob:
+    """The file of ``pmm inertia plan``."""
+
+    expected: ExpectedTable
+    name: str = "plan"
+    gravity_m_s2: float | None = None
+    u_gravity_m_s2: float = 0.0
+    bifilar: PlannedSuspension | None = None
+    swing: PlannedSwing | None = None
+    targets: tuple[TargetTable, ...] = ()
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """A test to plan, with the design values it needs."""
+        if not {"bifilar", "swing"} & set(table):
+            yield "", "plans nothing; add [bifilar], [swing] or both"
+        expected = table.get("expected")
+        if "bifilar" in table and isinstance(expected, dict):
+            for key in ("k_yaw_m", "k_pitch_m", "depth_m"):
+                if key not in expected:
+                    yield "expected", f"needs {key} for [bifilar]"
+
+
+def run(path: str) -> Outcome:
+    """Forecast the tests of a plan's file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is wrong.
+    """
+    job = read_job(path, PlanJob)
+    table = job.table
+    findings: list[Finding] = []
+    flags: list[Flag] = list(flags_of(table))
+    notes: list[str] = []
+    errors = None
+    if table.bifilar is not None:
+        _plan_bifilar(table, table.bifilar, findings, flags, notes)
+        errors = _line_errors(table)
+    if table.swing is not None:
+        _plan_swing(table, table.swing, findings, flags, notes)
+    return Outcome(
+        "plan",
+        table.name,
+        tuple(findings),
+        once(flags),
+        missing=("a measurement (a plan is none)",),
+        comparisons=compare(findings, table.targets),
+        notes=tuple(notes),
+        line_errors=errors,
+    )
+
+
+def _design(table: PlanJob, key: str) -> float:
+    value: float | None = getattr(table.expected, key)
+    if value is None:
+        raise ConfigurationError(f"{table.name}: expected.{key} is missing")
+    return value
+
+
+def _plan_bifilar(
+    table: PlanJob,
+    plan: PlannedSuspension,
+    findings: list[Finding],
+    flags: list[Flag],
+    notes: list[str],
+) -> None:
+    found = forecast_suspension(
+        _design(table, "k_yaw_m"),
+        _design(table, "k_pitch_m"),
+        _design(table, "depth_m"),
+        given(plan, "half_spacing_m"),
+        given(plan, "line_m"),
+        gravity_of(table),
+        period_scatter_relative=plan.period_scatter_relative,
+    )
+    scatter = plan.period_scatter_relative
+    for name, words, period in (
+        ("sway", "sway", found.sway_s),
+        ("yaw", "yaw", found.yaw_s),
+        ("pitch_slow", "slow pitch mode", found.slow_s),
+        ("pitch_fast", "fast pitch mode", found.fast_s),
+    ):
+        estimate = Estimate(period, scatter * period, "s")
+        findings.append(Finding(f"bifilar_{name}_period_s", f"bifilar: {words}, period", estimate))
+    findings += [
+        Finding("bifilar_k_yaw_m", "bifilar: yaw gyradius", found.yaw_gyradius),
+        Finding("bifilar_k_pitch_m", "bifilar: pitch gyradius", found.pitch_gyradius),
+    ]
+    by_reading = {
+        "fixed": "best line for pitch, depth known (fig 17)",
+        "joint": "best line for pitch, depth measured along",
+    }
+    findings += [
+        Finding(f"bifilar_best_line_{reading}_m", by_reading[reading], Estimate(length, 0.0, "m"))
+        for reading, length in found.best_line_m.items()
+    ]
+    flags += found.flags
+    notes += [
+        f"points {pair}: {', '.join(what for what in gives if what)}"
+        for pair, gives in SUSPENSION_OPTIONS.items()
+    ]
+
+
+def _plan_swing(
+    table: PlanJob,
+    plan: PlannedSwing,
+    findings: list[Finding],
+    flags: list[Flag],
+    notes: list[str],
+) -> None:
+    mass, cg = given(plan, "mass_kg"), given(plan, "cg_below_pivot_m")
+    moment = mass.value * cg.value
+    spread = moment * float(np.hypot(mass.relative, cg.relative))
+    state = SwingState(
+        given(plan, "period_s"), mass, Estimate(moment, spread, "kg m"), gravity_of(table)
+    )
+    found = forecast_swing(
+        state,
+        given(table.expected, "mass_kg"),
+        plan.model_cg_below_pivot_m,
+        _design(table, f"k_{plan.axis}_m"),
+        period_scatter_relative=plan.period_scatter_relative,
+        moment_relative=plan.moment_relative,
+    )
+    period = Estimate(found.period_s, plan.period_scatter_relative * found.period_s, "s")
+    findings += [
+        Finding("swing_period_s", "swing: period with model", period),
+        Finding(f"swing_k_{plan.axis}_m", f"swing: {plan.axis} gyradius", found.gyradius),
+        Finding("swing_share", "swing: model's part of the total", Estimate(found.share, 0.0)),
+    ]
+    notes.append(f"swing: {'worth' if found.worth_swinging else 'not worth'} swinging")
+    flags += found.flags
+
+
+def _line_errors(table: PlanJob) -> dict[str, list[tuple[float, float]]]:
+    """Return the error of the pitch gyradius per error of the periods over the lines' length."""
+    gyradius, depth = _design(table, "k_pitch_m"), _design(table, "depth_m")
+    gravity = gravity_of(table).value
+    lines = np.geomspace(0.1 * depth, 20.0 * depth, 161).tolist()
+    return {
+        str(reading): [
+            (line, gyradius_error_per_period(gyradius, depth, line, gravity, reading))
+            for line in lines
+        ]
+        for reading in Reading
+    }

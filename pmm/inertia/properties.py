@@ -1,0 +1,113 @@
+"""From gyradii and what the file says of the model to the mass properties campaigns need."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from analysis.inertia.budget import Budget
+from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.parts import Part, combine, part
+from analysis.inertia.result import InertiaResult
+from hardware.description.flags import Flag
+from pmm.inertia.given import given, given_or_none
+
+AXES = ("roll", "pitch", "yaw")
+
+
+@dataclass(frozen=True)
+class PartTable:
+    """A rigid body: mass, place from a common datum, gyradii about its own centre of gravity.
+
+    ``x_m`` is forward, ``y_m`` to starboard and ``z_m`` down; a gyradius of 0 is a point mass's.
+    Products of inertia are sums, ``ixy = sum m x y``, about the own centre of gravity.
+    """
+
+    name: str
+    mass_kg: float
+    u_mass_kg: float = 0.0
+    x_m: float = 0.0
+    u_x_m: float = 0.0
+    y_m: float = 0.0
+    u_y_m: float = 0.0
+    z_m: float = 0.0
+    u_z_m: float = 0.0
+    k_roll_m: float = 0.0
+    u_k_roll_m: float = 0.0
+    k_pitch_m: float = 0.0
+    u_k_pitch_m: float = 0.0
+    k_yaw_m: float = 0.0
+    u_k_yaw_m: float = 0.0
+    ixy_kg_m2: float = 0.0
+    ixz_kg_m2: float = 0.0
+    iyz_kg_m2: float = 0.0
+
+    def part(self) -> Part:
+        """Return it with its covariance."""
+        x, y, z = (given(self, f"{axis}_m") for axis in "xyz")
+        roll, pitch, yaw = (given(self, f"k_{axis}_m") for axis in AXES)
+        products = (self.ixy_kg_m2, self.ixz_kg_m2, self.iyz_kg_m2)
+        return part(self.name, given(self, "mass_kg"), (x, y, z), (roll, pitch, yaw), products)
+
+
+@dataclass(frozen=True)
+class ModelTable:
+    """The model: mass, and its centre of gravity from the midpoint between the struts."""
+
+    mass_kg: float | None = None
+    u_mass_kg: float = 0.0
+    cg_x_m: float | None = None
+    u_cg_x_m: float = 0.0
+    cg_z_m: float | None = None
+    u_cg_z_m: float = 0.0
+
+
+def properties(
+    name: str,
+    model: ModelTable,
+    gyradii: Mapping[str, Estimate],
+    *,
+    take_off: Sequence[PartTable] = (),
+    budgets: Sequence[Budget] = (),
+    flags: Sequence[Flag] = (),
+    cg_z: Estimate | None = None,
+) -> tuple[InertiaResult | None, tuple[str, ...]]:
+    """Return the mass properties, or the keys that are missing for them.
+
+    Parameters
+    ----------
+    gyradii
+        By axis, of what hung: with the parts to take off.
+    take_off
+        Parts that hung there and are not the model's, from the same datum.
+    cg_z
+        Measured, in place of the file's.
+    """
+    mass, x = given_or_none(model, "mass_kg"), given_or_none(model, "cg_x_m")
+    z = cg_z or given_or_none(model, "cg_z_m")
+    known = {"mass_kg": mass, "cg_x_m": x, "cg_z_m": z}
+    missing = tuple(f"model.{key}" for key, value in known.items() if value is None)
+    if mass is None or x is None or z is None or not gyradii:
+        return None, missing or ("a gyradius",)
+    if take_off:
+        mass, x, z, gyradii = _without(name, (mass, x, z), gyradii, take_off)
+    result = InertiaResult(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags))
+    return result, ()
+
+
+def _without(
+    name: str,
+    whole: tuple[Estimate, Estimate, Estimate],
+    gyradii: Mapping[str, Estimate],
+    take_off: Sequence[PartTable],
+) -> tuple[Estimate, Estimate, Estimate, dict[str, Estimate]]:
+    """Take parts off by the parallel axis theorem, covariances and all."""
+    nothing = exactly(0.0, "m")
+    mass, x, z = whole
+    roll, pitch, yaw = (gyradii.get(axis, nothing) for axis in AXES)
+    hung = part(name, mass, (x, nothing, z), (roll, pitch, yaw))
+    left = combine(name, [hung], without=[one.part() for one in take_off])
+    own = dict(zip(AXES, left.gyradii, strict=True))
+    kept = {
+        axis: replace(own[axis], degrees_of_freedom=value.degrees_of_freedom)
+        for axis, value in gyradii.items()
+    }
+    return left.mass, left.centre_of_gravity[0], left.centre_of_gravity[2], kept

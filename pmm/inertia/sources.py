@@ -1,0 +1,254 @@
+"""Where a period comes from: records, light gates, a stopwatch, or a number."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from analysis.inertia.checks import strongest_axis
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.gates import Passages, passages, read_gate_events
+from analysis.inertia.passage_fit import PassageFit, fit_passages
+from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
+from analysis.inertia.repeats import Repeated, combine_runs
+from analysis.inertia.series import Series, series_from_recording
+from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
+from analysis.readers import read_recording
+from analysis.recording import Recording
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
+from pmm.inertia.reading import Job, one_of
+
+_PARTS = 6  # of a single light gates' run
+
+
+@dataclass(frozen=True)
+class PeriodSource:
+    """A period, from one of ``records``, ``gates``, ``stopwatch`` and ``period_s``.
+
+    Attributes
+    ----------
+    records, channel, sample_rate_hz
+        Recordings of the same set-up, one per release, and which channel of them swings.
+    gates, gate_columns, time_column
+        Text files of light gates' edges, one per release, and their columns.
+    stopwatch, reaction_s
+        Counted swings, and the standard deviation of a person's start and stop together.
+    period_s, u_period_s, period_degrees_of_freedom
+        Known otherwise.
+    known_scatter_s, known_scatter_degrees_of_freedom
+        Standard deviation of single releases, known from earlier repeats.
+    """
+
+    records: tuple[str, ...] = ()
+    channel: str | None = None
+    sample_rate_hz: float | None = None
+    gates: tuple[str, ...] = ()
+    gate_columns: tuple[str, ...] = ("State at A", "State at B")
+    time_column: str = "Time"
+    stopwatch: tuple[StopwatchReading, ...] = ()
+    reaction_s: float = 0.1
+    period_s: float | None = None
+    u_period_s: float = 0.0
+    period_degrees_of_freedom: float | None = None
+    known_scatter_s: float | None = None
+    known_scatter_degrees_of_freedom: float | None = None
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """Exactly one way; a period known otherwise has an uncertainty."""
+        yield from one_of(table, "records", "gates", "stopwatch", "period_s")
+        if "period_s" in table and not table.get("u_period_s"):
+            yield (
+                "u_period_s",
+                "is missing: a period's standard uncertainty, runs' scatter included",
+            )
+
+    @property
+    def known_scatter(self) -> Estimate | None:
+        """The scatter of single releases known from earlier."""
+        if self.known_scatter_s is None:
+            return None
+        freedom = self.known_scatter_degrees_of_freedom or float("inf")
+        return Estimate(self.known_scatter_s, 0.0, "s", freedom)
+
+
+@dataclass(frozen=True)
+class PeriodRuns:
+    """Periods of one set-up, with what they come from.
+
+    Attributes
+    ----------
+    where
+        Place in the job's file.
+    how
+        In words.
+    periods
+        Undamped, at no amplitude, longest first: one for each oscillation.
+    single
+        Each oscillation's period run by run, shape ``(oscillations, runs)``; empty where there are
+        no runs.
+    ratio
+        Slow over fast period, where two oscillations are in each record.
+    records, whole, gates
+        What was analysed, for figures; ``whole`` is each record with what was not used of it.
+    """
+
+    where: str
+    how: str
+    periods: tuple[Estimate, ...]
+    single: tuple[tuple[float, ...], ...] = ()
+    ratio: Estimate | None = None
+    records: tuple[RecordAnalysis, ...] = ()
+    whole: tuple[Series, ...] = ()
+    gates: tuple[tuple[Passages, PassageFit], ...] = ()
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def period(self) -> Estimate:
+        """The longest period."""
+        return self.periods[0]
+
+
+def read_period(
+    job: Job[Any], source: PeriodSource, where: str, *, modes: int = 1, pendulum: bool = False
+) -> PeriodRuns:
+    """Return the period of a source, with the scatter between its runs.
+
+    Parameters
+    ----------
+    modes
+        How many oscillations a record holds; light gates and stopwatches tell one.
+    pendulum
+        See :func:`analysis.inertia.record.analyse_record`.
+
+    Raises
+    ------
+    ConfigurationError
+        If a record's channel is not named, or two oscillations are asked of what tells one.
+    DataError
+        If the data do not carry a period.
+    """
+    if source.records:
+        return _from_records(job, source, where, modes, pendulum)
+    if modes > 1:
+        raise ConfigurationError(
+            f"{job.path}: {where}: two oscillations need records of a displacement or an angle; "
+            "give each period by itself"
+        )
+    if source.gates:
+        return _from_gates(job, source, where)
+    if source.stopwatch:
+        period = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s)
+        single = tuple(one.duration_s / one.swings for one in source.stopwatch)
+        how = f"stopwatch, {len(single)} readings"
+        return PeriodRuns(where, how, (period,), (single,))
+    value = source.period_s if source.period_s is not None else 0.0
+    freedom = source.period_degrees_of_freedom or float("inf")
+    return PeriodRuns(where, "given", (Estimate(value, source.u_period_s, "s", freedom),))
+
+
+def _from_records(
+    job: Job[Any], source: PeriodSource, where: str, modes: int, pendulum: bool
+) -> PeriodRuns:
+    runs, whole, flags = [], [], []
+    for name in source.records:
+        recording = read_recording(
+            job.beside(name), job.columns, sample_rate_hz=source.sample_rate_hz
+        )
+        series, own = _series(job, recording, source.channel, where)
+        run = analyse_record(series, modes=modes, pendulum=pendulum)
+        runs.append(run)
+        whole.append(series)
+        flags += [*own, *run.flags]
+    repeated = [_undamped(runs, mode, source, where) for mode in range(modes)]
+    flags += [flag for one in repeated for flag in one.flags]
+    return PeriodRuns(
+        where,
+        f"{len(runs)} record{'s' if len(runs) > 1 else ''}, {runs[0].part.series.channel}",
+        tuple(one.estimate for one in repeated),
+        tuple(one.runs for one in repeated),
+        _ratio(runs, where) if modes == 2 else None,
+        tuple(runs),
+        tuple(whole),
+        flags=tuple(flags),
+    )
+
+
+def _series(
+    job: Job[Any], recording: Recording, channel: str | None, where: str
+) -> tuple[Series, tuple[Flag, ...]]:
+    names = recording.channel_names
+    if channel is None and len(names) > 1:
+        raise ConfigurationError(
+            f"{job.path}: {where}.channel is missing: {recording.name} holds {', '.join(names)}"
+        )
+    chosen = series_from_recording(recording, channel or names[0])
+    unit = {one.name: one.unit for one in recording.channels}
+    others = [name for name in names if name != chosen.channel and unit[name] == chosen.unit]
+    beside = tuple(series_from_recording(recording, name) for name in others)
+    return chosen, strongest_axis(chosen, beside)
+
+
+def _undamped(
+    runs: Sequence[RecordAnalysis], mode: int, source: PeriodSource, where: str
+) -> Repeated:
+    """Join the runs' periods at no amplitude and take the damping out."""
+    joined = from_runs(runs, mode, known_scatter=source.known_scatter, what=where)
+    modes = [run.fit.modes[mode] for run in runs]
+    factor = float(np.mean([one.undamped_period_s / one.period_s for one in modes]))
+    own = joined.estimate
+    estimate = replace(own, value=factor * own.value, uncertainty=factor * own.uncertainty)
+    return replace(joined, estimate=estimate, runs=tuple(factor * run for run in joined.runs))
+
+
+def _ratio(runs: Sequence[RecordAnalysis], where: str) -> Estimate | None:
+    """Slow over fast period, run by run: what both share (a drifting clock) drops out."""
+    ratios = []
+    for run in runs:
+        slow, fast = run.period(0), run.period(1)
+        value = slow.value / fast.value
+        spread = value * float(np.hypot(slow.relative, fast.relative))
+        ratios.append(Estimate(value, spread, "1", min(slow.degrees_of_freedom, 30.0)))
+    if len(ratios) < 2:
+        return None
+    return combine_runs(ratios, what=f"{where}, ratio").estimate
+
+
+def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
+    fits, flags = [], []
+    for name in source.gates:
+        path = job.beside(name)
+        events = read_gate_events(path, time=source.time_column, gates=source.gate_columns)
+        seen = passages(events)
+        fits.append((seen, fit_passages(seen)))
+        flags += [*events.flags, *seen.flags]
+    periods = [fit.period for _, fit in fits]
+    if len(periods) == 1 and source.known_scatter is None:
+        estimate, flag = _single_gate_run(*fits[0], where)
+        flags.append(flag)
+    else:
+        joined = combine_runs(periods, known_scatter=source.known_scatter, what=where)
+        estimate, flags = joined.estimate, [*flags, *joined.flags]
+    single = tuple(period.value for period in periods)
+    how = f"light gates, {len(fits)} run{'s' if len(fits) > 1 else ''}"
+    return PeriodRuns(where, how, (estimate,), (single,), gates=tuple(fits), flags=tuple(flags))
+
+
+def _single_gate_run(seen: Passages, fit: PassageFit, where: str) -> tuple[Estimate, Flag]:
+    """Let the scatter between a run's parts stand in for that between runs, undivided."""
+    parts = np.array_split(np.arange(seen.number.size), _PARTS)
+    slopes = [2.0 * np.polyfit(seen.number[one], fit.residual_s[one], 1)[0] for one in parts]
+    spread = float(np.std(slopes, ddof=1))
+    own = fit.period
+    estimate = replace(
+        own,
+        uncertainty=float(np.hypot(spread, own.uncertainty)),
+        degrees_of_freedom=float(_PARTS - 1),
+    )
+    message = (
+        f"{where}: one run only; the scatter between its {_PARTS} parts ({spread:.2g} s) stands in "
+        "for that between runs: repeat the release, or give known_scatter_s"
+    )
+    return estimate, Flag("single_run", Severity.WARNING, message)

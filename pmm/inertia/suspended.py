@@ -1,0 +1,160 @@
+"""One suspension's periods, and what follows from them: yaw, pitch or roll, depth."""
+
+import math
+from dataclasses import dataclass, replace
+
+from analysis.inertia.beats import BeatCount
+from analysis.inertia.bifilar import (
+    resonance_flags,
+    sway_period,
+    yaw_from_beats,
+    yaw_from_period,
+    yaw_from_ratio,
+)
+from analysis.inertia.checks import check_sway_axis, check_yaw_axis
+from analysis.inertia.double_pendulum import pitch_from_periods
+from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.monte_carlo import Assessment
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag
+from pmm.inertia.bifilar_tables import BifilarTable, PendulumTable, SuspensionTable
+from pmm.inertia.given import given, gravity_of
+from pmm.inertia.reading import Job
+from pmm.inertia.sources import PeriodRuns, read_period
+
+
+@dataclass(frozen=True)
+class Suspended:
+    """What one suspension gave: assessments by axis (or ``depth``), and for yaw by method too."""
+
+    table: SuspensionTable
+    found: dict[str, Assessment]
+    periods: tuple[PeriodRuns, ...]
+    flags: tuple[Flag, ...]
+
+
+def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
+    """Read all periods of a suspension and turn them into gyradii and depth.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        If a record does not carry what is asked, or shows another axis.
+    """
+    where = f'suspensions["{table.name}"]'
+    found: dict[str, Assessment] = {}
+    periods: list[PeriodRuns] = []
+    flags: list[Flag] = []
+    sway = None
+    if table.sway is not None:
+        runs = read_period(job, table.sway, f"{where}.sway")
+        gravity = gravity_of(job.table).value
+        check_sway_axis(f"{job.path.name}: {runs.where}", runs.period.value, table.line_m, gravity)
+        periods.append(runs)
+        sway = runs.period
+    if table.yaw is not None:
+        sway = _yaw(job, table, where, sway, found, periods, flags)
+    if table.beats is not None:
+        count = BeatCount(table.beats.oscillations, table.beats.beats, table.beats.counting_error)
+        found["yaw by beats"] = yaw_from_beats(
+            count, given(table, "half_spacing_m"), yaw_slower=table.beats.yaw_slower
+        )
+    _double_pendulum(job, table, where, sway, found, periods, flags)
+    flags += [flag for runs in periods for flag in runs.flags]
+    return Suspended(table, found, tuple(periods), tuple(flags))
+
+
+def _yaw(
+    job: Job[BifilarTable],
+    table: SuspensionTable,
+    where: str,
+    sway: Estimate | None,
+    found: dict[str, Assessment],
+    periods: list[PeriodRuns],
+    flags: list[Flag],
+) -> Estimate | None:
+    """Yaw by its period and by the ratio; return the sway period, if it is known."""
+    source, seed = table.yaw, job.table.monte_carlo_seed
+    if source is None:
+        return sway
+    gravity, spacing = gravity_of(job.table), given(table, "half_spacing_m")
+    runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations)
+    periods.append(runs)
+    yaw, ratio = runs.period, None
+    if source.oscillations == 2:
+        place = _sway_mode(runs, table.line_m, gravity.value)
+        own = runs.periods[place]
+        check_sway_axis(f"{job.path.name}: {runs.where}", own.value, table.line_m, gravity.value)
+        yaw, sway = runs.periods[1 - place], sway or own
+        ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
+    flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
+    found["yaw by period"] = yaw_from_period(
+        yaw, spacing, given(table, "line_m"), gravity, seed=seed
+    )
+    if ratio is not None:
+        found["yaw by ratio"] = yaw_from_ratio(ratio, exactly(1.0), spacing, seed=seed + 1)
+    elif sway is not None:
+        found["yaw by ratio"] = yaw_from_ratio(yaw, sway, spacing, seed=seed + 1)
+    return sway
+
+
+def _sway_mode(runs: PeriodRuns, line_m: float, gravity_m_s2: float) -> int:
+    """Return which oscillation is sway: the one whose period is nearest to the lines'."""
+    expected = sway_period(line_m, gravity_m_s2)
+    off = [abs(math.log(one.value / expected)) for one in runs.periods]
+    return off.index(min(off))
+
+
+def _inverse(ratio: Estimate | None) -> Estimate | None:
+    if ratio is None:
+        return None
+    value = 1.0 / ratio.value
+    return replace(ratio, value=value, uncertainty=value * ratio.relative)
+
+
+def _double_pendulum(
+    job: Job[BifilarTable],
+    table: SuspensionTable,
+    where: str,
+    sway: Estimate | None,
+    found: dict[str, Assessment],
+    periods: list[PeriodRuns],
+    flags: list[Flag],
+) -> None:
+    """Pitch (or roll) and depth, from both modes and the lines' own period."""
+    for axis in ("pitch", "roll"):
+        source: PendulumTable | None = getattr(table, axis)
+        if source is None:
+            continue
+        slow, fast = _both(job, source, f"{where}.{axis}", periods)
+        gravity = gravity_of(job.table)
+        lines = sway or _period_of_lines(given(table, "line_m"), gravity)
+        result = pitch_from_periods(
+            slow, fast, lines, gravity, seed=job.table.monte_carlo_seed + 20
+        )
+        found[axis], found["depth"] = result.gyradius, result.depth
+        if axis == "pitch" and table.yaw is not None:
+            yaw = found["yaw by period"].budget.shares
+            period = next(one.input for one in yaw if one.name == "period_s")
+            flags += resonance_flags(period.value, slow.value)
+
+
+def _both(
+    job: Job[BifilarTable], source: PendulumTable, where: str, periods: list[PeriodRuns]
+) -> tuple[Estimate, Estimate]:
+    if source.both is not None:
+        runs = read_period(job, source.both, f"{where}.both", modes=2)
+        periods.append(runs)
+        return runs.periods[0], runs.periods[1]
+    if source.slow is None or source.fast is None:
+        raise ConfigurationError(f"{job.path}: {where} needs slow and fast, or both")
+    slow = read_period(job, source.slow, f"{where}.slow")
+    fast = read_period(job, source.fast, f"{where}.fast")
+    periods += [slow, fast]
+    return slow.period, fast.period
+
+
+def _period_of_lines(line: Estimate, gravity: Estimate) -> Estimate:
+    value = sway_period(line.value, gravity.value)
+    spread = 0.5 * value * math.hypot(line.relative, gravity.relative)
+    return Estimate(value, spread, "s")

@@ -1,0 +1,246 @@
+"""``pmm inertia swing``: the empty swing, the swing with a model, and what shows it can be trusted.
+
+Static fits give first moments, records give periods; :mod:`analysis.inertia.swing` does the rest.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.result import InertiaResult
+from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swing_inertia
+from analysis.inertia.swing_static import StaticResult, distance, fit_static
+from analysis.inertia.two_pivots import PivotTest, check_two_pivots
+from analysis.inertia.workflow import Reading, Step, assess_workflow, next_step
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
+from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
+from pmm.inertia.outcome import Finding, Outcome, assessed, compare, once
+from pmm.inertia.properties import properties
+from pmm.inertia.reading import Job, read_job
+from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.swing_tables import StateTable, SwingTable
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """One state, measured."""
+
+    key: str
+    state: SwingState
+    runs: PeriodRuns
+    inertia: SwingInertia
+    cg: Estimate
+    flags: tuple[Flag, ...]
+
+
+def run(path: str) -> Outcome:
+    """Do what a swing's file says.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        If the file is wrong, or the data do not carry what is asked.
+    """
+    job = read_job(path, SwingTable)
+    table = job.table
+    states = {key: _measure(job, key) for key in _STATES if getattr(table, key) is not None}
+    findings = [one for measured in states.values() for one in _state_findings(measured)]
+    flags = [*flags_of(table), *(flag for one in states.values() for flag in one.flags)]
+    notes: list[str] = []
+    _two_pivots(table, states, findings, notes, flags)
+    body, missing = _model(table, states, findings, flags)
+    step = _workflow(table, states, findings, flags)
+    return Outcome(
+        "swing",
+        table.name,
+        tuple(findings),
+        once(flags),
+        tuple(one.runs for one in states.values()),
+        body,
+        missing,
+        table.plane or _PLANES.get(table.model.axis),
+        compare(findings, table.targets),
+        tuple(notes),
+        step,
+    )
+
+
+_STATES = ("tare", "loaded", "second_pivot", "check", "tare_again")
+_WORDS = {
+    "tare": "empty swing",
+    "loaded": "swing with model",
+    "second_pivot": "empty swing, upper pivot",
+    "check": "swing with the known body",
+    "tare_again": "empty swing again",
+}
+_PLANES = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
+
+
+def _measure(job: Job[SwingTable], key: str) -> _Measured:
+    table: StateTable = getattr(job.table, key)
+    runs = read_period(job, table.period, f"{key}.period", pendulum=True)
+    mass, gravity = given(table, "mass_kg"), gravity_of(job.table)
+    moment, static = _moment(table)
+    state = SwingState(runs.period, mass, moment, gravity)
+    inertia = swing_inertia(
+        state, correlations=_tied(table, moment, mass), seed=job.table.monte_carlo_seed
+    )
+    flags = (*runs.flags, *(static.flags if static else ()))
+    cg = given_or_none(table, "cg_below_pivot_m") or distance(moment, mass)
+    return _Measured(key, state, runs, inertia, cg, flags)
+
+
+def _moment(table: StateTable) -> tuple[Estimate, StaticResult | None]:
+    """Return the first moment; the levers' and the inclinometer's errors are common to a series."""
+    if table.levers:
+        static = fit_static(
+            [one.series() for one in table.levers], with_offset=table.static_fit == "F2"
+        )
+        own = static.pooled.moment
+        lever = float(np.mean([one.u_lever_m / one.lever_m for one in table.levers]))
+        spread = float(
+            np.hypot(own.uncertainty, own.value * np.hypot(lever, table.u_tilt_relative))
+        )
+        return replace(own, uncertainty=spread), static
+    if table.moment_kg_m is not None:
+        return given(table, "moment_kg_m"), None
+    cg, mass = given(table, "cg_below_pivot_m"), given(table, "mass_kg")
+    value = cg.value * mass.value
+    return Estimate(value, value * float(np.hypot(cg.relative, mass.relative)), "kg m"), None
+
+
+def _tied(table: StateTable, moment: Estimate, mass: Estimate) -> dict[tuple[str, str], float]:
+    """Return the correlation of a moment that was made with the mass."""
+    if table.cg_below_pivot_m is None or not (moment.uncertainty and mass.uncertainty):
+        return {}
+    return {("mass_kg", "moment_kg_m"): mass.relative / moment.relative}
+
+
+def _state_findings(one: _Measured) -> Iterator[Finding]:
+    words = _WORDS[one.key]
+    yield Finding(f"{one.key}_period_s", f"{words}: period", one.runs.period)
+    yield Finding(f"{one.key}_cg_below_pivot_m", f"{words}: CG below the pivot", one.cg)
+    yield assessed(
+        f"{one.key}_i_pivot_kg_m2", f"{words}: inertia about the pivot", one.inertia.about_pivot
+    )
+    yield assessed(f"{one.key}_i_cg_kg_m2", f"{words}: inertia about its CG", one.inertia.about_cg)
+
+
+def _two_pivots(
+    table: SwingTable,
+    states: Mapping[str, _Measured],
+    findings: list[Finding],
+    notes: list[str],
+    flags: list[Flag],
+) -> None:
+    if table.second_pivot is None:
+        return
+    first, second = states["tare"], states["second_pivot"]
+    found = check_two_pivots(
+        PivotTest(first.runs.period, first.cg),
+        PivotTest(second.runs.period, second.cg),
+        first.state.mass,
+        given(table.second_pivot, "pivot_distance_m"),
+        first.state.gravity,
+    )
+    findings.append(
+        Finding("two_pivots_excess_m", "two pivots: distance too long by", found.distance_excess)
+    )
+    findings.append(
+        Finding(
+            "two_pivots_difference_kg_m2", "two pivots: inertia differs", found.inertia_difference
+        )
+    )
+    notes.append(
+        f"two pivots: {'pass' if found.passes else 'fail'}; by the periods alone the CG lies "
+        f"{found.from_periods_m:.5f} m below the lower one"
+    )
+    if not found.passes:
+        message = "the two pivots disagree; it points to: " + "; or ".join(found.points_to)
+        flags.append(Flag("two_pivots_disagree", Severity.WARNING, message))
+
+
+def _model(
+    table: SwingTable,
+    states: Mapping[str, _Measured],
+    findings: list[Finding],
+    flags: list[Flag],
+) -> tuple[InertiaResult | None, tuple[str, ...]]:
+    if "loaded" not in states:
+        return None, ("a table [loaded]",)
+    model, loaded = table.model, states["loaded"]
+    mass = given(model, "mass_kg")
+    found = model_on_swing(
+        states["tare"].state, loaded.state, mass, seed=table.monte_carlo_seed + 10
+    )
+    axis = model.axis
+    flags += found.flags
+    findings += [
+        assessed("cg_below_pivot_m", "model: CG below the pivot", found.cg_below_pivot),
+        assessed(f"i_{axis}_kg_m2", f"model: {axis} inertia about its CG", found.about_cg),
+        assessed(f"k_{axis}_m", f"model: {axis} gyradius", found.gyradius),
+        Finding("share", "model's part of the total inertia", Estimate(found.share, 0.0)),
+    ]
+    cg_z = None
+    above = given_or_none(model, "pivot_above_midpoint_m")
+    if above is not None:
+        below = found.cg_below_pivot.result
+        spread = float(np.hypot(below.uncertainty, above.uncertainty))
+        cg_z = replace(below, value=below.value - above.value, uncertainty=spread)
+        findings.append(Finding("cg_z_m", "model: CG below the struts' midpoint", cg_z))
+    parts = (found.cg_below_pivot, found.about_cg, found.gyradius)
+    return properties(
+        table.name,
+        model,
+        {axis: found.gyradius.result},
+        take_off=table.take_off,
+        budgets=[one.budget for one in parts],
+        flags=found.flags,
+        cg_z=cg_z,
+    )
+
+
+_STEPS = {
+    Step.TARE: "tare",
+    Step.TEST: "loaded",
+    Step.CHECK: "check",
+    Step.TARE_AGAIN: "tare_again",
+}
+
+
+def _workflow(
+    table: SwingTable,
+    states: Mapping[str, _Measured],
+    findings: list[Finding],
+    flags: list[Flag],
+) -> str | None:
+    """Say which step is next, or bring all four together."""
+    readings = tuple(
+        Reading(step, states[key].inertia.about_pivot.result)
+        for step, key in _STEPS.items()
+        if key in states
+    )
+    following = next_step(readings)
+    if following is not None:
+        step, what = following
+        return f"{len(readings) + 1} of {len(_STEPS)}, [{_STEPS[step]}]: {what}"
+    if table.check is None:
+        raise ConfigurationError("the workflow has no known-weight check; add [check]")
+    found = assess_workflow(readings, given(table.check, "known_inertia_kg_m2"))
+    flags += found.flags
+    findings += [
+        Finding("workflow_tare_kg_m2", "both tares: inertia about the pivot", found.tare),
+        Finding("workflow_drift_kg_m2", "second less first tare", found.tare_drift),
+        Finding("workflow_model_kg_m2", "test less tare, about the pivot", found.test_less_tare),
+        Finding("workflow_check_kg_m2", "known body, about the pivot", found.check_less_tare),
+        Finding(
+            "workflow_normalised_error",
+            "known body's error over its interval",
+            Estimate(found.normalised_error, 0.0),
+        ),
+    ]
+    return None

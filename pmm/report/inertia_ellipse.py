@@ -1,0 +1,73 @@
+"""The inertia ellipse in the centre plane, with the axes that were measured."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.inertia.principal import inertia_ellipse
+from pmm.inertia.outcome import PlaneAxes
+from pmm.report.labels import plain
+from pmm.report.style import FIT, PALETTE, TRACE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def ellipse_figure(name: str, axes_found: PlaneAxes) -> "Figure":
+    """Draw the ellipse in body axes, bow to the right and down as it is.
+
+    The radius in a direction is the inverse of the gyradius about it; bars on the measured axes
+    are one standard uncertainty.
+    """
+    from matplotlib.figure import Figure
+
+    with drawing():
+        figure = Figure(figsize=(8.0, 6.2), layout="constrained")
+        figure.suptitle(f"{plain(name)}: inertia ellipse")
+        axes = figure.add_subplot()
+        points = inertia_ellipse(axes_found.roll_m, axes_found.yaw_m, axes_found.angle_rad)
+        axes.plot(points[:, 0], points[:, 1], color=PALETTE[0], lw=1.4, label="1/gyradius")
+        _draw_principal(axes, axes_found)
+        _draw_measured(axes, axes_found)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.invert_yaxis()
+        axes.set_xlabel("forward, x (1/m)")
+        axes.set_ylabel("down, z (1/m)")
+        axes.set_title(
+            f"psi = {math.degrees(axes_found.angle_rad):.2f} deg, principal gyradii "
+            f"{1e3 * axes_found.roll_m:.1f} and {1e3 * axes_found.yaw_m:.1f} mm",
+            loc="left",
+        )
+        figure.legend(loc="outside lower left", ncols=4)
+    return figure
+
+
+def _draw_principal(axes: "Axes", found: PlaneAxes) -> None:
+    """Draw the principal axes through the centre of gravity."""
+    for label, turn, length in (
+        ("principal x", math.pi / 2.0 - found.angle_rad, 1.0 / found.roll_m),
+        ("principal z", -found.angle_rad, 1.0 / found.yaw_m),
+    ):
+        x, z = length * math.sin(turn), length * math.cos(turn)
+        style = "--" if label.endswith("x") else ":"
+        axes.plot([-x, x], [-z, z], style, color=TRACE, label=label)
+
+
+def _draw_measured(axes: "Axes", found: PlaneAxes) -> None:
+    label = "measured, ±u"
+    for angle, gyradius in found.measured:
+        reach = np.array([gyradius.value - gyradius.uncertainty, gyradius.value])
+        reach = 1.0 / np.append(reach, gyradius.value + gyradius.uncertainty)
+        axes.plot(reach * math.sin(angle), reach * math.cos(angle), "-", color=FIT, lw=2.0)
+        place = (math.sin(angle) / gyradius.value, math.cos(angle) / gyradius.value)
+        axes.plot(*place, "o", ms=5.0, color=FIT, label=label)
+        axes.annotate(
+            f"{math.degrees(angle):.0f} deg, {1e3 * gyradius.value:.1f} mm",
+            place,
+            xytext=(7.0, 7.0),
+            textcoords="offset points",
+            fontsize=8.0,
+        )
+        label = ""

@@ -1,0 +1,103 @@
+"""The fit over each record, which part of it was used, and what the fit leaves."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.inertia.numeric import FloatArray
+from analysis.inertia.record import RecordAnalysis
+from analysis.inertia.series import Series
+from pmm.inertia.sources import PeriodRuns
+from pmm.report.envelope import zigzag
+from pmm.report.labels import display, shown_name
+from pmm.report.style import FIT, STEADY_SHADE, TRACE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MOST_RUNS = 4  # drawn; the numbers are those of all
+_BINS = 700
+_FIT_POINTS_PER_PERIOD = 24
+_MOST_FIT_POINTS = 4000
+
+
+def record_figure(runs: PeriodRuns) -> "Figure":
+    """Draw each record with its used part and the fit, and the residual below on its own scale."""
+    from matplotlib.figure import Figure
+
+    shown = runs.records[:MOST_RUNS]
+    with drawing():
+        figure = Figure(figsize=(10.5, 1.3 + 2.5 * len(shown)), layout="constrained")
+        figure.suptitle(f"{shown_name(runs.where)}: fit over record{_and_more(runs)}")
+        grid = figure.add_gridspec(2 * len(shown), 1, height_ratios=(2.0, 1.0) * len(shown))
+        handles: list[Artist] = []
+        for place, run in enumerate(shown):
+            axes = figure.add_subplot(grid[2 * place])
+            rest = figure.add_subplot(grid[2 * place + 1], sharex=axes)
+            handles = _draw_run(axes, run, runs.whole[place])
+            _draw_rest(rest, run)
+            axes.tick_params(labelbottom=False)
+            if place == len(shown) - 1:
+                rest.set_xlabel("time (s)")
+            else:
+                rest.tick_params(labelbottom=True)
+        figure.legend(handles=handles, loc="outside lower left", ncols=3)
+    return figure
+
+
+def _and_more(runs: PeriodRuns) -> str:
+    left = len(runs.records) - MOST_RUNS
+    return f" (first {MOST_RUNS} of {len(runs.records)} runs)" if left > 0 else ""
+
+
+def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"]:
+    series = run.part.series
+    shown = display(series.unit)
+    time_s, values = thin(whole.time_s, whole.values)
+    used = axes.axvspan(
+        float(series.time_s[0]), float(series.time_s[-1]), color=STEADY_SHADE, label="used"
+    )
+    (trace,) = axes.plot(time_s, shown.factor * values, color=TRACE, lw=1.6, label="record")
+    smooth_s = _smooth(run)
+    fitted = shown.factor * run.fit.values(smooth_s)
+    (fit,) = axes.plot(smooth_s, fitted, color=FIT, lw=0.8, label="fit")
+    periods = ", ".join(f"{mode.period_s:.5g} s" for mode in run.fit.modes)
+    axes.set_title(f"{shown_name(series.name)}: {periods}", loc="left")
+    axes.set_ylabel(f"{shown_name(series.channel)}\n({shown.label})")
+    axes.set_xlim(float(whole.time_s[0]), float(whole.time_s[-1]))
+    return [trace, fit, used]
+
+
+def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
+    shown = display(run.part.series.unit)
+    time_s, values = thin(run.fit.time_s, run.fit.residual)
+    axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.6)
+    axes.axhline(0.0, color=FIT, lw=0.8)
+    rms = shown.factor * float(np.sqrt(np.mean(run.fit.residual**2)))
+    axes.set_ylabel(f"residual\n({shown.label})")
+    axes.annotate(
+        f"rms {rms:.2g} {shown.label}",
+        (1.0, 1.0),
+        xycoords="axes fraction",
+        ha="right",
+        va="bottom",
+        fontsize=8.0,
+    )
+
+
+def _smooth(run: RecordAnalysis) -> FloatArray:
+    start, stop = run.fit.time_s[0], run.fit.time_s[-1]
+    fastest = min(mode.period_s for mode in run.fit.modes)
+    wanted = int(_FIT_POINTS_PER_PERIOD * (stop - start) / fastest)
+    return np.linspace(start, stop, min(max(wanted, 200), _MOST_FIT_POINTS))
+
+
+def thin(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a curve with few enough points that it still looks the same."""
+    good = np.isfinite(values)
+    if not good.all():
+        return time_s, values
+    trace = zigzag(time_s, values.reshape(1, -1), _BINS)
+    return trace.time_s, trace.values[0]
