@@ -17,6 +17,7 @@ from hardware.description.setpoint import Medium, SetPoint
 from sim.acquisition import Acquisition
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers
+from sim.effects.campaign import CampaignRun
 from sim.hull import HullCoefficients
 from sim.photocell import Photocell
 from sim.rig import SimulatedRig
@@ -68,11 +69,18 @@ class Run:
 
 @dataclass(frozen=True)
 class Simulation:
-    """How the runs are simulated; see :func:`sim.run.simulate`."""
+    """How the runs are simulated; see :func:`sim.run.simulate`.
+
+    Attributes
+    ----------
+    waiting_s
+        From the end of a run to the beginning of the next: some effects die out or build up then.
+    """
 
     sample_rate_hz: float = 200.0
     settling_periods: int = 3
     seed: int = 1
+    waiting_s: float = 300.0
 
 
 @dataclass(frozen=True)
@@ -133,6 +141,17 @@ class Campaign:
             acquisition=self.acquisition,
             photocell=self.photocell,
         )
+
+    def place(self, run: Run) -> CampaignRun:
+        """Return where a run of the campaign stands, if its runs are made in the file's order."""
+        index = self.runs.index(run)
+        waiting = self.simulation.waiting_s
+        settling = self.simulation.settling_periods
+        # A record is one period longer than the periods that are wanted.
+        took = [(settling + one.periods + 1) / one.frequency_hz for one in self.runs[:index]]
+        before = self.runs[index - 1].set_point if index else None
+        since = sum(took) + index * waiting
+        return CampaignRun(index, since, waiting if index else 0.0, before)
 
     def run(self, name: str) -> Run:
         """Return the run of that name.

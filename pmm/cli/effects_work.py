@@ -15,7 +15,7 @@ from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign_file import read_campaign
 from pmm.cli.screen import busy, messages, output
 from sim.effects.agreement import simulated_signature
-from sim.effects.catalogue import build, catalogue, load_file
+from sim.effects.catalogue import build, catalogue, user_effects
 from sim.effects.effect import Effect, Signature
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
@@ -64,23 +64,6 @@ class Shown:
     simulated: Signature
 
 
-def user_effects(path: str | None) -> dict[str, type[Effect]]:
-    """Return the effects of a user's own file, by name; none without a file.
-
-    Raises
-    ------
-    ConfigurationError
-        If the file defines none, or one whose name the catalogue has already.
-    """
-    found = {} if path is None else load_file(Path(path))
-    taken = sorted(set(found) & set(catalogue()))
-    if taken:
-        raise ConfigurationError(
-            f"{path}: {', '.join(taken)}: the catalogue has an effect of that name; rename yours"
-        )
-    return found
-
-
 def run(request: Request) -> None:
     """List the catalogue, or show one effect.
 
@@ -113,8 +96,11 @@ def _rig(request: Request) -> SimulatedRig:
 
 
 def _shown(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Shown:
+    from pmm.report.signature_figure import channels_of
+
     theory = effect.signature(Situation.of(rig, set_point))
-    keys = theory or [(name, n) for name in ("force_aft", "force_fore") for n in range(4)]
+    channels = channels_of(effect, rig, set_point)
+    keys = theory or [(name, order) for name in channels for order in range(4)]
     return Shown(effect, set_point, theory, simulated_signature(effect, rig, set_point, keys))
 
 

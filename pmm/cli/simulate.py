@@ -12,6 +12,15 @@ import click
 @click.option(
     "--run", "runs", multiple=True, metavar="NAME", help="Simulate this run only; repeatable."
 )
+@click.option(
+    "--effect",
+    "effects",
+    multiple=True,
+    metavar="NAME[:PARAM=VALUE,...]",
+    help='Switch an effect on, besides those of the file; repeatable; "pmm effects" lists them.',
+)
+@click.option("--effects-file", metavar="FILE.py", help="A Python file with effects of your own.")
+@click.option("--plot", metavar="FOLDER", help="Draw each run's signals stage by stage there.")
 @click.option("--overwrite", is_flag=True, help="Replace recordings that are there.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
 def simulate(**options: Any) -> None:

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,9 @@ from hardware.description.flags import Flag
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
 from pmm.cli.screen import output, print_flags, show_progress
+from sim.effects.applied import switch_on
+from sim.effects.catalogue import build, user_effects
+from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 from sim.run import simulate
 
@@ -33,6 +36,9 @@ class Request:
     output: str | None
     seed: int | None
     runs: tuple[str, ...]
+    effects: tuple[str, ...]
+    effects_file: str | None
+    plot: str | None
     overwrite: bool
     as_json: bool
 
@@ -55,7 +61,7 @@ def run(request: Request) -> None:
     Raises
     ------
     ConfigurationError
-        If the campaign is wrong or a run is beyond the rig's limits.
+        If the campaign or an effect is wrong, or a run is beyond the rig's limits.
     DataError
         If a recording is there already.
     """
@@ -65,13 +71,35 @@ def run(request: Request) -> None:
     folder = Path(campaign.name) if request.output is None else Path(request.output)
     chosen = [campaign.run(name) for name in request.runs] or list(campaign.runs)
     seed = campaign.simulation.seed if request.seed is None else request.seed
+    effects = _effects(request)
     check_output(path, campaign, chosen, folder, overwrite=request.overwrite)
-    written = list(simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite))
+    written = list(
+        simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
+    )
     copy_campaign(path, folder)
+    figures = [] if request.plot is None else _draw(campaign, written, effects, Path(request.plot))
     if request.as_json:
-        click.echo(json.dumps(_document(folder, written), indent=1))
+        click.echo(json.dumps(_document(folder, written, effects), indent=1))
     else:
-        _print(campaign, written, folder)
+        _print(campaign, written, folder, effects)
+        for figure in figures:
+            output().print(str(figure), soft_wrap=True)
+
+
+def _effects(request: Request) -> tuple[Effect, ...]:
+    more = user_effects(request.effects_file)
+    return tuple(build(text, more) for text in request.effects)
+
+
+def _draw(
+    campaign: Campaign, written: Sequence[Written], effects: Sequence[Effect], folder: Path
+) -> list[Path]:
+    from pmm.report.chain_figures import save_chain_figure
+
+    figures: list[Path] = []
+    for one in show_progress(written, "plotting"):
+        figures += save_chain_figure(campaign, one.run, effects, one.seed, folder)
+    return figures
 
 
 def check_output(
@@ -106,26 +134,33 @@ def check_output(
 
 
 def simulate_runs(
-    campaign: Campaign, runs: Sequence[Run], folder: Path, seed: int, *, overwrite: bool
+    campaign: Campaign,
+    runs: Sequence[Run],
+    folder: Path,
+    seed: int,
+    *,
+    overwrite: bool,
+    effects: Sequence[Effect] = (),
 ) -> Iterator[Written]:
     """Simulate runs one by one and write their recordings.
 
-    Each run has noise of its own, which depends on the seed and the run's name alone.
+    Each run has noise of its own, which depends on the seed and the run's name alone. Effects act
+    on a run as its place in the whole campaign asks, whichever runs are simulated.
     """
     rig = campaign.rig()
     folder.mkdir(parents=True, exist_ok=True)
     for one in show_progress(runs, "simulating"):
         run_seed = seed_of(seed, one.name)
-        recording = simulate_recording(rig, campaign, one, run_seed)
+        recording = simulate_recording(rig, campaign, one, run_seed, effects)
         file = write_recording(recording, folder / f"{one.name}.nc", overwrite=overwrite)
         rate, count = recording.sample_rate_hz, recording.sample_count
         yield Written(one, str(file), run_seed, rate, count, recording.flags)
 
 
 def simulate_recording(
-    rig: SimulatedRig, campaign: Campaign, run: Run, run_seed: int
+    rig: SimulatedRig, campaign: Campaign, run: Run, run_seed: int, effects: Sequence[Effect] = ()
 ) -> "Recording":
-    """Simulate one run.
+    """Simulate one run; its recording says what it was told to do, and which effects were on.
 
     Raises
     ------
@@ -133,9 +168,10 @@ def simulate_recording(
         As :func:`sim.run.simulate` does; the message begins with the run's name.
     """
     try:
+        changed, set_point = switch_on(effects, rig, run.set_point, campaign.place(run))
         dataset = simulate(
-            rig,
-            run.set_point,
+            changed,
+            set_point,
             periods=run.periods,
             settling_periods=campaign.simulation.settling_periods,
             sample_rate_hz=campaign.simulation.sample_rate_hz,
@@ -144,7 +180,14 @@ def simulate_recording(
         )
     except ConfigurationError as error:
         raise ConfigurationError(f"run {run.name!r}: {error}") from None
-    return from_dataset(dataset)
+    recording = from_dataset(dataset)
+    switched_on = {"effects": json.dumps(_effect_rows(effects))} if effects else {}
+    provenance = {**recording.provenance, **switched_on}
+    return replace(recording, set_point=run.set_point, provenance=provenance)
+
+
+def _effect_rows(effects: Sequence[Effect]) -> list[dict[str, Any]]:
+    return [{"name": one.name, "parameters": asdict(one)} for one in effects]
 
 
 def seed_of(seed: int, name: str) -> int:
@@ -160,15 +203,20 @@ def copy_campaign(path: Path, folder: Path) -> None:
         target.write_bytes(path.read_bytes())
 
 
-def _document(folder: Path, written: Sequence[Written]) -> dict[str, Any]:
+def _document(
+    folder: Path, written: Sequence[Written], effects: Sequence[Effect]
+) -> dict[str, Any]:
     return {
         "schema": JSON_SCHEMA,
         "folder": str(folder),
+        "effects": _effect_rows(effects),
         "runs": [asdict(one) for one in written],
     }
 
 
-def _print(campaign: Campaign, written: Sequence[Written], folder: Path) -> None:
+def _print(
+    campaign: Campaign, written: Sequence[Written], folder: Path, effects: Sequence[Effect]
+) -> None:
     from rich.table import Table
 
     console = output()
@@ -190,6 +238,9 @@ def _print(campaign: Campaign, written: Sequence[Written], folder: Path) -> None
             one.file,
         )
     console.print(table)
+    for effect in effects:
+        values = ", ".join(f"{key} = {value:g}" for key, value in asdict(effect).items())
+        console.print(f"effect {effect.name}: {values}", soft_wrap=True)
     for one in written:
         print_flags(console, one.flags)
     console.print(f"pmm analyse {folder}", soft_wrap=True)

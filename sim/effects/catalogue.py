@@ -93,10 +93,32 @@ def load_file(path: Path) -> dict[str, type[Effect]]:
         raise ConfigurationError(f"{path}: no Python file of effects")
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ConfigurationError(
+            f"{path}: cannot be imported: {type(error).__name__}: {error}"
+        ) from error
     found = {one.name: one for one in _concrete() if one.__module__ == spec.name}
     if not found:
         raise ConfigurationError(
             f"{path}: defines no effect (a subclass of sim.effects.effect.Effect)"
+        )
+    return found
+
+
+def user_effects(path: str | Path | None) -> dict[str, type[Effect]]:
+    """Return the effects of a user's own file, by name; none without a file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file defines none, or one whose name the catalogue has already.
+    """
+    found = {} if path is None else load_file(Path(path))
+    taken = sorted(set(found) & set(catalogue()))
+    if taken:
+        raise ConfigurationError(
+            f"{path}: {', '.join(taken)}: the catalogue has an effect of that name; rename yours"
         )
     return found
