@@ -188,10 +188,11 @@ class Coupled:
         for strut in ("aft", "fore"):
             lever = run[f"lever_{strut}"]
             total += run[f"force_{strut}"] * lever
-            if motor.guides.coulomb_n or motor.guides.viscous_n_s_m:
-                velocity = lever * speed
-                total += motor.guides.viscous_n_s_m * velocity * lever
-                total += motor.guides.coulomb_n * np.sign(velocity) * lever
+            for guides in (motor.guides, self.drive.settings.guides):
+                if guides.coulomb_n or guides.viscous_n_s_m:
+                    velocity = lever * speed
+                    total += guides.viscous_n_s_m * velocity * lever
+                    total += guides.coulomb_n * np.sign(velocity) * lever
         for cogging in motor.cogging:
             total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
         return total

@@ -1,13 +1,13 @@
 """The drive: how the shaft is told to turn, and a drive that does so whatever the load."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from sim import signals
-from sim.motor import Servo, ShuntMotor
+from sim.motor import Guides, Servo, ShuntMotor
 from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
@@ -71,6 +71,8 @@ class DriveSettings:
         How the speed varies over a revolution.
     motor
         What turns the shaft and feels its load; ``None`` for a drive that holds its speed.
+    guides
+        Friction of the struts' guides, besides the motor's own: a load of the shaft.
     """
 
     initial_angle_rad: float = -math.pi
@@ -80,6 +82,7 @@ class DriveSettings:
     speed_error: float = 0.0
     ripple: tuple[SpeedRipple, ...] = ()
     motor: ShuntMotor | Servo | None = None
+    guides: Guides = field(default_factory=Guides)
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 

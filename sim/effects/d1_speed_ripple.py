@@ -1,0 +1,44 @@
+"""D1: a speed that varies over a revolution: eccentric gears, a joint."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.drive import SpeedRipple
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.shaft import uneven_signature
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+
+
+@dataclass(frozen=True)
+class SpeedRippleEffect(Effect):
+    """The shaft is at ``w t + (rho/k) sin(k w t + psi)``: harmonics k - 1 and k + 1 of the motion.
+
+    Both are ``e rho/(2 k)``, in proportion to the amplitude and independent of the frequency. An
+    order that is no whole number (a belt) gives lines beside the harmonics.
+    """
+
+    code: ClassVar[str] = "D1"
+    name: ClassVar[str] = "speed-ripple"
+    title: ClassVar[str] = "Speed that varies over a revolution"
+    stage: ClassVar[StageName] = StageName.DRIVE
+
+    relative: float = parameter(0.005, 0.0, 0.03, "1", "amplitude of the speed over its mean")
+    order: float = parameter(1.0, 0.1, 10.0, "1", "times a revolution")
+    phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with this ripple on its drive."""
+        ripple = (*rig.drive.ripple, SpeedRipple(self.order, self.relative, self.phase_rad))
+        return replace(rig, drive=replace(rig.drive, ripple=ripple))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the modulated motion and the model's reaction to it; exact to the third power."""
+        order = round(self.order)
+        if order != self.order:
+            return {}
+        wave = -1j * (self.relative / order) * np.exp(1j * self.phase_rad)
+        return uneven_signature(situation, {order: complex(wave)})

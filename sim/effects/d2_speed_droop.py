@@ -1,0 +1,47 @@
+"""D2: a mean speed that falls under load."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Final
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.shaft import Yielding
+from sim.effects.situation import Situation
+from sim.motor import droop
+from sim.rig import SimulatedRig
+
+FLYWHEEL_KG_M2: Final = 20.0  # where the rig says nothing of its motor
+
+
+@dataclass(frozen=True)
+class SpeedDroop(Effect):
+    """The speed falls by the droop times the mean torque, ``B w e^2/2 + 2 e F_c/pi`` a strut.
+
+    Who analyses at the measured period sees a frequency that is not as set; who uses the set speed
+    sees ``2 M w dw e``. Present in water more than in air. A flywheel leaves little of the ripple
+    at twice the frequency, which is part of the prediction.
+    """
+
+    code: ClassVar[str] = "D2"
+    name: ClassVar[str] = "speed-droop"
+    title: ClassVar[str] = "Mean speed that falls under load"
+    stage: ClassVar[StageName] = StageName.DRIVE
+
+    droop_rad_s_n_m: float = parameter(0.02, 1e-4, 0.5, "rad/(s N m)", "speed lost per mean torque")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with a motor that nothing brings back to its speed.
+
+        A motor that the rig has keeps its inertia, and its droop is added to.
+        """
+        old = rig.drive.motor
+        inertia = FLYWHEEL_KG_M2 if old is None else old.shaft_inertia_kg_m2
+        whole = self.droop_rad_s_n_m + (0.0 if old is None else -droop(old))
+        motor = Yielding(inertia, 1.0 / whole).motor()
+        if old is not None:
+            motor = replace(motor, guides=old.guides, cogging=old.cogging)
+        return replace(rig, drive=replace(rig.drive, motor=motor))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return what slower turning does to the model, against a drive that holds its speed."""
+        return Yielding(FLYWHEEL_KG_M2, 1.0 / self.droop_rad_s_n_m).signature(situation, {})

@@ -1,0 +1,40 @@
+"""D5: friction of the struts' guides above the dynamometers."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+
+
+@dataclass(frozen=True)
+class GuideFriction(Effect):
+    """A torque, ``F_c e |cos|`` and ``b w e^2 cos^2`` a strut, and nothing in any force.
+
+    What it does to the speed of a motor that yields is that motor's: see speed-droop and
+    load-ripple.
+    """
+
+    code: ClassVar[str] = "D5"
+    name: ClassVar[str] = "guide-friction"
+    title: ClassVar[str] = "Friction of the guides above the dynamometers"
+    stage: ClassVar[StageName] = StageName.DRIVE
+
+    friction_n: float = parameter(5.0, 0.0, 50.0, "N", "friction force at each strut")
+    viscous_n_s_m: float = parameter(0.0, 0.0, 200.0, "N s/m", "viscous friction at each strut")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with the friction as a load of its shaft."""
+        guides = rig.drive.guides
+        more = replace(
+            guides,
+            coulomb_n=guides.coulomb_n + self.friction_n,
+            viscous_n_s_m=guides.viscous_n_s_m + self.viscous_n_s_m,
+        )
+        return replace(rig, drive=replace(rig.drive, guides=more))
+
+    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+        """Return no change: nothing is below the guides that could measure it."""
+        return {}
