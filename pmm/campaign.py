@@ -14,6 +14,7 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
+from pmm.model_uncertainty import ModelUncertainty
 from sim.acquisition import Acquisition
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers
@@ -99,6 +100,8 @@ class Campaign:
         How the recordings are analysed, unless the command line says otherwise.
     columns
         Which column of the text recordings is what.
+    model_uncertainty
+        Standard uncertainties of the model's numbers, as ``pmm inertia`` writes them.
     """
 
     name: str = "campaign"
@@ -113,6 +116,7 @@ class Campaign:
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: Settings = field(default_factory=Settings)
     columns: ColumnMap | None = None
+    model_uncertainty: ModelUncertainty | None = None
     runs: tuple[Run, ...] = ()
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.

@@ -14,6 +14,7 @@ from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Osci
 from hardware.description.setpoint import check_within
 from pmm.campaign import Campaign, Run
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.model_uncertainty import take_uncertainty
 
 PRESETS = {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
 
@@ -40,7 +41,10 @@ def read_campaign(path: str | Path) -> Campaign:
     """
     path = Path(path)
     original = read_toml(path)
-    table, faults = deepcopy(original), list(limit_faults(original))
+    faults: list[Fault] = []
+    table = deepcopy(original)
+    uncertainty = take_uncertainty(table, faults)
+    faults += limit_faults(table)
     columns = _take_columns(table, path, faults)
     _expand_preset(table, faults)
     _expand_units(table, faults)
@@ -50,7 +54,7 @@ def read_campaign(path: str | Path) -> Campaign:
     if campaign is None or faults:
         raise as_error(path, faults, original)
     name = campaign.name if "name" in original else path.resolve().parent.name
-    return replace(campaign, name=name, columns=columns)
+    return replace(campaign, name=name, columns=columns, model_uncertainty=uncertainty)
 
 
 def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> ColumnMap | None:
