@@ -1,0 +1,65 @@
+"""A8: hum from the mains in the force channels."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import SetPoint
+from sim.acquisition import Digitiser
+from sim.effects.effect import Effect, Lines, Signature, StageName, parameter
+from sim.effects.measured import with_force_channels
+from sim.effects.situation import RECORDED_FORCES, Situation
+from sim.rig import SimulatedRig
+
+
+@dataclass(frozen=True)
+class Hum(Effect):
+    """A line at the mains' frequency, sampled as it is: it folds to ``|f - k f_s|``.
+
+    It is no multiple of the shaft's frequency and has no harmonic of its own. Where it folds onto
+    one, a slightly other frequency of the shaft moves the harmonic and leaves the line.
+    """
+
+    code: ClassVar[str] = "A8"
+    name: ClassVar[str] = "hum"
+    title: ClassVar[str] = "Hum of the mains, and its alias"
+    stage: ClassVar[StageName] = StageName.ACQUISITION
+
+    amplitude_n: float = parameter(0.2, 0.0, 20.0, "N", "amplitude in both force channels")
+    frequency_hz: float = parameter(50.0, 1.0, 2000.0, "Hz", "frequency of the mains, or of what")
+    phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with the hum; hum of the same frequency that it has already is added to.
+
+        Raises
+        ------
+        ConfigurationError
+            If a channel hums at another frequency already.
+        """
+
+        def humming(one: Digitiser, _: int) -> Digitiser:
+            own = self.amplitude_n * np.exp(1j * self.phase_rad)
+            if one.hum:
+                if one.hum_hz != self.frequency_hz:
+                    raise ConfigurationError(
+                        f"a force channel hums at {one.hum_hz:g} Hz already, and can have no "
+                        f"second line at frequency_hz = {self.frequency_hz:g}; give them the same"
+                    )
+                own += one.hum * np.exp(1j * one.hum_phase_rad)
+            size, phase = float(abs(own)), float(np.angle(own))
+            return replace(one, hum=size, hum_hz=self.frequency_hz, hum_phase_rad=phase)
+
+        return with_force_channels(rig, humming)
+
+    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+        """Return nothing: it does not repeat with the shaft."""
+        return {}
+
+    def lines(self, situation: Situation) -> Lines:  # noqa: ARG002
+        """Return the line in both channels, before it folds."""
+        line = self.amplitude_n * complex(np.exp(1j * self.phase_rad))
+        return dict.fromkeys(((name, self.frequency_hz) for name in RECORDED_FORCES), line)
