@@ -27,7 +27,7 @@ def ellipse_figure(name: str, axes_found: PlaneAxes) -> "Figure":
         figure = Figure(figsize=(8.0, 6.2), layout="constrained")
         figure.suptitle(f"{plain(name)}: inertia ellipse")
         axes = figure.add_subplot()
-        points = inertia_ellipse(axes_found.roll_m, axes_found.yaw_m, axes_found.angle_rad)
+        points = inertia_ellipse(axes_found.roll_m, axes_found.yaw_m, axes_found.angle_rad, 721)
         axes.plot(points[:, 0], points[:, 1], color=PALETTE[0], lw=1.4, label="1/gyradius")
         _draw_principal(axes, axes_found)
         _draw_measured(axes, axes_found)
@@ -57,7 +57,7 @@ def _draw_principal(axes: "Axes", found: PlaneAxes) -> None:
 
 def _draw_measured(axes: "Axes", found: PlaneAxes) -> None:
     label = "measured, ±u"
-    for angle, gyradius in found.measured:
+    for row, (angle, gyradius) in enumerate(sorted(found.measured, key=lambda one: one[0])):
         reach = np.array([gyradius.value - gyradius.uncertainty, gyradius.value])
         reach = 1.0 / np.append(reach, gyradius.value + gyradius.uncertainty)
         axes.plot(reach * math.sin(angle), reach * math.cos(angle), "-", color=FIT, lw=2.0)
@@ -66,8 +66,9 @@ def _draw_measured(axes: "Axes", found: PlaneAxes) -> None:
         axes.annotate(
             f"{math.degrees(angle):.0f} deg, {1e3 * gyradius.value:.1f} mm",
             place,
-            xytext=(7.0, 7.0),
+            xytext=(0.0, -16.0 - 13.0 * (row % 3)),
             textcoords="offset points",
+            ha="center",
             fontsize=8.0,
         )
         label = ""

@@ -25,17 +25,18 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
     """
     from matplotlib.figure import Figure
 
+    found = {one.name: one.estimate.value for one in outcome.findings}
     with drawing():
         figure = Figure(figsize=(10.5, 4.6), layout="constrained")
         figure.suptitle(f"{plain(outcome.name)}: lines for the pitch gyradius")
         axes = figure.add_subplot()
         for number, (reading, rows) in enumerate(errors.items()):
             line, error = np.array(rows).T
-            least = int(np.argmin(error))
+            best = found[f"bifilar_best_line_{reading}_m"]
             color = PALETTE[number]
-            label = f"{_WORDS[reading]}: best {line[least]:.2f} m"
+            label = f"{_WORDS[reading]}: best {best:.2f} m"
             axes.loglog(line, 1e3 * error, color=color, label=label)
-            axes.plot(line[least], 1e3 * error[least], "o", color=color)
+            axes.plot(best, 1e3 * float(np.interp(best, line, error)), "o", color=color)
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(lambda value, _: f"{value:g}")
             axis.set_minor_formatter(lambda _value, _place: "")
