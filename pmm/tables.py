@@ -9,11 +9,15 @@ import numpy as np
 
 from hardware.description.flags import Flag
 from pmm.classic_rows import ClassicRow, classic_rows
+from pmm.report.labels import units_loads_first
 
 if TYPE_CHECKING:
     from analysis.resolver.analyse import Analysis
     from analysis.resolver.harmonics import Harmonics
 
+# Of a channel's largest value: what is as small is left by the arithmetic.
+_ROUNDING = 1e-12
+_OPEN_DEG = 90.0  # half-width of a phase that is not known
 # An amplitude this many times its half-width is no play of the noise.
 _SIGNIFICANT = 2.0
 
@@ -28,6 +32,24 @@ class Value:
     def __str__(self) -> str:
         """Return value and half-width with as many digits as they bear."""
         return format_value(self.value, self.half_width)
+
+
+def floored(value: float, half_width: float, size: float) -> tuple[float, float]:
+    """Return a value and its half-width without the play of rounding.
+
+    Parameters
+    ----------
+    size
+        Largest value of the channel: no half-width is narrower than 1e-12 of it, and a value that
+        is smaller is 0.
+    """
+    floor = _ROUNDING * size
+    return 0.0 if abs(value) < floor else value, max(half_width, floor)
+
+
+def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
+    """Whether a phase is not known: its interval takes in half the circle, or nothing turns."""
+    return phase_half_width_deg >= _OPEN_DEG or amplitude == 0.0
 
 
 @dataclass(frozen=True)
@@ -57,9 +79,9 @@ class ChannelRows:
     harmonics: tuple[HarmonicRow, ...]
 
     @property
-    def label(self) -> str:
-        """Name and unit."""
-        return f"{self.name} [{self.unit}]" if self.unit else f"{self.name} [unit not stated]"
+    def size(self) -> float:
+        """Largest value of the channel that the rows tell of."""
+        return max(abs(self.mean.value), *(row.amplitude.value for row in self.harmonics))
 
 
 @dataclass(frozen=True)
@@ -91,18 +113,25 @@ class RunRows:
 
     Attributes
     ----------
+    samples, sample_rate_hz, duration_s
+        Of each channel; the duration is from the first sample to the last.
     reference, reference_channel, reference_frequency_hz
         What told the phase; the channel is ``None`` for a photocell or a given frequency.
     window
         ``"found steady"``, ``"given"`` or ``"not steady"`` (all periods were used).
     window_opened_s, window_closed_s, window_periods
         The periods that the gates were taken from.
+    steady_tolerance
+        Within which first harmonics keep in a steady stretch, relative to the usual amplitude.
     let_through, classic
         What was asked for besides, of the first gate.
     """
 
     file: str
     run: str
+    samples: int
+    sample_rate_hz: float
+    duration_s: float
     reference: str
     reference_channel: str | None
     reference_frequency_hz: float
@@ -110,6 +139,7 @@ class RunRows:
     window_opened_s: float
     window_closed_s: float
     window_periods: int
+    steady_tolerance: float
     gates: tuple[GateRows, ...]
     flags: tuple[Flag, ...]
     let_through: tuple[LetThrough, ...] = ()
@@ -137,17 +167,21 @@ def run_rows(
     classic
         Whether to read the modes of 1963 too.
     """
-    steady = analysis.steady_sums
+    steady, recording = analysis.steady_sums, analysis.recording
     return RunRows(
         file=file,
-        run=analysis.recording.name,
+        run=recording.name,
+        samples=recording.sample_count,
+        sample_rate_hz=recording.sample_rate_hz,
+        duration_s=recording.end_s - recording.start_s,
         reference=str(analysis.reference.source),
         reference_channel=analysis.reference.channel,
         reference_frequency_hz=analysis.reference.frequency_hz,
-        window=_window(analysis),
+        window=window_kind(analysis),
         window_opened_s=float(steady.opened_s[0]),
         window_closed_s=float(steady.closed_s[-1]),
         window_periods=steady.period_count,
+        steady_tolerance=analysis.settings.steady_tolerance,
         gates=tuple(gate_rows(reading, level) for reading in analysis.readings),
         flags=analysis.flags,
         let_through=_let_through(analysis, vibrations_hz),
@@ -167,7 +201,8 @@ def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple
     )
 
 
-def _window(analysis: "Analysis") -> str:
+def window_kind(analysis: "Analysis") -> str:
+    """Return how the window was come by; see :class:`RunRows`."""
     if analysis.settings.opens_s is not None:
         return "given"
     steady = all(flag.code != "not_steady" for flag in analysis.flags)
@@ -175,7 +210,7 @@ def _window(analysis: "Analysis") -> str:
 
 
 def gate_rows(reading: "Harmonics", level: float) -> GateRows:
-    """Turn one gate's harmonics into rows with intervals of some probability."""
+    """Turn one gate's harmonics into rows with intervals of some probability, loads first."""
     half_width = reading.half_width(level)
     factor = reading.coverage_factor(level)[1::2]
     along, across = reading.polar_uncertainty()
@@ -210,20 +245,27 @@ def gate_rows(reading: "Harmonics", level: float) -> GateRows:
                 drift_per_s=float(reading.drift_per_s[row]),
                 harmonics=tuple(harmonic(row, n) for n in range(reading.order)),
             )
-            for row, name in enumerate(reading.channel_names)
+            for row in units_loads_first(reading.units)
+            for name in (reading.channel_names[row],)
         ),
         flags=reading.flags,
     )
 
 
-def format_value(value: float, half_width: float) -> str:
+def format_value(value: float, half_width: float, size: float = 0.0) -> str:
     """Return ``value ± half_width``: two significant digits of the latter, as many of the former.
 
     Without an interval the value is given six digits and the half-width as ``?``.
+
+    Parameters
+    ----------
+    size
+        See :func:`floored`.
     """
+    value, half_width = floored(value, half_width, size)
     if not (math.isfinite(value) and math.isfinite(half_width)):
         return f"{value:.6g} ± ?"
-    if half_width <= 1e-12 * abs(value):
+    if half_width <= _ROUNDING * max(abs(value), size):
         return f"{value:.12g} ± {half_width:.2g}"
     last = math.floor(math.log10(float(f"{half_width:.1e}"))) - 1
     top = math.floor(math.log10(max(abs(value), half_width)))

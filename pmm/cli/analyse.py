@@ -9,7 +9,6 @@ DEFAULT_LEVEL = 0.95  # probability of the intervals
 
 
 _POSITIVE = click.FloatRange(min=0.0, min_open=True)
-_PROBABILITY = click.FloatRange(min=0.0, max=1.0, min_open=True, max_open=True)
 _COUNT = click.IntRange(min=1)
 
 
@@ -21,6 +20,14 @@ def _finite(
     if value is not None and not math.isfinite(value):
         raise click.BadParameter(f"{value} is not a finite number.")
     return value
+
+
+def _probability(ctx: click.Context, param: click.Parameter, value: float) -> float:
+    _finite(ctx, param, value)
+    if 0.0 < value < 1.0:
+        return value
+    per_cent = f"; for {value:g} % write {value / 100.0:g}" if 1.0 < value < 100.0 else ""
+    raise click.BadParameter(f"{value:g} is no probability between 0 and 1{per_cent}.")
 
 
 def _all_finite(
@@ -101,13 +108,18 @@ def _all_finite(
 )
 @click.option("--hann", is_flag=True, help="Taper each gate: for long gates with interference.")
 @click.option("--no-drift", is_flag=True, help="Leave a linear drift in.")
-@click.option("--map", "column_map", metavar="TOML", help="Which column of a text file is what.")
+@click.option(
+    "--map",
+    "column_map",
+    metavar="TOML",
+    help="Which column of a text file is what; other columns are not read.",
+)
 @click.option(
     "--column",
     "columns",
     multiple=True,
     metavar='"NAME=SOURCE[:UNIT]"',
-    help="The same, one column at a time; repeatable.",
+    help="The same, one column at a time; repeatable. The time column is time=SOURCE:UNIT.",
 )
 @click.option(
     "--sample-rate",
@@ -118,8 +130,8 @@ def _all_finite(
 )
 @click.option(
     "--level",
-    type=_PROBABILITY,
-    callback=_finite,
+    type=float,
+    callback=_probability,
     metavar="P",
     default=DEFAULT_LEVEL,
     show_default=True,
@@ -138,6 +150,9 @@ def analyse(**options: Any) -> None:
     \b
     pmm analyse run.csv --reference stroke --channel Fy
     pmm analyse campaign/ --plot plots
+
+    Exit status: 0 done; 1 the data say no; 2 the request was wrong: an option, or the name of a
+    file, folder, column or channel that cannot be. Of several, 1 if any file's data say no.
     """  # noqa: D301
     from pmm.cli.analysing import run
     from pmm.cli.request import Request

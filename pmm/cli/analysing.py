@@ -12,31 +12,36 @@ import click
 from analysis.readers import write_recording
 from analysis.resolver.analyse import Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
-from hardware.description.errors import ConfigurationError, PmmError
+from analysis.resolver.reference import NoReferenceError
+from hardware.description.errors import ConfigurationError, DataError, PmmError
+from pmm.cli.folders import check_folder
+from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.request import Request
-from pmm.cli.screen import error_line, messages, output, show_progress
+from pmm.cli.screen import error_line, messages, output, print_flags, show_progress
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
     from analysis.recording import Recording
+    from hardware.description.flags import Flag
 
 JSON_SCHEMA = "pmm-analysis-1"
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A file that could not be analysed, and why."""
+    """A file that could not be analysed, why, and what was noticed when it was read."""
 
     file: str
     message: str
     exit_status: int
+    flags: "tuple[Flag, ...]" = ()
 
 
 def run(request: Request) -> None:
-    """Analyse all files; what fails is said at the end, and the others go on.
+    """Analyse all files, each printed when it is done; what fails does not stop the others.
 
     Raises
     ------
@@ -48,19 +53,22 @@ def run(request: Request) -> None:
     columns = chosen_columns(request.column_map, request.columns)
     done: list[RunRows] = []
     failed: list[Failure] = []
-    for source in show_progress(found.sources, "analysing"):
-        try:
-            done.append(_analyse_source(source, request, columns))
-        except PmmError as error:
-            failed.append(Failure(str(source.path), str(error), error.exit_status))
+    # The tables of one run after the other tell how far it is; a document comes at the end.
+    sources = show_progress(found.sources, "analysing") if request.as_json else found.sources
+    for source in sources:
+        one = _try_source(source, request, columns)
+        if isinstance(one, Failure):
+            failed.append(one)
+            _report(one)
+        elif request.as_json:
+            done.append(one)
+        else:
+            print_run(output(), one, request.level)
     if request.as_json:
         text = document(done, failed, found, request.level)
         click.echo(json.dumps(text, indent=1, allow_nan=False))
-    else:
-        console = output()
-        for rows in done:
-            print_run(console, rows, request.level)
-    _report(failed, found)
+    for path in found.not_recorded:
+        messages().print(f"not recorded yet: {path}")
     if failed:
         click.get_current_context().exit(min(failure.exit_status for failure in failed))
 
@@ -81,8 +89,12 @@ def _check(request: Request, found: Found) -> None:
         )
     if request.bandwidth is not None and request.carrier is None:
         raise ConfigurationError("--bandwidth belongs to --carrier; give both or neither")
-    if request.plot or request.save:
-        _check_names(found)
+    for option, folder in (("--plot", request.plot), ("--save", request.save)):
+        if folder:
+            _check_names(found)
+            check_folder(Path(folder), option)
+    if request.save:
+        _check_not_there(Path(request.save), found)
 
 
 def _check_names(found: Found) -> None:
@@ -95,13 +107,35 @@ def _check_names(found: Found) -> None:
         )
 
 
-def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None") -> RunRows:
-    recording = read_source(
-        source, columns, sample_rate_hz=request.sample_rate, edges=request.edges
-    )
+def _check_not_there(folder: Path, found: Found) -> None:
+    there = [folder / f"{source.stem}.nc" for source in found.sources]
+    there = [path for path in there if path.exists()]
+    if there:
+        names = ", ".join(map(str, there))
+        raise ConfigurationError(f"{names}: exists already; --save to another folder")
+
+
+def _try_source(source: Source, request: Request, columns: "ColumnMap | None") -> RunRows | Failure:
+    """Read and analyse one recording; what the reader noticed is kept whatever happens then."""
+    flags: tuple[Flag, ...] = ()
+    try:
+        recording = read_source(
+            source, columns, sample_rate_hz=request.sample_rate, edges=request.edges
+        )
+        flags = recording.flags
+        return _analyse_recording(recording, source, request, columns)
+    except PmmError as error:
+        hint = f" ({NO_REFERENCE})" if isinstance(error, NoReferenceError) else ""
+        return Failure(str(source.path), f"{error}{hint}", error.exit_status, flags)
+
+
+def _analyse_recording(
+    recording: "Recording", source: Source, request: Request, columns: "ColumnMap | None"
+) -> RunRows:
     campaign = source.campaign
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else Settings())
+    _check_channels(recording, (*settings.channels, choice.channel), columns)
     if request.save is not None:
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
@@ -122,6 +156,19 @@ def _analyse_source(source: Source, request: Request, columns: "ColumnMap | None
     )
 
 
+def _check_channels(
+    recording: "Recording", names: Sequence[str | None], columns: "ColumnMap | None"
+) -> None:
+    """Refuse channels that are named and not there: that is the request's fault."""
+    for name in names:
+        try:
+            recording.index(name) if name is not None else None
+        except DataError as error:
+            left_out = columns is not None and columns.channels and not columns.keep_others
+            hint = COLUMN_LEFT_OUT if left_out else ""
+            raise ConfigurationError(f"{error}{hint}") from None
+
+
 def _detected(
     recording: "Recording",
     channels: Sequence[str],
@@ -137,11 +184,9 @@ def _detected(
     return demodulate(recording, channels, carrier_hz, **bandwidth)
 
 
-def _report(failed: list[Failure], found: Found) -> None:
-    for path in found.not_recorded:
-        messages().print(f"not recorded yet: {path}")
-    for failure in failed:
-        error_line(_with_file(failure))
+def _report(failure: Failure) -> None:
+    print_flags(messages(), failure.flags)
+    error_line(_with_file(failure))
 
 
 def _with_file(failure: Failure) -> str:
@@ -159,7 +204,10 @@ def document(
             "level": level,
             "runs": [asdict(rows) for rows in done],
             "not_recorded": [str(path) for path in found.not_recorded],
-            "failed": [{"file": one.file, "message": one.message} for one in failed],
+            "failed": [
+                {"file": one.file, "message": one.message, "flags": list(map(asdict, one.flags))}
+                for one in failed
+            ],
         }
     )
     return text

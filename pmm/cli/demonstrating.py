@@ -10,6 +10,8 @@ from analysis.resolver.analyse import Analysis, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from pmm.campaign_file import read_campaign
 from pmm.cli.analyse import DEFAULT_LEVEL
+from pmm.cli.folders import check_folder
+from pmm.cli.hints import pasted
 from pmm.cli.printing import print_compact
 from pmm.cli.screen import busy, output, show_progress
 from pmm.cli.simulating import copy_campaign, simulate_runs
@@ -30,6 +32,7 @@ class Shown:
 def run(folder_name: str, *, with_horizontal: bool = True) -> None:
     """Simulate, analyse, print and report; what an earlier demo wrote there is replaced."""
     folder = Path(folder_name)
+    check_folder(folder, "--output")
     names = CAMPAIGNS if with_horizontal else CAMPAIGNS[:1]
     campaigns = [_campaign(name, folder / name) for name in names]
     runs = [one for shown in campaigns for one in shown]
@@ -39,8 +42,8 @@ def run(folder_name: str, *, with_horizontal: bool = True) -> None:
         (FORCE_AFT.name, FORCE_FORE.name),
     )
     _write_plots([shown[0] for shown in campaigns], folder / "plots")
-    _write_page(runs, folder / PAGE, f"pmm demo --output {folder}")
-    again = f"pmm analyse {runs[0].path}"
+    _write_page(runs, folder / PAGE, pasted("demo", "--output", folder))
+    again = pasted("analyse", runs[0].path)
     for line in (f"plots   {folder / 'plots'}", f"again   {again}", f"{folder / PAGE}"):
         output().print(line, soft_wrap=True)
 

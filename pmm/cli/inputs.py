@@ -61,9 +61,9 @@ def find_sources(paths: Sequence[str]) -> Found:
     Raises
     ------
     DataError
-        For a folder without a campaign, and a campaign without any recording.
+        For a campaign without any recording.
     ConfigurationError
-        If a campaign file is wrong.
+        If a campaign file is wrong, or a folder has none.
     """
     return sum((_find(Path(path)) for path in paths), Found())
 
@@ -71,7 +71,7 @@ def find_sources(paths: Sequence[str]) -> Found:
 def _find(path: Path) -> Found:
     if path.is_dir():
         if not (path / CAMPAIGN_FILE).exists():
-            raise DataError(
+            raise ConfigurationError(
                 f"{path}: a folder without a {CAMPAIGN_FILE}; name the recordings in it, "
                 "or write one (docs/campaigns.md)"
             )
@@ -84,7 +84,7 @@ def _find(path: Path) -> Found:
 def _find_in_campaign(path: Path) -> Found:
     campaign = read_campaign(path)
     if not campaign.runs:
-        raise DataError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
+        raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
     sources, not_recorded = [], []
     for run in campaign.runs:
         recording = run.recording_path(path.parent)
@@ -135,12 +135,15 @@ def read_source(
 
     Raises
     ------
+    ConfigurationError
+        If there is no such file.
     DataError, ConfigurationError
         As :func:`analysis.readers.read_recording` does.
     """
     from analysis.readers import read_recording
     from analysis.readers.photocell import read_edges
 
+    _check_there(source.path)
     if columns is None and source.campaign and source.path.suffix != ".nc":
         columns = source.campaign.columns
     recording = read_recording(source.path, columns, sample_rate_hz=sample_rate_hz)
@@ -148,5 +151,12 @@ def read_source(
         recording = replace(recording, set_point=source.set_point)
     if edges is None:
         return recording
-    times = read_edges(Path(edges.replace("{stem}", source.stem)))
-    return replace(recording, photocell_edges_s=times)
+    edges_file = Path(edges.replace("{stem}", source.stem))
+    _check_there(edges_file)
+    return replace(recording, photocell_edges_s=read_edges(edges_file))
+
+
+def _check_there(path: Path) -> None:
+    if not path.exists():
+        what = "file" if path.suffix else "file or folder"
+        raise ConfigurationError(f"{path}: no such {what}")

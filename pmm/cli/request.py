@@ -52,7 +52,7 @@ class Request:
     def settings(self, base: Settings) -> Settings:
         """Return the settings wanted, on top of what a campaign says."""
         given: dict[str, Any] = {
-            "channels": self.channels or None,
+            "channels": tuple(dict.fromkeys(self.channels)) or None,
             "harmonics": self.harmonics,
             "gate_periods": self.gate,
             "opens_s": self.opens_at,

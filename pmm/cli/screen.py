@@ -61,8 +61,10 @@ def flag_style(severity: "Severity") -> str:
 
 
 def print_flags(console: "Console", flags: "Sequence[Flag]") -> None:
-    """Print flags, one a line: severity, channel, message and code."""
+    """Print flags, one a line: severity, channel, message, options that act on it, and code."""
     from rich.text import Text
+
+    from pmm.cli.hints import FLAG_OPTIONS
 
     for flag in flags:
         channel = f"{flag.channel}: " if flag.channel else ""
@@ -71,6 +73,7 @@ def print_flags(console: "Console", flags: "Sequence[Flag]") -> None:
         line = Text.assemble(
             (f"{flag.severity.upper():8s}", flag_style(flag.severity)),
             f"{channel}{flag.message}",
+            f" ({FLAG_OPTIONS[flag.code]})" if flag.code in FLAG_OPTIONS else "",
             (f" [{flag.code}]", "dim"),
         )
         console.print(line, soft_wrap=True)

@@ -11,10 +11,13 @@ import click
 import numpy as np
 
 from analysis.readers import from_dataset, write_recording
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
+from pmm.cli.folders import check_folder
+from pmm.cli.hints import pasted
+from pmm.cli.printing import counted
 from pmm.cli.screen import output, print_flags, show_progress
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, user_effects
@@ -61,9 +64,8 @@ def run(request: Request) -> None:
     Raises
     ------
     ConfigurationError
-        If the campaign or an effect is wrong, or a run is beyond the rig's limits.
-    DataError
-        If a recording is there already.
+        If the campaign or an effect is wrong, a run is beyond the rig's limits, or a recording is
+        there already.
     """
     path = Path(request.campaign)
     path = path / CAMPAIGN_FILE if path.is_dir() else path
@@ -110,12 +112,13 @@ def check_output(
     Raises
     ------
     ConfigurationError
-        If the campaign has no runs, or is one of measured recordings and lies in that very folder.
-    DataError
-        If a recording, or another campaign file, is there and may not be overwritten.
+        If the campaign has no runs, or is one of measured recordings and lies in that very folder;
+        if the folder cannot be written to, or a recording, or another campaign file, is there and
+        may not be overwritten.
     """
     if not runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
+    check_folder(folder, "--output")
     target = folder / CAMPAIGN_FILE
     own = target.exists() and target.samefile(path)
     if own and any(run.file for run in campaign.runs):
@@ -130,7 +133,7 @@ def check_output(
         there.append(target)
     if there:
         names = ", ".join(str(one) for one in there)
-        raise DataError(f"{names}: there already; choose another --output, or --overwrite")
+        raise ConfigurationError(f"{names}: there already; choose another --output, or --overwrite")
 
 
 def simulate_runs(
@@ -148,10 +151,10 @@ def simulate_runs(
     on a run as its place in the whole campaign asks, whichever runs are simulated.
     """
     rig = campaign.rig()
-    folder.mkdir(parents=True, exist_ok=True)
     for one in show_progress(runs, "simulating"):
         run_seed = seed_of(seed, one.name)
         recording = simulate_recording(rig, campaign, one, run_seed, effects)
+        folder.mkdir(parents=True, exist_ok=True)  # not before a run is known to be possible
         file = write_recording(recording, folder / f"{one.name}.nc", overwrite=overwrite)
         rate, count = recording.sample_rate_hz, recording.sample_count
         yield Written(one, str(file), run_seed, rate, count, recording.flags)
@@ -220,7 +223,7 @@ def _print(
     from rich.table import Table
 
     console = output()
-    table = Table(title=f"{campaign.name}: {len(written)} runs", title_justify="left")
+    table = Table(title=f"{campaign.name}: {counted(len(written), 'run')}", title_justify="left")
     table.add_column("run", overflow="fold")
     for heading in ("f [Hz]", "e [mm]", "phase [deg]", "U [m/s]", "periods", "samples"):
         table.add_column(heading, justify="right")
@@ -243,4 +246,4 @@ def _print(
         console.print(f"effect {effect.name}: {values}", soft_wrap=True)
     for one in written:
         print_flags(console, one.flags)
-    console.print(f"pmm analyse {folder}", soft_wrap=True)
+    console.print(pasted("analyse", folder), soft_wrap=True)

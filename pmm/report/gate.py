@@ -12,6 +12,8 @@ from pmm.report.envelope import Trace, overview, zigzag
 from pmm.report.gated import caption, fitted, gate_sums, reading_of
 from pmm.report.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.report.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
+from pmm.report.tabulate import WINDOWS
+from pmm.tables import window_kind
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -38,9 +40,10 @@ class _Curves:
 def gate_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     """Draw each channel over the whole record, and over the last two periods of one gate.
 
-    Shaded are the record, the steady stretch and the gate. The fit (mean, harmonics and drift) lies
-    over the trace inside the gate; what it leaves is below the last two periods. Ticks along the
-    bottom are where whole periods meet, those along the top the photocell's pulses.
+    Shaded are the record, the steady stretch (or the window given) and the gate. The fit (mean,
+    harmonics and drift) lies over the trace inside the gate; what it leaves is below the last two
+    periods. Ticks along the bottom are where whole periods meet, those along the top the
+    photocell's pulses.
 
     Raises
     ------
@@ -108,6 +111,7 @@ def _draw_record(
 ) -> list["Artist"]:
     recording, steady = analysis.recording, analysis.steady_sums
     shown = display(recording.channels[row].unit)
+    window = WINDOWS[window_kind(analysis)]
     axes.set_ylabel(axis_label(recording.channels[row]))
     axes.set_xlim(recording.start_s, recording.end_s)
     shades = [
@@ -117,7 +121,7 @@ def _draw_record(
         # Each lower than the one around it, so that it is seen even where the times are the same.
         for start_s, stop_s, margin, color, label in (
             (recording.start_s, recording.end_s, 0.0, RECORD_SHADE, "record"),
-            (steady.opened_s[0], steady.closed_s[-1], 0.0, STEADY_SHADE, "steady stretch"),
+            (steady.opened_s[0], steady.closed_s[-1], 0.0, STEADY_SHADE, window),
             (reading.opened_s, reading.closed_s, 0.12, GATE_SHADE, "gate"),
         )
     ]

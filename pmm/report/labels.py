@@ -1,6 +1,7 @@
 """Names and units as people read them, safe to draw."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from analysis.recording import Recording
@@ -51,7 +52,9 @@ def axis_label(channel: Channel) -> str:
 
 def loads_first(recording: Recording) -> list[int]:
     """Return the channels' rows with forces and moments before the rest."""
-    return sorted(
-        range(len(recording.channels)),
-        key=lambda row: recording.channels[row].quantity not in _LOADS,
-    )
+    return units_loads_first([channel.unit for channel in recording.channels])
+
+
+def units_loads_first(units: Sequence[str]) -> list[int]:
+    """Return the rows of channels in these SI units with forces and moments before the rest."""
+    return sorted(range(len(units)), key=lambda row: Channel("", units[row]).quantity not in _LOADS)

@@ -14,8 +14,8 @@ from pmm.report.style import render
 from pmm.report.tabulate import GateTable, gate_table, provenance, versions
 
 _CAPTIONS = {
-    "gate": "The record, the steady stretch and the gate, with the fit over the trace; beside it "
-    "the end of the gate, and the residual of the fit.",
+    "gate": "The record, the window that was found or given and the gate, with the fit over the "
+    "trace; beside it the end of the gate, and the residual of the fit.",
     "phasors": "Harmonics as phasors with their 95 % regions: in phase to the right, quadrature "
     "up. Below each, how the gate's single periods spread about it, magnified.",
     "spectrum": "Amplitude spectrum over the gate, and the part of a vibration that the resolver "

@@ -200,7 +200,7 @@ def _legend(part: "SubFigure", phasors: list[_Phasor], reading: Harmonics) -> No
         Line2D([], [], ls="", marker=".", ms=6.0, color="#555555", alpha=0.5, label=dots)
     )
     known = any(phasor.ellipse for phasor in phasors)
-    region = "95 % region" if known else "no 95 % region: too few periods"
+    region = "95 % region of the mean phasor" if known else "no 95 % region: too few periods"
     handles.append(
         Line2D([], [], ls="", marker="o", mfc="none", mec="#555555", ms=7.0, label=region)
     )

@@ -2,6 +2,8 @@
 
 import math
 
+from pmm.tables import is_open
+
 _NEGLIGIBLE = 1e-8  # of a value: its digits would run on without saying more
 _SIGNIFICANT = 4  # digits where no interval says how many
 
@@ -26,9 +28,9 @@ def rounded(value: float, half_width: float) -> str:
     return _minus(f"{value:z.{places}f} ± {half_width:.{places}f}")
 
 
-def rounded_phase(phase_deg: float, half_width_deg: float) -> str:
-    """Return a phase with its interval, or that it is open where any angle lies in it."""
-    if half_width_deg >= 180.0:
+def rounded_phase(phase_deg: float, half_width_deg: float, amplitude: float = 1.0) -> str:
+    """Return a phase with its interval, or that it is open (:func:`pmm.tables.is_open`)."""
+    if is_open(half_width_deg, amplitude):
         return "open"
     return rounded(phase_deg, half_width_deg)
 

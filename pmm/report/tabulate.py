@@ -12,7 +12,14 @@ from hardware.description.flags import Flag
 from pmm.report.gated import caption
 from pmm.report.labels import display, loads_first, plain
 from pmm.report.rounding import rounded, rounded_phase
+from pmm.tables import floored, window_kind
 
+# What a window is called by how it was come by.
+WINDOWS = {
+    "found steady": "steady stretch",
+    "given": "window given",
+    "not steady": "all periods, not steady",
+}
 _PACKAGES = ("pmm", "numpy", "scipy", "matplotlib")
 
 
@@ -42,8 +49,11 @@ class GateTable:
 def gate_table(analysis: Analysis, reading: Harmonics) -> GateTable:
     """Return the table of one reading, loads first."""
     order = loads_first(analysis.recording)
+    source = str(reading.interval_source)
     notes = (
-        f"95 % intervals from: {reading.interval_source}.",
+        f"No intervals{source.removeprefix('none')}."
+        if source.startswith("none")
+        else f"95 % intervals from the {source}.",
         f"Drift from: {reading.drift_source}.",
         f"Estimator: {reading.estimator}.",
     )
@@ -57,7 +67,13 @@ def _channel_rows(reading: Harmonics, channel: int) -> list[Row]:
     half = reading.half_width()[channel] * shown.factor
     factors = reading.coverage_factor()[1::2]
     along, sideways = (part[channel] * factors for part in reading.polar_uncertainty())
-    rows = [Row(name, shown.label, 0, rounded(values[0], half[0]), "", "", "")]
+    amplitude = reading.amplitude[channel] * shown.factor
+    size = float(max(abs(values[0]), amplitude.max()))
+
+    def told(value: float, half_width: float) -> str:
+        return rounded(*floored(float(value), float(half_width), size))
+
+    rows = [Row(name, shown.label, 0, told(values[0], half[0]), "", "", "")]
     for n in range(reading.order):
         s, c = 2 * n + 1, 2 * n + 2
         rows.append(
@@ -65,11 +81,13 @@ def _channel_rows(reading: Harmonics, channel: int) -> list[Row]:
                 name,
                 shown.label,
                 n + 1,
-                rounded(values[s], half[s]),
-                rounded(values[c], half[c]),
-                rounded(reading.amplitude[channel, n] * shown.factor, along[n] * shown.factor),
+                told(values[s], half[s]),
+                told(values[c], half[c]),
+                told(amplitude[n], along[n] * shown.factor),
                 rounded_phase(
-                    float(np.degrees(reading.phase_rad[channel, n])), float(np.degrees(sideways[n]))
+                    float(np.degrees(reading.phase_rad[channel, n])),
+                    float(np.degrees(sideways[n])),
+                    floored(float(amplitude[n]), 0.0, size)[0],
                 ),
             )
         )
@@ -88,7 +106,7 @@ def provenance(analysis: Analysis) -> list[tuple[str, str]]:
         ),
         ("reference", f"{reference.source}, {reference.frequency_hz:.6g} Hz"),
         (
-            "steady stretch",
+            WINDOWS[window_kind(analysis)],
             f"{analysis.stretch.period_count} of {analysis.sums.period_count} whole periods",
         ),
     ]

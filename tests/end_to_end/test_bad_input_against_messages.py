@@ -1,5 +1,6 @@
 """Bad input: each kind gets its own message and exit status, and nothing on the output."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -94,6 +95,8 @@ CASES = {
 
 # What the request names, or asks for, and cannot be.
 CANNOT_BE = {
+    "no such channel",
+    "no such reference",
     "window beyond the record",
     "more periods than there are",
     "gate longer than the stretch",
@@ -128,12 +131,14 @@ def test_an_empty_file(tmp_path: Path) -> None:
 
 def test_a_missing_file() -> None:
     done = run("analyse", "nowhere.csv")
-    assert (done.exit_code, done.stderr) == (1, "error: nowhere.csv: no such file\n")
+    assert (done.exit_code, done.stderr) == (2, "error: nowhere.csv: no such file\n")
+    done = run("analyse", "nowhere")
+    assert (done.exit_code, done.stderr) == (2, "error: nowhere: no such file or folder\n")
 
 
 def test_a_folder_without_a_campaign(tmp_path: Path) -> None:
     done = run("analyse", tmp_path)
-    assert done.exit_code == 1
+    assert done.exit_code == 2
     assert f"{tmp_path}: a folder without a campaign.toml" in done.stderr
 
 
@@ -147,8 +152,11 @@ REQUESTS = {
     ("--column", "a=Force:furlong"): "unknown unit 'furlong'",
     ("--harmonics", "0"): "0 is not in the range x>=1",
     ("--frequency", "nan"): "nan",
-    ("--level", "1"): "1.0 is not in the range 0.0<x<1.0",
+    ("--level", "1"): "1 is no probability between 0 and 1.",
+    ("--level", "95"): "95 is no probability between 0 and 1; for 95 % write 0.95",
     ("--windoe", "1"): "No such option",
+    ("--edges", "nowhere.csv"): "nowhere.csv: no such file",
+    ("--column", "force=Forse:N"): "no column 'Forse'; did you mean 'Force [N]'?",
 }
 
 
@@ -177,7 +185,7 @@ def test_one_bad_file_does_not_stop_the_others(
 ) -> None:
     good = record(_good())
     done = run("analyse", "nowhere.csv", good, "--frequency", "0.83")
-    assert done.exit_code == 1
+    assert done.exit_code == 2
     assert str(good) in done.stdout
     assert "Force [N]" in done.stdout
     assert done.stderr == "error: nowhere.csv: no such file\n"
@@ -189,3 +197,55 @@ def test_debug_shows_where_it_was_raised(record: Callable[[list[str]], Path]) ->
     assert done.exit_code == 2
     assert "Traceback" in done.stderr
     assert "chosen_columns" in done.stderr
+
+
+def test_where_one_files_data_say_no_that_is_the_status(
+    tmp_path: Path, record: Callable[[list[str]], Path]
+) -> None:
+    assert run("analyse", "nowhere.csv", record(_nothing()), "--frequency", "1").exit_code == 1
+
+
+@pytest.mark.parametrize("option", ["--plot", "--save"])
+def test_a_folder_in_whose_place_a_file_stands(
+    option: str, tmp_path: Path, record: Callable[[list[str]], Path]
+) -> None:
+    path = record(_good())
+    done = run("analyse", path, "--frequency", "0.83", option, path / "out")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr == f"error: {option} {path / 'out'}: {path} is a file, not a folder\n"
+
+
+def test_no_reference_names_the_options(record: Callable[[list[str]], Path]) -> None:
+    done = run("analyse", record(_good()))
+    assert done.exit_code == 1
+    assert "(--frequency HZ, --reference CHANNEL)" in done.stderr
+
+
+def _without_unit(folder: Path) -> Path:
+    """Milliseconds under a header that does not say so."""
+    path = folder / "run.csv"
+    rows = _rows(5.0 * np.sin(2.0 * np.pi * 0.83 * TIME_S), 1e3 * TIME_S)
+    path.write_text("\n".join(["Tijd,Force [N]", *rows]) + "\n")
+    return path
+
+
+def test_what_the_reader_noticed_is_said_with_the_error(tmp_path: Path) -> None:
+    path = _without_unit(tmp_path)
+    done = run("analyse", path, "--frequency", "0.83")
+    assert done.exit_code == 1
+    warning, error = done.stderr.splitlines()
+    assert warning.startswith("WARNING the time column 'Tijd' states no unit; seconds are assumed")
+    assert "0.1 samples a period" in error
+    document = json.loads(run("analyse", path, "--frequency", "0.83", "--json").stdout)
+    assert [flag["code"] for flag in document["failed"][0]["flags"]] == ["time_unit_assumed"]
+    right = run("analyse", path, "--frequency", "0.83", "--column", "Tijd=Tijd:ms")
+    assert right.exit_code == 0
+    assert "recording  1000 samples, 100 Hz, 9.99 s" in right.stdout
+
+
+def test_a_channel_that_the_map_leaves_out_is_told_so(record: Callable[[list[str]], Path]) -> None:
+    options = ("--column", "lift=Force", "--frequency", "0.83", "--channel", "Force")
+    done = run("analyse", record(_good()), *options)
+    assert done.exit_code == 2
+    assert "is not in the column map" in done.stderr
+    assert "keep_others = true" in done.stderr

@@ -3,8 +3,10 @@
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import pmm.cli.analysing
-from analysis.readers import read_recording
+from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.cli.simulating import seed_of
 from pmm.tables import format_value
@@ -33,13 +35,23 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "heave"
 
 
-def _values(found: Any) -> list[str]:
-    """Every value of a JSON document as the table writes it, in order."""
+def _values(found: Any, factor: float = 1.0) -> list[str]:
+    """Every value of a JSON document as the table writes it, in order: lengths in mm."""
     if isinstance(found, dict) and "half_width" in found:
-        half_width = found["half_width"]
-        return [format_value(found["value"], np.nan if half_width is None else half_width)]
-    parts = found.values() if isinstance(found, dict) else found if isinstance(found, list) else []
-    return [value for part in parts for value in _values(part)]
+        half_width = np.nan if found["half_width"] is None else found["half_width"]
+        return [format_value(found["value"] * factor, half_width * factor)]
+    if isinstance(found, dict) and "phase_deg" in found:
+        parts = [found[key] for key in ("in_phase", "quadrature", "amplitude")]
+        phase = found["phase_deg"]
+        is_open = phase["half_width"] is not None and phase["half_width"] >= 90.0
+        told = ["open"] if is_open else _values(phase)
+        return [value for part in parts for value in _values(part, factor)] + told
+    if isinstance(found, dict):
+        factor = 1e3 if found.get("unit") == "m" else factor
+        found = list(found.values())
+    return (
+        [one for part in found for one in _values(part, factor)] if isinstance(found, list) else []
+    )
 
 
 @pytest.mark.parametrize("options", [(), ("--gate", "3"), ("--opens-at", "1", "--periods", "1")])
@@ -49,7 +61,9 @@ def test_the_table_has_the_numbers_of_the_json_document(
     recording = folder / "heave-1.20.nc"
     table = run("analyse", recording, *options).stdout
     document = json.loads(run("analyse", recording, "--json", *options).stdout)
-    printed = re.findall(r"(?:\([^()]* ± [^()]*\)e-?\d+|[-\d.e]+ ± (?:[-\d.e]+|\?))", table)
+    printed = re.findall(
+        r"(?:\([^()]* ± [^()]*\)e-?\d+|[-\d.e]+ ± (?:[-\d.e]+|\?)|open(?!:))", table
+    )
     assert len(printed) >= 4 * (1 + 3 * 4)
     assert printed == _values(document)
 
@@ -71,11 +85,11 @@ def test_without_a_terminal_there_is_neither_colour_nor_progress(folder: Path) -
 
 def test_failures_are_in_the_json_document_too(folder: Path) -> None:
     done = run("analyse", folder, "nowhere.csv", "--json")
-    assert done.exit_code == 1
+    assert done.exit_code == 2
     document = json.loads(done.stdout)
     assert len(document["runs"]) == 1
     assert document["failed"] == [
-        {"file": "nowhere.csv", "message": "nowhere.csv: no such file"},
+        {"file": "nowhere.csv", "message": "nowhere.csv: no such file", "flags": []},
     ]
 
 
@@ -107,7 +121,7 @@ def test_a_recording_is_never_replaced_unasked(folder: Path) -> None:
     recording = folder / "heave-1.20.nc"
     before = recording.read_bytes()
     refused = run(*HEAVE, "--output", folder, "--seed", "7")
-    assert refused.exit_code == 1
+    assert refused.exit_code == 2
     assert f"{recording}: there already" in refused.stderr
     assert recording.read_bytes() == before
     assert run(*HEAVE, "--output", folder, "--seed", "7", "--overwrite").exit_code == 0
@@ -117,7 +131,7 @@ def test_a_recording_is_never_replaced_unasked(folder: Path) -> None:
 def test_another_campaigns_file_is_not_replaced(folder: Path) -> None:
     other = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20", "--output", folder)
     refused = run(*other)
-    assert refused.exit_code == 1
+    assert refused.exit_code == 2
     assert "campaign.toml: there already" in refused.stderr
 
 
@@ -234,7 +248,7 @@ def test_recordings_are_saved_and_kept(folder: Path, tmp_path: Path) -> None:
     saved = read_recording(tmp_path / "nc" / "run_1.nc")
     assert saved.channel_names == ("Strut", "F1", "F2")
     again = run(*arguments)
-    assert again.exit_code == 1
+    assert again.exit_code == 2
     assert "run_1.nc: exists already" in again.stderr
 
 
@@ -269,8 +283,50 @@ def test_an_interrupt_has_its_own_status(folder: Path, monkeypatch: pytest.Monke
 def test_a_folder_that_cannot_be_made_is_named(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     done = run(*HEAVE, "--output", tmp_path / "file" / "runs")
-    assert done.exit_code == 1
-    assert done.stderr == f"error: {tmp_path / 'file' / 'runs'}: Not a directory\n"
+    assert done.exit_code == 2
+    where = f"--output {tmp_path / 'file' / 'runs'}: {tmp_path / 'file'}"
+    assert done.stderr == f"error: {where} is a file, not a folder\n"
+
+
+def test_a_refused_run_leaves_no_folder(tmp_path: Path) -> None:
+    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    (tmp_path / "heavy.toml").write_text(text.replace("mass_kg = 70.0", "mass_kg = 7000.0"))
+    done = run("simulate", tmp_path / "heavy.toml", "--output", tmp_path / "a" / "b")
+    assert done.exit_code == 2
+    assert not (tmp_path / "a").exists()
+
+
+def test_hints_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", [".venv/bin/pmm", "simulate"])
+    done = run(*HEAVE, "--output", tmp_path / "my runs")
+    hint = done.stdout.splitlines()[-1]
+    assert shlex.split(hint) == [".venv/bin/pmm", "analyse", str(tmp_path / "my runs")]
+    assert done.stdout.splitlines()[0].rstrip() == "vertical: 1 run"
+
+
+def test_each_run_is_printed_when_it_is_done(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = pmm.cli.analysing.read_source
+
+    def then_stop(source: Any, *rest: Any, **options: Any) -> Any:
+        if source.path.name == "second.nc":
+            raise KeyboardInterrupt
+        return read(source, *rest, **options)
+
+    monkeypatch.setattr(pmm.cli.analysing, "read_source", then_stop)
+    done = run("analyse", folder / "heave-1.20.nc", "second.nc")
+    assert done.exit_code == 130
+    assert "force_aft [N]" in done.stdout
+
+
+def test_a_set_point_that_was_not_kept_is_in_table_and_document(folder: Path) -> None:
+    recording = read_recording(folder / "heave-1.20.nc")
+    assert recording.set_point is not None
+    told = replace(recording, set_point=replace(recording.set_point, frequency_hz=1.1))
+    write_recording(told, folder / "heave-1.20.nc", overwrite=True)
+    done = run("analyse", folder / "heave-1.20.nc")
+    assert "set-point's frequency is 1.1 Hz, found are 1.2 Hz" in done.stdout
+    (rows,) = json.loads(run("analyse", folder / "heave-1.20.nc", "--json").stdout)["runs"]
+    assert "set_point_differs" in {flag["code"] for flag in rows["flags"]}
 
 
 def _command(*arguments: str | Path) -> list[str]:

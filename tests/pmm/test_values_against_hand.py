@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pmm.tables import format_value
+from pmm.tables import format_value, is_open
 
 
 @pytest.mark.parametrize(
@@ -42,3 +42,24 @@ def test_what_is_printed_is_the_value_within_its_interval(value: float, half_wid
     scale = 10.0 ** int(match[3] or 0)
     assert abs(float(match[1]) * scale - value) <= 0.051 * half_width + 1e-11 * abs(value)
     assert float(match[2]) * scale == pytest.approx(half_width, rel=0.051)
+
+
+@pytest.mark.parametrize(
+    ("value", "half_width", "text"),
+    [
+        (6.6e-17, 1e-17, "0 ± 2e-11"),
+        (20.0, 0.0, "20 ± 2e-11"),
+        (20.0, 0.3, "20.00 ± 0.30"),
+        (1e-9, 2e-9, "(1.0 ± 2.0)e-9"),
+        (6.6e-17, float("nan"), "0 ± ?"),
+    ],
+)
+def test_what_rounding_leaves_is_floored(value: float, half_width: float, text: str) -> None:
+    assert format_value(value, half_width, 20.0) == text
+
+
+def test_a_phase_is_open_beyond_a_right_angle_or_without_an_amplitude() -> None:
+    assert is_open(90.0, 1.0)
+    assert is_open(1.0, 0.0)
+    assert not is_open(89.9, 1e-9)
+    assert not is_open(float("nan"), 1.0)

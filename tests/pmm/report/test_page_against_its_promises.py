@@ -9,6 +9,7 @@ import pytest
 
 from pmm.report.page import write_page
 from pmm.report.rounding import rounded, rounded_phase
+from pmm.tables import floored
 from tests.pmm.report.runs import analysed, run
 
 HOSTILE = "<script>alert('x')</script>"
@@ -96,8 +97,10 @@ def test_the_table_has_every_number(read: _Reader) -> None:
         half = reading.half_width()
         for row, factor in ((0, 1e3), (1, 1.0)):
             for column in range(reading.coefficients.shape[1]):
-                value = reading.coefficients[row, column] * factor
-                assert rounded(value, half[row, column] * factor) in text
+                value = float(reading.coefficients[row, column]) * factor
+                size = max(abs(reading.mean[row]), reading.amplitude[row].max()) * factor
+                told = floored(value, float(half[row, column]) * factor, size)
+                assert rounded(*told) in text
     assert f"Gate {len(analysis.readings)} of {len(analysis.readings)}" in text
     assert "setting, gate_periods" in text
 
