@@ -61,6 +61,11 @@ class Situation:
         return self.set_point.medium is Medium.WATER
 
     @property
+    def flow_m_s(self) -> float:
+        """Mean speed of the flow past the model."""
+        return self.system.speed_m_s
+
+    @property
     def system(self) -> HullSystem:
         """The nominal model and water as a linear system."""
         return self.system_of(self.rig, self.set_point)

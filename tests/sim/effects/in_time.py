@@ -27,6 +27,11 @@ class InTime:
         """Times of the photocell's pulses."""
         return self.signals["photocell_edge_time"]
 
+    def less(self, other: "InTime") -> "InTime":
+        """Return this run less another one of the same samples."""
+        pairs = {name: values - other.signals[name] for name, values in self.signals.items()}
+        return InTime(pairs, self.sample_rate_hz)
+
 
 def in_time(rig: SimulatedRig, set_point: SetPoint, periods: int, per_period: int) -> InTime:
     """Run from rest; the pulses fall on samples, the first after half a period."""
@@ -65,15 +70,20 @@ def by_cycles(run: InTime, name: str, cycles: int = 1) -> FloatArray:
 
 
 def lines(
-    run: InTime, name: str, frequencies_hz: list[float], decay_s: float = np.inf
+    run: InTime,
+    name: str,
+    frequencies_hz: list[float],
+    decay_s: float = np.inf,
+    first_s: float = 0.0,
 ) -> dict[float, complex]:
     """Fit sines and cosines of these frequencies by least squares, with a mean."""
-    time = run.time_s
+    late = run.time_s >= first_s
+    time = run.time_s[late]
     fade = np.exp(-time / decay_s)
     columns = [np.ones_like(time)]
     for frequency in frequencies_hz:
         turned = 2.0 * np.pi * frequency * time
         columns += [fade * np.sin(turned), fade * np.cos(turned)]
-    found = np.linalg.lstsq(np.column_stack(columns), run.signals[name], rcond=None)[0]
+    found = np.linalg.lstsq(np.column_stack(columns), run.signals[name][late], rcond=None)[0]
     pairs = found[1:].reshape(-1, 2)
     return {one: complex(*pair) for one, pair in zip(frequencies_hz, pairs.tolist(), strict=True)}

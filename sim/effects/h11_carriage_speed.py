@@ -1,0 +1,41 @@
+"""H11: a carriage that runs faster, or slower, than it was told."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from hardware.description import channels
+from hardware.description.setpoint import SetPoint
+from sim import signals
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import faster
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+
+
+@dataclass(frozen=True)
+class CarriageSpeedError(Effect):
+    """A mean speed of ``U (1 + d)``: what goes with the speed changes by d, with U^2 by 2 d.
+
+    The speed's record, where there is one, shows it. Without speed it does nothing, nor in air but
+    for that record.
+    """
+
+    code: ClassVar[str] = "H11"
+    name: ClassVar[str] = "carriage-speed"
+    title: ClassVar[str] = "Error of the carriage's mean speed"
+    stage: ClassVar[StageName] = StageName.CARRIAGE
+
+    relative: float = parameter(0.003, -0.05, 0.05, "1", "d, relative to the speed")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with this error on top of the carriage's own."""
+        error = (1.0 + rig.carriage.speed_error) * (1.0 + self.relative) - 1.0
+        return replace(rig, carriage=replace(rig.carriage, speed_error=error))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the linear loads of the additional speed, and the speed's record."""
+        found = dict(faster(situation, situation.flow_m_s * self.relative))
+        recorded = signals.recorded(channels.CARRIAGE_SPEED).name
+        if situation.rig.acquisition.carriage_speed is not None:
+            found[recorded, 0] = situation.phasor(recorded, 0) * self.relative
+        return found

@@ -1,0 +1,43 @@
+"""H1: an added mass that is not the one that was believed."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import added_mass_at, load, with_more
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+from sim.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class AddedMassError(Effect):
+    """``-dA w^2 a`` in phase: as a mass error, but absent in air.
+
+    Relative to the added mass at the run's frequency; the coupling of both motions is left.
+    """
+
+    code: ClassVar[str] = "H1"
+    name: ClassVar[str] = "added-mass-error"
+    title: ClassVar[str] = "Added mass other than believed"
+    stage: ClassVar[StageName] = StageName.MODEL
+
+    translation: float = parameter(0.1, -0.5, 1.0, "1", "of heave or sway, relative")
+    rotation: float = parameter(0.1, -0.5, 1.0, "1", "of pitch or yaw, relative")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
+        """Return the rig with this added mass on top of what its water has."""
+        return with_more(rig, added_mass=self._more(rig, set_point))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return ``s dA`` times the velocity through the water."""
+        more = self._more(situation.rig, situation.set_point).astype(np.complex128)
+        return load(situation, lambda s: np.complex128(s) * more)
+
+    def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
+        own = np.diag(added_mass_at(rig, 2.0 * np.pi * set_point.frequency_hz))
+        more: FloatArray = np.diag(own * (self.translation, self.rotation))
+        return more

@@ -1,0 +1,43 @@
+"""H2: a linear damping that is not the one that was believed."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import damping_at, load, with_more
+from sim.effects.situation import Situation
+from sim.rig import SimulatedRig
+from sim.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class DampingError(Effect):
+    """``dB w a`` in quadrature, and with forward speed ``dB U`` per rotation; absent in air.
+
+    Relative to the damping at the run's frequency; the coupling of both motions is left.
+    """
+
+    code: ClassVar[str] = "H2"
+    name: ClassVar[str] = "damping-error"
+    title: ClassVar[str] = "Linear damping other than believed"
+    stage: ClassVar[StageName] = StageName.MODEL
+
+    translation: float = parameter(0.2, -0.9, 3.0, "1", "of heave or sway, relative")
+    rotation: float = parameter(0.2, -0.9, 3.0, "1", "of pitch or yaw, relative")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
+        """Return the rig with this damping on top of what its water has."""
+        return with_more(rig, damping=self._more(rig, set_point))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return ``dB`` times the velocity through the water."""
+        more = self._more(situation.rig, situation.set_point).astype(np.complex128)
+        return load(situation, lambda _: more)
+
+    def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
+        own = np.diag(damping_at(rig, 2.0 * np.pi * set_point.frequency_hz))
+        more: FloatArray = np.diag(own * (self.translation, self.rotation))
+        return more

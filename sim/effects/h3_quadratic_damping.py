@@ -1,0 +1,54 @@
+"""H3: damping that grows with the square of the velocity: separation at bilges and keel."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.acting import Point
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import of_law, with_laws
+from sim.effects.situation import Situation
+from sim.laws import Quadratic
+from sim.rig import SimulatedRig
+
+HIGHEST = 5
+POINTS = (Point.THROUGH_WATER, Point.ROTATION)
+
+
+@dataclass(frozen=True)
+class QuadraticDamping(Effect):
+    """``B v|v|``: ``8/(3 pi) B V^2`` in quadrature, and a fifth of it at order 3, of the same sign.
+
+    It goes with w^2 a^2; absent in air.
+    """
+
+    code: ClassVar[str] = "H3"
+    name: ClassVar[str] = "quadratic-damping"
+    title: ClassVar[str] = "Quadratic damping"
+    stage: ClassVar[StageName] = StageName.MODEL
+
+    translation_n_s2_m2: float = parameter(
+        300.0, 0.0, 20000.0, "N s2/m2", "of heave or sway through the water: C_D rho S/2"
+    )
+    rotation_n_m_s2: float = parameter(50.0, 0.0, 10000.0, "N m s2", "of pitch or yaw")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with this damping of both motions."""
+        sizes = (self.translation_n_s2_m2, self.rotation_n_m_s2)
+        return with_laws(rig, *zip(POINTS, map(Quadratic, sizes), strict=True))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the describing function of ``cos|cos|``, 8/3pi, 8/15pi, -8/105pi."""
+        sizes = dict(zip(POINTS, (self.translation_n_s2_m2, self.rotation_n_m_s2), strict=True))
+
+        def wave(order: int, speed: float, phase: float, point: Point) -> complex:
+            if order % 2 == 0:
+                return 0.0
+            share = 8.0 * np.sin(order * np.pi / 2.0) / (order * np.pi * (4 - order**2))
+            # The velocity V sin(th + phase) is V cos of a quarter turn less.
+            turned = 1j * np.exp(1j * order * (phase - np.pi / 2.0))
+            return complex(sizes[point] * speed**2 * share * turned)
+
+        return of_law(situation, POINTS, wave, HIGHEST)

@@ -1,0 +1,50 @@
+"""H4: damping that grows with the third power of the velocity."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.acting import Point
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import of_law, with_laws
+from sim.effects.situation import Situation
+from sim.laws import Cubic
+from sim.rig import SimulatedRig
+
+POINTS = (Point.THROUGH_WATER, Point.ROTATION)
+SHARES = {1: 0.75, 3: 0.25}  # of cos^3
+
+
+@dataclass(frozen=True)
+class CubicDamping(Effect):
+    """``B v^3``: ``3/4 B V^3`` in quadrature, and a third of it with the same sign at order 3.
+
+    It goes with w^3 a^3; absent in air.
+    """
+
+    code: ClassVar[str] = "H4"
+    name: ClassVar[str] = "cubic-damping"
+    title: ClassVar[str] = "Cubic damping"
+    stage: ClassVar[StageName] = StageName.MODEL
+
+    translation_n_s3_m3: float = parameter(
+        500.0, 0.0, 50000.0, "N s3/m3", "of heave or sway through the water"
+    )
+    rotation_n_m_s3: float = parameter(80.0, 0.0, 20000.0, "N m s3", "of pitch or yaw")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with this damping of both motions."""
+        sizes = (self.translation_n_s3_m3, self.rotation_n_m_s3)
+        return with_laws(rig, *zip(POINTS, map(Cubic, sizes), strict=True))
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the describing function of ``cos^3``."""
+        sizes = dict(zip(POINTS, (self.translation_n_s3_m3, self.rotation_n_m_s3), strict=True))
+
+        def wave(order: int, speed: float, phase: float, point: Point) -> complex:
+            turned = 1j * np.exp(1j * order * (phase - np.pi / 2.0))
+            return complex(sizes[point] * speed**3 * SHARES.get(order, 0.0) * turned)
+
+        return of_law(situation, POINTS, wave, 3)

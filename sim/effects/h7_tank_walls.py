@@ -1,0 +1,65 @@
+"""H7: waves that come back from the tank's walls."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.hydrodynamic import damping_at, load, radiation_of
+from sim.effects.situation import Situation
+from sim.linear import ComplexArray
+from sim.rig import SimulatedRig
+from sim.water.tank import Tank, with_walls
+
+MODES = 4
+
+
+@dataclass(frozen=True)
+class TankWalls(Effect):
+    """Transverse modes: peaks of the damping at w_m, with a ripple of the added mass about them.
+
+    ``w_m^2 = g k tanh(k h)``, with whole waves between the walls for heave and pitch, odd half
+    waves for sway and yaw. A real model is undisturbed until the first echo is back; these modes
+    answer weakly from the start. See :mod:`sim.water.tank`.
+    """
+
+    code: ClassVar[str] = "H7"
+    name: ClassVar[str] = "tank-walls"
+    title: ClassVar[str] = "Reflection from the tank's walls"
+    stage: ClassVar[StageName] = StageName.MODEL
+
+    breadth_m: float = parameter(4.2, 0.5, 50.0, "m", "of the tank")
+    depth_m: float = parameter(2.5, 0.1, 20.0, "m", "of the water")
+    strength: float = parameter(0.3, 0.0, 3.0, "1", "damping of a mode over open water's there")
+    damping_ratio: float = parameter(0.02, 0.002, 0.3, "1", "of the modes")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+        """Return the rig with the modes beside what its water remembers."""
+        tank = Tank(self.breadth_m, self.depth_m, MODES, self.strength, self.damping_ratio)
+        walls = with_walls(
+            radiation_of(rig), tank, rig.oscillator.plane, np.array(rig.water.damping)
+        )
+        return replace(rig, radiation=walls)
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return the sum of the modes' Lorentzians, times the velocity through the water."""
+        rig = situation.rig
+        half = 0.5 if rig.oscillator.plane is Plane.HORIZONTAL else 0.0
+        waves = np.arange(1, MODES + 1) - half
+        number = 2.0 * np.pi * waves / self.breadth_m
+        modes = np.sqrt(STANDARD_GRAVITY_M_S2 * number * np.tanh(number * self.depth_m))
+
+        def walls(s: complex) -> ComplexArray:
+            total = np.zeros((2, 2), dtype=np.complex128)
+            for one in modes:
+                radiated = damping_at(rig, one)
+                half_width = 2.0 * self.damping_ratio * one
+                peak = half_width * s / (s * s + half_width * s + one**2)
+                total += self.strength * peak * (radiated + radiated.T) / 2.0
+            return total
+
+        return load(situation, walls)

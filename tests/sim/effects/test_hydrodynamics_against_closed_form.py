@@ -1,0 +1,183 @@
+"""Effects of the water against closed forms, over frequency, amplitude, phase, speed, medium."""
+
+import numpy as np
+import pytest
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.campaign import in_order
+from sim.effects.effect import Effect
+from sim.effects.h1_added_mass_error import AddedMassError
+from sim.effects.h2_damping_error import DampingError
+from sim.effects.h3_quadratic_damping import QuadraticDamping
+from sim.effects.h3b_quadratic_drift import QuadraticDrift
+from sim.effects.h4_cubic_damping import CubicDamping
+from sim.effects.h5_restoring import NonlinearRestoring
+from sim.effects.h6_memory import Memory
+from sim.effects.h7_tank_walls import TankWalls
+from sim.effects.h8_surface_suction import SurfaceSuction
+from sim.effects.h9_ground import GroundSuction
+from sim.effects.h10_blockage import Blockage
+from sim.effects.h11_carriage_speed import CarriageSpeedError
+from sim.effects.h12_carriage_fluctuation import CarriageFluctuation
+from sim.effects.h13_residual_waves import ResidualWaves
+from sim.effects.h14_vortex_shedding import VortexShedding
+from sim.effects.h15_dynamic_trim import DynamicTrim
+from sim.effects.situation import STRUT_FORCES, Situation
+from sim.periodic import steady_run
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from tests.sim.effects.against_theory import mismatch
+from tests.sim.effects.in_time import in_time, lines
+
+VERTICAL = vertical_rig().ideal()
+HORIZONTAL = horizontal_rig().ideal()
+CRANK = horizontal_rig(rod_length_m=1.5).ideal()
+REMEMBERING = Memory().change(VERTICAL, SetPoint(1.0, 0.01))
+MOTIONS = [
+    (frequency, amplitude, phase)
+    for frequency in (0.4, 0.9)
+    for amplitude in (0.01, 0.03)
+    for phase in (0.0, np.pi / 2.0, np.pi)
+]
+SET_POINTS = [SetPoint(*motion, speed) for motion in MOTIONS for speed in (0.0, 1.2, 2.0)]
+
+# Exact: linear in the loads, or polynomials of a sine.
+EXACT = [
+    AddedMassError(0.2, -0.1),
+    DampingError(0.3, -0.2),
+    CubicDamping(500.0, 80.0),
+    NonlinearRestoring(5000.0, 50000.0),
+    Memory(200.0, 60.0, 5.0),
+    TankWalls(),
+    SurfaceSuction(5.0, 8.0),
+    GroundSuction(-5.0, 0.1),
+    Blockage(0.02),
+    CarriageSpeedError(0.01),
+    VortexShedding(step_n=0.4),
+    DynamicTrim(),
+]
+
+
+@pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL, REMEMBERING])
+@pytest.mark.parametrize("effect", EXACT, ids=lambda effect: effect.code)
+def test_signature(effect: Effect, rig: SimulatedRig) -> None:
+    assert mismatch(effect, rig, SET_POINTS) < 1e-9
+
+
+@pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL])
+@pytest.mark.parametrize(
+    "effect",
+    [
+        QuadraticDamping(300.0, 50.0),
+        QuadraticDrift(300.0, 0.01),
+        QuadraticDrift(300.0, -0.02),
+        QuadraticDrift(300.0, 0.2),
+    ],
+)
+def test_signature_of_squares(effect: Effect, rig: SimulatedRig) -> None:
+    """Harmonics of v|v| above the period's 128 points fold back: some 1e-6."""
+    assert mismatch(effect, rig, SET_POINTS) < 1e-5
+
+
+@pytest.mark.parametrize(
+    "effect", [*EXACT[:2], *EXACT[4:6], *EXACT[8:10]], ids=lambda one: one.code
+)
+def test_signature_of_linear_effects_on_a_crank(effect: Effect) -> None:
+    """Whose second harmonic they change as well."""
+    assert mismatch(effect, CRANK, SET_POINTS) < 1e-9
+
+
+@pytest.mark.parametrize("effect", [*EXACT, QuadraticDamping(), QuadraticDrift()])
+def test_nothing_of_the_water_is_in_air(effect: Effect) -> None:
+    for motion in MOTIONS[::3]:
+        set_point = SetPoint(*motion, 2.0, medium=Medium.AIR)
+        theory = effect.signature(Situation.of(VERTICAL, set_point))
+        assert not any(value for (name, _), value in theory.items() if name in STRUT_FORCES)
+        nominal = steady_run(VERTICAL, set_point)
+        changed = steady_run(effect.change(VERTICAL, set_point), set_point)
+        for name in STRUT_FORCES:
+            np.testing.assert_array_equal(changed.spectra[name], nominal.spectra[name])
+
+
+def test_the_bottom_is_not_touched() -> None:
+    with pytest.raises(
+        ConfigurationError, match=r"0\.03 reaches the bottom at clearance_m = 0\.02"
+    ):
+        GroundSuction(5.0, 0.02).change(VERTICAL, SetPoint(1.0, 0.03))
+
+
+@pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL, REMEMBERING])
+@pytest.mark.parametrize("motion", [MOTIONS[1], MOTIONS[5], MOTIONS[8], MOTIONS[10]])
+@pytest.mark.parametrize("fluctuation", [0.23, 1.7])
+def test_carriage_fluctuation_in_the_time_domain(
+    rig: SimulatedRig, motion: tuple[float, float, float], fluctuation: float
+) -> None:
+    """Least squares on a difference with the two sidebands alone; 40 periods, the last 25 of them.
+
+    The memory's transient has died out by then; its load goes on by a cubic between the samples.
+    """
+    set_point = SetPoint(*motion, 1.2)
+    effect = CarriageFluctuation(0.004, fluctuation, 0.6)
+    theory = effect.lines(Situation.of(rig, set_point))
+    changed = in_time(effect.change(rig, set_point), set_point, 40, 200)
+    nominal = in_time(rig, set_point, 40, 200)
+    for name in ("force_aft", "force_fore", "recorded_carriage_speed"):
+        own = {frequency: value for (one, frequency), value in theory.items() if one == name}
+        found = lines(changed.less(nominal), name, list(own), first_s=15.0 / motion[0])
+        gap = [found[frequency] - value for frequency, value in own.items()]
+        assert np.linalg.norm(gap) < 1e-5 * np.linalg.norm(list(own.values()))
+
+
+@pytest.mark.parametrize("motion", MOTIONS[1::5])
+def test_residual_waves_in_the_time_domain(motion: tuple[float, float, float]) -> None:
+    """Least squares with the stated decay, and half a lifetime of it."""
+    set_point = SetPoint(*motion)
+    effect = ResidualWaves(3.0, 60.0, 90.0, 0.63, 0.4)
+    theory = effect.lines(Situation.of(VERTICAL, set_point))
+    changed = in_time(effect.change(VERTICAL, set_point), set_point, 20, 100)
+    nominal = in_time(VERTICAL, set_point, 20, 100)
+    assert effect.left_n == pytest.approx(3.0 * np.exp(-1.5))
+    for (name, frequency), value in theory.items():
+        found = lines(changed.less(nominal), name, [frequency], decay_s=60.0)
+        assert abs(found[frequency] - value) < 1e-9 * abs(value)
+
+
+def test_residual_waves_over_a_campaign() -> None:
+    """The first run is calm, each later one has the frequency before it, less if one waits."""
+    set_points = [SetPoint(0.5, 0.02), SetPoint(0.8, 0.02), SetPoint(0.8, 0.03)]
+    effect = ResidualWaves(3.0, 100.0)
+    situation = Situation.of(VERTICAL, set_points[-1])
+    sizes = []
+    for waiting in (60.0, 300.0):
+        runs = in_order(set_points, 120.0, waiting)
+        first, second, third = (effect.at_run(run) for run in runs)
+        assert not any(first.lines(situation).values())
+        assert {frequency for _, frequency in second.lines(situation)} == {0.5}
+        assert {frequency for _, frequency in third.lines(situation)} == {0.8}
+        sizes.append(third.left_n)
+    assert sizes[1] / sizes[0] == pytest.approx(np.exp(-2.4), rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.3, 1.1])
+def test_vortices_in_the_time_domain(speed: float) -> None:
+    set_point = SetPoint(0.9, 0.02, 1.0, speed)
+    effect = VortexShedding(0.5, 0.04, 0.2)
+    theory = effect.lines(Situation.of(VERTICAL, set_point))
+    changed = in_time(effect.change(VERTICAL, set_point), set_point, 20, 100)
+    nominal = in_time(VERTICAL, set_point, 20, 100)
+    assert len(theory) == (2 if speed else 0)
+    for (name, frequency), value in theory.items():
+        assert frequency == pytest.approx(5.0 * speed)
+        found = lines(changed.less(nominal), name, [frequency])
+        assert abs(found[frequency] - value) < 1e-9 * abs(value)
+
+
+def test_blockage_leaves_the_recorded_speed() -> None:
+    set_point = SetPoint(0.9, 0.02, 1.0, 1.2)
+    blocked = steady_run(Blockage(0.04).change(VERTICAL, set_point), set_point)
+    error = CarriageSpeedError(0.04 / 0.96)
+    faster = steady_run(error.change(VERTICAL, set_point), set_point)
+    for name in STRUT_FORCES:
+        np.testing.assert_allclose(blocked.spectra[name], faster.spectra[name], rtol=0, atol=1e-11)
+    assert blocked.spectra["recorded_carriage_speed"][0].real == 1.2
+    assert faster.spectra["recorded_carriage_speed"][0].real == pytest.approx(1.2 / 0.96)
