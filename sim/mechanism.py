@@ -2,15 +2,19 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.period import Period, Spectra
+from sim.play import PlayState, follow_with_play
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+# Of each strut; None before the first sample, and for a strut without play.
+PlayStates: TypeAlias = tuple[PlayState | None, PlayState | None]
 
 _WRITES = (
     (
@@ -42,12 +46,16 @@ class Setting:
         Tilt of a yoke's slot: turns the motion by as much, and makes it 1/cos as large.
     rod_offset_m
         By how much a rod's guide misses the crank's centre: first-harmonic phase, third harmonic.
+    half_play_m
+        Clearance of the strut's last joint to either side of its middle; friction holds what is
+        behind it, the displacement's sensor too, until the clearance is taken up.
     """
 
     eccentricity_error_m: float = 0.0
     phase_error_rad: float = 0.0
     slot_tilt_rad: float = 0.0
     rod_offset_m: float = 0.0
+    half_play_m: float = 0.0
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
@@ -99,20 +107,30 @@ class Mechanism:
                 f"eccentricity_m = {self.eccentricity_m:g}: the crank could not turn"
             )
 
-    def start(self, sample_rate_hz: float, seed: int) -> None:
-        """Return no state: the struts follow the shaft at once."""
+    def start(self, sample_rate_hz: float, seed: int) -> PlayStates | None:  # noqa: ARG002
+        """Return no state: the struts follow the shaft at once, or after the play of a joint."""
+        return None
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:  # noqa: ARG002
+    def run(
+        self, state: PlayStates | None, block: Block, inputs: Signals
+    ) -> tuple[PlayStates | None, Signals]:
         """Return displacement, velocity and acceleration of both struts over the block."""
         angle = inputs[signals.SHAFT_ANGLE.name]
         speed = inputs[signals.SHAFT_SPEED.name]
         acceleration = inputs[signals.SHAFT_ACCELERATION.name]
         written: dict[str, FloatArray] = {}
-        for strut, names in zip(self._struts, _WRITES, strict=True):
+        after = list(state or (None, None))
+        for i, (strut, names) in enumerate(zip(self._struts, _WRITES, strict=True)):
             d, slope, curvature = self._strut(strut, angle)
             values = (d, slope * speed, curvature * speed**2 + slope * acceleration, slope)
+            if strut[0].half_play_m and block.count:
+                step_s = 1.0 / block.sample_rate_hz
+                after[i], behind = follow_with_play(
+                    after[i], values[:3], strut[0].half_play_m, step_s
+                )
+                values = (*behind[:3], slope * behind.contact)
             written |= {one.name: v for one, v in zip(names, values, strict=True)}
-        return state, written
+        return None if after == [None, None] else (after[0], after[1]), written
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of motion and levers over a period."""
@@ -120,7 +138,16 @@ class Mechanism:
         angle = period.omega_rad_s * period.time_s + beyond
         written: dict[str, np.ndarray] = {}
         for strut, names in zip(self._struts, _WRITES, strict=True):
-            d, slope, _ = self._strut(strut, angle)
+            d, slope, curvature = self._strut(strut, angle)
+            if strut[0].half_play_m:
+                speed = period.values(inputs[signals.SHAFT_SPEED.name])
+                gained = period.values(inputs[signals.SHAFT_ACCELERATION.name])
+                in_front = (d, slope * speed, curvature * speed**2 + slope * gained)
+                twice = tuple(np.tile(one, 2) for one in in_front)
+                _, behind = follow_with_play(
+                    None, (twice[0], twice[1], twice[2]), strut[0].half_play_m, period.step_s
+                )
+                d, slope = behind.position[period.points :], slope * behind.contact[period.points :]
             motion, lever = period.harmonics(np.column_stack([d, slope])).T
             values = (motion, period.s * motion, period.s**2 * motion, lever)
             written |= {one.name: v for one, v in zip(names, values, strict=True)}

@@ -10,6 +10,7 @@ from sim.effects.k2_slot_tilt import SlotTilt
 from sim.effects.k3_eccentricity_error import EccentricityError
 from sim.effects.k4_strut_phase_error import StrutPhaseError
 from sim.effects.k5_foreshortening import Foreshortening
+from sim.effects.k6_joint_play import JointPlay
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import mismatch
 
@@ -47,3 +48,10 @@ def test_signature_on_cranks_with_rods(effect: Effect) -> None:
 def test_foreshortening() -> None:
     # The leading term leaves out (e/l)^2 of itself, 4e-4 here, times the numbers of the next one.
     assert mismatch(Foreshortening(), vertical_rig().ideal(), SMALL) < 1e-3
+
+
+@pytest.mark.parametrize("half_play_m", [5e-5, 5e-4])
+def test_joint_play(half_play_m: float) -> None:
+    # Where contact begins the motion has a kink; its error falls with the square of the points.
+    effect = JointPlay(half_play_m)
+    assert mismatch(effect, vertical_rig().ideal(), SET_POINTS, points=512) < 1e-3

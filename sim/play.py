@@ -1,0 +1,79 @@
+"""A joint with play: what is behind it stays where it is until the clearance is taken up."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.signals import FloatArray
+
+
+class PlayState(NamedTuple):
+    """Position and velocity behind the joint, half a sample after the last one."""
+
+    position: float
+    velocity: float
+
+
+class Follower(NamedTuple):
+    """Motion behind the joint, one value a sample, and where it is in contact (1) or not (0)."""
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    contact: FloatArray
+
+
+def follow_with_play(
+    state: PlayState | None,
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    half_play_m: float,
+    step_s: float,
+) -> tuple[PlayState, Follower]:
+    """Return the motion behind a joint with friction, which stays put within the clearance.
+
+    Where contact begins the velocity jumps: there velocity and acceleration are means over the
+    sample, from the positions and velocities half a sample before and after it; so the jump is in
+    one sample as a force of the right impulse. The motion in front goes on to second order within
+    half a sample, and where it turns is found between samples.
+
+    Parameters
+    ----------
+    state
+        ``None`` before the first sample: in the middle of the clearance.
+    motion
+        Position, velocity and acceleration in front of the joint, shape ``(samples,)`` each.
+    half_play_m
+        Clearance to either side.
+    """
+    d, v, a = motion
+    half = step_s / 2.0
+    if state is None:
+        state = PlayState(float(d[0]), 0.0)
+    ends = d + v * half + a * (half**2 / 2.0)
+    speeds = v + a * half
+    turning = (np.abs(v) < np.abs(a) * half) & (a != 0.0)
+    extremes = np.where(turning, d - v**2 / (2.0 * np.where(turning, a, 1.0)), ends)
+    after = _held(state.position, extremes, ends, half_play_m)
+    before = np.concatenate([[state.position], after[:-1]])
+    slack = half_play_m * (1.0 - 1e-12)
+    pushed = ((ends - after >= slack) & (speeds > 0.0)) | ((after - ends >= slack) & (speeds < 0.0))
+    carried = np.where(pushed, speeds, 0.0)
+    earlier = np.concatenate([[state.velocity], carried[:-1]])
+    position = np.clip(before, d - half_play_m, d + half_play_m)
+    whole = pushed & (earlier != 0.0) & ~turning
+    still = ~pushed & (earlier == 0.0) & (after == before)
+    velocity = np.where(whole, v, (after - before) / step_s)
+    acceleration = np.where(whole, a, (carried - earlier) / step_s)
+    contact = np.where(whole, 1.0, np.where(still, 0.0, 0.5))
+    last = PlayState(float(after[-1]), float(carried[-1]))
+    return last, Follower(position, velocity, acceleration, contact)
+
+
+def _held(start: float, extremes: FloatArray, ends: FloatArray, half_play_m: float) -> FloatArray:
+    """Return where what is behind the joint is, after each extreme and the end that follows it."""
+    position, found = start, []
+    for extreme, end in zip(extremes.tolist(), ends.tolist(), strict=True):
+        position = min(max(position, extreme - half_play_m), extreme + half_play_m)
+        position = min(max(position, end - half_play_m), end + half_play_m)
+        found.append(position)
+    return np.array(found)
