@@ -13,7 +13,7 @@ from benchmarks.machine import ROOT, describe
 from benchmarks.outcome import Benchmark, judge
 from benchmarks.page import keep, show, write_page
 
-NAMES = ("speed", "accuracy", "coverage", "live", "memory", "startup", "classic")
+NAMES = ("speed", "accuracy", "coverage", "live", "memory", "startup", "classic", "simulator")
 _RESULTS = ROOT / "benchmarks" / "results"
 
 
