@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 JSON_SCHEMA = "pmm-effects-1"
+_SMALL = 1e-4  # of a channel's largest change: not worth a row
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,11 @@ class Shown:
     set_point: SetPoint
     theory: Signature
     simulated: Signature
+
+    def peak(self, channel: str) -> float:
+        """Return the largest change of a channel, in theory or simulated."""
+        both = (*self.simulated.items(), *self.theory.items())
+        return max(abs(value) for key, value in both if key[0] == channel)
 
 
 def run(request: Request) -> None:
@@ -213,11 +220,14 @@ def _print_signature(console: "Console", shown: Shown) -> None:
     for heading in ("theory: in phase", "quadrature", "simulated: in phase", "quadrature"):
         table.add_column(heading, justify="right")
     for key, found in shown.simulated.items():
-        table.add_row(key[0], str(key[1]), *_cells(shown.theory.get(key)), *_cells(found))
+        stated = shown.theory.get(key, 0.0)
+        peak = shown.peak(key[0])
+        if max(abs(found), abs(stated)) > _SMALL * peak:
+            table.add_row(key[0], str(key[1]), *_cells(stated, peak), *_cells(found, peak))
     console.print(table)
+    console.print(f"parts below {_SMALL:g} of a channel's largest are left out", style="dim")
 
 
-def _cells(value: complex | None) -> Sequence[str]:
-    if value is None:
-        return ("", "")
-    return [f"{part:.5g}" for part in (complex(value).real, complex(value).imag)]
+def _cells(value: complex, peak: float) -> Sequence[str]:
+    parts = (complex(value).real, complex(value).imag)
+    return [f"{part:.5g}" if abs(part) > _ROUNDING * peak else "0" for part in parts]

@@ -98,7 +98,7 @@ def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Gr
 
 
 def channels_of(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> tuple[str, ...]:
-    """Return the channels that theory names, forces first; the recorded forces where it has none."""
+    """Return the channels that theory names, forces first; recorded forces if it names none."""
     theory = effect.signature(Situation.of(rig, set_point))
     named = sorted({name for name, _ in theory}, key=lambda name: ("force" not in name, name))
     return tuple(named) or _RECORDED
@@ -210,7 +210,8 @@ def save_signature_figure(
     if not grid.simulated:
         return []
     values = ", ".join(
-        f"{one.name} = {getattr(effect, one.name):g} {one.unit}" for one in effect.parameters()
+        f"{one.name} = {getattr(effect, one.name):g}{'' if one.unit == '1' else f' {one.unit}'}"
+        for one in effect.parameters()
     )
     figure = signature_figure(effect, grid, values)
     folder.mkdir(parents=True, exist_ok=True)
