@@ -42,7 +42,7 @@ def frequency_flags(
     given, fits = reference.frequency_hz, reference.frequency_hz * (1.0 + per_period)
     message = (
         f"the phase turns by {360.0 * per_period:+.3g} degrees a period against the given "
-        f"{given:.6g} Hz: {fits:.6g} Hz fits. The harmonics below are too small; give this "
+        f"{given:.6g} Hz: {fits:.6g} Hz fits. The harmonics found are too small; give this "
         "frequency, or take the phase from a channel"
     )
     return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)

@@ -24,10 +24,14 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
 
 
-def cells(heading: str) -> list[list[str]]:
+def cells(heading: str, tables: int = 1) -> list[list[str]]:
+    """The rows of the tables under a heading, without their heads."""
     section = TEXT.split(f" {heading}\n", 1)[1].split("\n#", 1)[0]
     rows = re.findall(r"^\|(.*)\|$", section, re.MULTILINE)
-    return [[cell.strip() for cell in row.split("|")] for row in rows[2:]]
+    heads = [k for k, row in enumerate(rows) if set(row) <= set("-|")]
+    assert len(heads) <= tables
+    kept = [row for k, row in enumerate(rows) if k not in heads and k + 1 not in heads]
+    return [[cell.strip() for cell in row.split("|")] for row in kept]
 
 
 def test_every_block_is_of_a_kind_that_a_test_reads() -> None:
@@ -90,6 +94,15 @@ def test_flag_codes_are_those_of_the_code() -> None:
         "time_jitter",
     }
     assert {row[0].strip("`") for row in cells("Flags")} == used
+
+
+def test_flag_codes_of_reference_and_gate_are_those_of_the_code() -> None:
+    """Every code that the resolver can give is in a table, and no other."""
+    sources = [*(ROOT / "analysis" / "resolver").glob("*.py"), ROOT / "sim" / "run.py"]
+    text = "".join(path.read_text(encoding="utf-8") for path in sources)
+    used = set(re.findall(r'Flag\(\s*"([\w-]+)"', text))
+    assert len(re.findall(r"\bFlag\(", text)) == len(re.findall(r'\bFlag\(\s*"', text))
+    assert {row[0].strip("`") for row in cells("Flags of reference and gate", 5)} == used
 
 
 def test_attributes_of_the_schema_are_documented() -> None:
