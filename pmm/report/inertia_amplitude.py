@@ -7,7 +7,7 @@ import numpy as np
 from analysis.inertia.record import ModeAnalysis, RecordAnalysis
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.labels import display, shown_name
+from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def amplitude_figure(runs: PeriodRuns) -> "Figure":
     count = len(runs.records[0].modes)
     with drawing():
         figure = Figure(figsize=(10.5, 1.2 + 3.4 * count), layout="constrained")
-        figure.suptitle(f"{shown_name(runs.where)}: period against amplitude")
+        figure.suptitle(f"{plain(runs.where)}: period against amplitude")
         for mode in range(count):
             axes = figure.add_subplot(count, 1, mode + 1)
             for number, run in enumerate(runs.records[:MOST_RUNS]):

@@ -56,19 +56,20 @@ def _draw_principal(axes: "Axes", found: PlaneAxes) -> None:
 
 
 def _draw_measured(axes: "Axes", found: PlaneAxes) -> None:
-    label = "measured, ±u"
+    label = "about these axes, ±u"
     for row, (angle, gyradius) in enumerate(sorted(found.measured, key=lambda one: one[0])):
         reach = np.array([gyradius.value - gyradius.uncertainty, gyradius.value])
         reach = 1.0 / np.append(reach, gyradius.value + gyradius.uncertainty)
         axes.plot(reach * math.sin(angle), reach * math.cos(angle), "-", color=FIT, lw=2.0)
         place = (math.sin(angle) / gyradius.value, math.cos(angle) / gyradius.value)
         axes.plot(*place, "o", ms=5.0, color=FIT, label=label)
+        upright = abs(math.cos(angle)) > 0.5
         axes.annotate(
             f"{math.degrees(angle):.0f} deg, {1e3 * gyradius.value:.1f} mm",
             place,
-            xytext=(0.0, -16.0 - 13.0 * (row % 3)),
+            xytext=(0.0, -16.0 - 13.0 * (row % 3)) if upright else (-9.0, 6.0),
             textcoords="offset points",
-            ha="center",
+            ha="center" if upright else "right",
             fontsize=8.0,
         )
         label = ""

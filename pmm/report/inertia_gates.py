@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.labels import shown_name
+from pmm.report.labels import plain, shown_name
 from pmm.report.style import FIT, PALETTE, drawing
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ def gates_figure(runs: PeriodRuns) -> "Figure":
 
     with drawing():
         figure = Figure(figsize=(10.5, 6.0), layout="constrained")
-        figure.suptitle(f"{shown_name(runs.where)}: light gates")
+        figure.suptitle(f"{plain(runs.where)}: light gates")
         axes = figure.add_subplot(2, 1, 1)
         rest = figure.add_subplot(2, 1, 2, sharex=axes)
         for number, (seen, fit) in enumerate(runs.gates[:MOST_RUNS]):
@@ -31,7 +31,7 @@ def gates_figure(runs: PeriodRuns) -> "Figure":
         axes.set_title("whole swings; the line is the period at no amplitude", loc="left")
         axes.set_ylabel("period (s)")
         axes.ticklabel_format(axis="y", useOffset=False)
-        axes.legend(loc="upper right")
         rest.set_ylabel("residual of the\npassages (ms)")
         rest.set_xlabel("time (s)")
+        figure.legend(loc="outside lower left", ncols=4)
     return figure

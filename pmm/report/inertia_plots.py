@@ -60,8 +60,11 @@ def save_figures(
 
 def _figures(outcome: Outcome) -> Iterator[tuple[str, Callable[[], "Figure"]]]:
     """Yield what there is to draw."""
-    for runs in outcome.periods:
+    taken: set[str] = set()
+    for number, runs in enumerate(outcome.periods, 1):
         own = _file_name(runs.where)
+        own = f"{own}-{number}" if own in taken else own
+        taken.add(own)
         if runs.records:
             yield f"{own}-record", lambda runs=runs: record_figure(runs)  # type: ignore[misc]
             yield f"{own}-amplitude", lambda runs=runs: amplitude_figure(runs)  # type: ignore[misc]

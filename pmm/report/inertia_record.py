@@ -9,7 +9,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.envelope import zigzag
-from pmm.report.labels import display, shown_name
+from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import FIT, STEADY_SHADE, TRACE, drawing
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def record_figure(runs: PeriodRuns) -> "Figure":
     shown = runs.records[:MOST_RUNS]
     with drawing():
         figure = Figure(figsize=(10.5, 1.3 + 2.5 * len(shown)), layout="constrained")
-        figure.suptitle(f"{shown_name(runs.where)}: fit over record{_and_more(runs)}")
+        figure.suptitle(f"{plain(runs.where)}: fit over record{_and_more(runs)}")
         grid = figure.add_gridspec(2 * len(shown), 1, height_ratios=(2.0, 1.0) * len(shown))
         handles: list[Artist] = []
         for place, run in enumerate(shown):

@@ -10,7 +10,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import MOST_RUNS, thin
-from pmm.report.labels import display, shown_name
+from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def spectrum_figure(runs: PeriodRuns) -> "Figure":
     with drawing():
         figure = Figure(figsize=(10.5, 4.2 + 3.0 * beating), layout="constrained")
         what = "spectrum and beats" if beating else "spectrum"
-        figure.suptitle(f"{shown_name(runs.where)}: {what}")
+        figure.suptitle(f"{plain(runs.where)}: {what}")
         axes = figure.add_subplot(1 + beating, 1, 1)
         _draw_spectra(axes, runs)
         if beating:
