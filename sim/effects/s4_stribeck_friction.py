@@ -42,6 +42,8 @@ class StribeckFriction(Effect):
         """Return the describing function, by Dawson's integral; each strut at its own phase."""
         peak = situation.amplitude_m * situation.omega / self.stribeck_speed_m_s
         predicted: dict[tuple[str, int], complex] = {}
+        if not peak:
+            return predicted
         for order, share in zip((1, 3, 5), _shares(peak), strict=True):
             predicted |= at_struts(1j * self.excess_n * share * situation.turn**order, order)
         return predicted

@@ -8,6 +8,7 @@ import pytest
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.effects.d1_speed_ripple import SpeedRippleEffect
+from sim.effects.d1b_torque_cogging import TorqueCogging
 from sim.effects.d2_speed_droop import SpeedDroop
 from sim.effects.d3_load_ripple import LoadRipple
 from sim.effects.d5_guide_friction import GuideFriction
@@ -27,10 +28,12 @@ SET_POINTS = IN_WATER + AHEAD + IN_AIR
 CASES = [
     # The series ends at the third power of rho/k.
     *((SpeedRippleEffect(0.005, k, phase), 1e-6) for k in (1.0, 2.0, 3.0) for phase in (0.0, 1.0)),
-    # First order in the load's inertia over the shaft's, M e^2/(2 J), and in the loss of speed.
+    # First order in the load's inertia over the shaft's, M e^2/(2 J), and in the change of speed.
     (SpeedDroop(2e-4), 1e-3),
     (LoadRipple(200.0), 1e-3),
     (LoadRipple(200.0, 0.5), 1e-3),
+    (TorqueCogging(1.0, 1.0, 0.5, 400.0), 1e-3),
+    (TorqueCogging(1.0, 3.0, 0.0, 400.0), 1e-3),
     (FrequencyError(), 1e-9),
     (FrequencyError(-0.02), 1e-9),
 ]
