@@ -201,24 +201,24 @@ def _stretch(
 def _limit_flags(
     recording: Recording, values: PeriodValues, found: Stretch, settings: Settings
 ) -> tuple[Flag, ...]:
-    """Say where one channel alone ends the steady stretch."""
-    tolerance, total = settings.steady_tolerance, len(values.ramp)
-    flags = []
-    for limit in limits(values, found, tolerance):
-        name = recording.channel_names[limit.channel]
+    """Say where one channel alone ends the steady stretch, and how far it strays there."""
+    beside: dict[int, list[str]] = {}
+    for limit in limits(values, found, settings.steady_tolerance):
         side = "before" if limit.period < found.start else "after"
-        does = (
-            "it has missing samples"
-            if not np.isfinite(limit.spread)
-            else f"its first harmonic strays by {100.0 * limit.spread:.3g} % of its usual amplitude"
-            f" (limit {100.0 * tolerance:g} %)"
+        missing = not np.isfinite(limit.spread)
+        what = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
+        beside.setdefault(limit.channel, []).append(f"{what} in the period {side} it")
+    return tuple(
+        Flag(
+            "stretch_limited",
+            Severity.NOTE,
+            f"this channel ends the steady stretch of {found.period_count} of {len(values.ramp)} "
+            f"periods: it {' and '.join(told)} (limit "
+            f"{100.0 * settings.steady_tolerance:g} % of its usual amplitude)",
+            recording.channel_names[channel],
         )
-        message = (
-            f"this channel alone limits the steady stretch to {found.period_count} of {total} "
-            f"periods: in the period {side} it {does}"
-        )
-        flags.append(Flag("stretch_limited", Severity.NOTE, message, name))
-    return tuple(flags)
+        for channel, told in beside.items()
+    )
 
 
 def _reading(

@@ -13,7 +13,7 @@ FLAG_OPTIONS = {
     "reference_gap": "--reference, --frequency",
     "stretch_limited": "--channel, --steady-tolerance",
     "time_unit_assumed": "--column or --map",
-    "transient": "--opens-at, --gate",
+    "transient": "--opens-at, --periods, --gate",
 }
 NO_REFERENCE = "--frequency HZ, --reference CHANNEL"
 COLUMN_LEFT_OUT = (
