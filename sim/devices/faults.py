@@ -1,0 +1,187 @@
+"""Faults by word: what can go wrong with a simulated rig, from a test or typed at its host.
+
+``emergency shaft 4210`` reads: fault, part, value. A word that is none is answered by the list.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from sim.devices.amplifier import SimulatedAmplifier
+from sim.devices.axis_drive import AxisDrive
+from sim.devices.drive import SimulatedDrive
+from sim.devices.node import SimulatedNode
+from sim.devices.shaft_drive import ShaftDrive
+from sim.devices.talkers import Inclinometer, Talker, held
+from sim.devices.world import World
+
+
+def inject(world: World, words: str) -> None:
+    """Do to a simulated rig what the words say.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such fault, part or channel, or the value is no number.
+    """
+    name, *rest = words.split() or [""]
+    if name not in FAULTS:
+        raise ConfigurationError(f"{name!r} is no fault; there are {', '.join(FAULTS)}")
+    try:
+        FAULTS[name](world, *rest)
+    except (TypeError, ValueError) as error:
+        raise ConfigurationError(f"{words!r} cannot be done: {error}") from error
+
+
+def _node(world: World, part: str) -> SimulatedNode:
+    if part not in world.nodes:
+        raise ConfigurationError(f"no node {part!r}; there are {', '.join(world.nodes)}")
+    return world.nodes[part]
+
+
+def _drive(world: World, part: str) -> SimulatedDrive:
+    node = _node(world, part)
+    if not isinstance(node, SimulatedDrive):
+        raise ConfigurationError(f"{part} is no drive")
+    return node
+
+
+def _talker(world: World, part: str) -> Talker:
+    if part not in world.talkers:
+        raise ConfigurationError(
+            f"no serial device {part!r}; there are {', '.join(world.talkers) or 'none'}"
+        )
+    return world.talkers[part]
+
+
+def _heartbeat(world: World, part: str) -> None:
+    """No heartbeat from a node any more."""
+    _node(world, part).beating = False
+
+
+def _silence(world: World, part: str) -> None:
+    """No process data from a node, or no lines from a serial device any more."""
+    if part in world.talkers:
+        _talker(world, part).mute = True
+    else:
+        _node(world, part).talking = False
+
+
+def _boot(world: World, part: str) -> None:
+    """A node loses power for a moment."""
+    _node(world, part).boot()
+
+
+def _emergency(world: World, part: str, code: str) -> None:
+    """A node sends an emergency message; the code in hexadecimal."""
+    _node(world, part).emergency(int(code, 16))
+
+
+def _drive_fault(world: World, part: str, code: str) -> None:
+    """A drive goes to FAULT with an error code in hexadecimal."""
+    _drive(world, part).fault(int(code, 16))
+
+
+def _block(world: World, part: str) -> None:
+    """An axis does not move any more: the following error grows."""
+    _drive(world, part).blocked = True
+
+
+def _free(world: World, part: str) -> None:
+    """A blocked axis moves again."""
+    drive = _drive(world, part)
+    if isinstance(drive, ShaftDrive | AxisDrive):
+        drive.unblock()
+
+
+def _channel(world: World, channel: str, change: Callable[[SimulatedAmplifier], None]) -> None:
+    known: list[str] = []
+    for node in world.nodes.values():
+        if isinstance(node, SimulatedAmplifier):
+            known += node.lines
+            if channel in node.lines:
+                change(node)
+                return
+    raise ConfigurationError(f"no channel {channel!r}; there are {', '.join(known) or 'none'}")
+
+
+def _stuck(world: World, channel: str) -> None:
+    """A force channel repeats its value."""
+    _channel(world, channel, lambda one: setattr(one.lines[channel], "stuck", True))
+
+
+def _broken(world: World, channel: str) -> None:
+    """A force channel's bridge is broken: the amplifier says that it is not valid."""
+    _channel(world, channel, lambda one: setattr(one.lines[channel], "broken", True))
+
+
+def _push(world: World, channel: str, force: str) -> None:
+    """Somebody pushes a gauge, by so much in the channel's unit, until another push."""
+    value = float(force)
+    _channel(world, channel, lambda one: setattr(one.lines[channel], "push", value))
+
+
+def _tilt(world: World, part: str, angle_rad: str) -> None:
+    """Somebody holds the inclinometer at an angle in radians."""
+    talker = _talker(world, part)
+    if isinstance(talker, Inclinometer):
+        talker.angles = held(float(angle_rad))
+
+
+def _missed(world: World, count: str) -> None:
+    """So many of the next photocell pulses stay away."""
+    world.missed = int(count)
+
+
+def _extra(world: World, count: str = "1") -> None:
+    """So many photocell pulses more than there are turns, now."""
+    world.extra = int(count)
+
+
+def _unplug(world: World, part: str) -> None:
+    """The plug of a serial device is pulled."""
+    _talker(world, part).cable.plugged = False
+
+
+def _plug(world: World, part: str) -> None:
+    """The plug of a serial device is put in again, and the device speaks."""
+    talker = _talker(world, part)
+    talker.cable.plugged, talker.mute = True, False
+
+
+def _bus_off(world: World) -> None:
+    """The controller's adapter goes bus-off."""
+    world.bus_off = True
+
+
+def _error_frame(world: World, count: str = "1") -> None:
+    """So many error frames on the bus."""
+    for _ in range(int(count)):
+        world.put_error_frame()
+
+
+def _deaf(world: World) -> None:
+    """The controller's adapter fails in receiving."""
+    world.deaf = True
+
+
+FAULTS: Final[dict[str, Callable[..., None]]] = {
+    "heartbeat": _heartbeat,
+    "silence": _silence,
+    "boot": _boot,
+    "emergency": _emergency,
+    "drive-fault": _drive_fault,
+    "block": _block,
+    "free": _free,
+    "stuck": _stuck,
+    "broken": _broken,
+    "push": _push,
+    "tilt": _tilt,
+    "missed": _missed,
+    "extra": _extra,
+    "unplug": _unplug,
+    "plug": _plug,
+    "bus-off": _bus_off,
+    "error-frame": _error_frame,
+    "deaf": _deaf,
+}

@@ -1,0 +1,89 @@
+"""The simulated side of a CAN bus: dispatches what a controller sends, collects the answers."""
+
+from typing import TYPE_CHECKING
+
+import can
+import canopen
+
+if TYPE_CHECKING:
+    from collections import deque
+    from collections.abc import Callable
+
+SYNC, HEARTBEAT = 0x080, 0x700
+
+
+class Wire(canopen.Network):
+    """A network without threads and clocks; canopen's nodes hang on it for SDO, NMT and EMCY.
+
+    SYNC, process data and heartbeats take a short way past canopen, because they come in every
+    cycle.
+
+    Attributes
+    ----------
+    outlets
+        Where frames go, one queue for each bus that is plugged in.
+    time_s
+        Simulated time, the time stamp of the frames.
+    number
+        Ticks so far.
+    beats
+        The tick in which each node's heartbeat last came.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.outlets: list[deque[can.Message]] = []
+        self.rpdos: dict[int, Callable[[bytes | bytearray], None]] = {}
+        self.on_sync: Callable[[], None] = _nothing
+        self.beats: dict[int, int] = {}
+        self.time_s = 0.0
+        self.number = 0
+
+    def take(self, frame: can.Message) -> None:
+        """Take a frame from a controller; what the nodes answer lies in the outlets then."""
+        identifier = frame.arbitration_id
+        if frame.is_error_frame or frame.is_remote_frame or frame.is_extended_id:
+            return
+        if identifier == SYNC:
+            self.on_sync()
+        elif (rpdo := self.rpdos.get(identifier)) is not None:
+            rpdo(frame.data)
+        elif identifier & 0x780 == HEARTBEAT:
+            self.beats[identifier & 0x7F] = self.number
+        else:
+            self.notify(identifier, frame.data, self.time_s)
+
+    def emit(self, identifier: int, data: bytes) -> None:
+        """Send a frame of a node."""
+        frame = can.Message(
+            timestamp=self.time_s, arbitration_id=identifier, is_extended_id=False, data=data
+        )
+        for outlet in self.outlets:
+            outlet.append(frame)
+
+    def put(self, frame: can.Message) -> None:
+        """Put a frame, an error frame for example, on the bus."""
+        for outlet in self.outlets:
+            outlet.append(frame)
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:  # noqa: ARG002
+        """Send what canopen's nodes say."""
+        self.emit(can_id, bytes(data))
+
+    def send_periodic(self, *_: object, **__: object) -> "_Unused":  # type: ignore[override]
+        """Take the heartbeat's timer from canopen: the nodes count ticks instead."""
+        return _Unused()
+
+
+class _Unused:
+    """Stands where canopen keeps a periodic task."""
+
+    def update(self, data: bytes) -> None:
+        """Nothing to update."""
+
+    def stop(self) -> None:
+        """Nothing to stop."""
+
+
+def _nothing() -> None:
+    return

@@ -1,0 +1,194 @@
+"""The simulator's chain behind the devices: computed ahead in blocks, taken back on a command.
+
+A chain's state is a value. So the plant keeps the state before the present block, and when a
+command comes in the middle of it, the block's first part is run again to have the state at that
+sample; from there the changed chain goes on. A run in which nothing changes costs next to nothing
+a sample.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from hardware.description.setpoint import Medium, SetPoint
+from sim import signals
+from sim.chain import Chain, ChainState
+from sim.devices.profile import SpeedProfile, following
+from sim.rig import SimulatedRig
+from sim.signals import Signals
+
+_LARGEST_BLOCK: Final = 256
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the rig does not decide: carriage speed, medium, seed of all noise."""
+
+    carriage_speed_m_s: float = 0.0
+    medium: Medium = Medium.WATER
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A pulse of the photocell: when, and at which shaft angle."""
+
+    time_s: float
+    angle_rad: float
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """A block: the state before and after it, its signals as lists, pulses due before it."""
+
+    chain: Chain
+    before: ChainState
+    after: ChainState
+    columns: dict[str, list[float]]
+    carried: tuple[float, ...]
+
+    @property
+    def first(self) -> int:
+        return self.before.next_sample
+
+    @property
+    def end(self) -> int:
+        return self.after.next_sample
+
+
+class Plant:
+    """Oscillator, model, water and sensors, sample by sample.
+
+    Attributes
+    ----------
+    number
+        The present sample; it comes ``number / sample_rate_hz`` after the start.
+    profile
+        What the shaft's drive is told.
+    blocks
+        How many blocks have been computed, for tests and measurements.
+    """
+
+    def __init__(
+        self,
+        rig: SimulatedRig,
+        around: Surroundings,
+        sample_rate_hz: float,
+        eccentricity_m: float = 0.0,
+        strut_phase_rad: float = 0.0,
+    ) -> None:
+        self.number = 0
+        self.sample_rate_hz = sample_rate_hz
+        self.profile = SpeedProfile()
+        self.blocks = 0
+        self._rig, self._around = rig, around
+        self._linkage = (eccentricity_m, strut_phase_rad)
+        self._size, self._changed = 1, False
+        chain = self._chain()
+        self._due: tuple[float, ...] = ()
+        self._angle_and_speed_before = (0.0, 0.0)
+        self._stretch = self._run(chain, chain.start(sample_rate_hz, around.seed), 1)
+
+    @property
+    def time_s(self) -> float:
+        """Time of the present sample."""
+        return self.number / self.sample_rate_hz
+
+    @property
+    def angle_rad(self) -> float:
+        """The shaft's true angle now."""
+        return self.value(signals.SHAFT_ANGLE.name)
+
+    @property
+    def speed_rad_s(self) -> float:
+        """The shaft's true speed now."""
+        return self.value(signals.SHAFT_SPEED.name)
+
+    def value(self, name: str) -> float:
+        """Return a sampled signal now."""
+        return self._stretch.columns[name][self.number - self._stretch.before.next_sample]
+
+    def knows(self, name: str) -> bool:
+        """Tell whether the chain has such a sampled signal."""
+        return name in self._stretch.columns
+
+    @property
+    def recorded(self) -> list[str]:
+        """Names of the recorded channels."""
+        names = (one for one in self._stretch.columns if one.startswith("recorded_"))
+        return [name.removeprefix("recorded_") for name in names]
+
+    def turn(self, target_rad_s: float, acceleration_rad_s2: float) -> None:
+        """Command a speed: from the present sample on."""
+        self.profile = self.profile.then(self.time_s, target_rad_s, acceleration_rad_s2)
+        self._changed = True
+
+    def set_linkage(
+        self, eccentricity_m: float | None = None, strut_phase_rad: float | None = None
+    ) -> None:
+        """Set eccentricity or phase; the mechanism has it from the next sample on."""
+        before, (e, phase) = self._linkage, self._linkage
+        self._linkage = (
+            e if eccentricity_m is None else eccentricity_m,
+            phase if strut_phase_rad is None else strut_phase_rad,
+        )
+        self._changed = self._changed or self._linkage != before
+
+    def advance(self) -> None:
+        """Go on to the next sample."""
+        self._angle_and_speed_before = self.angle_rad, self.speed_rad_s
+        if self._changed:
+            state = self._state_after_present()
+            self._changed, self._size = False, 1
+            self._stretch = self._run(self._chain(), state, 1)
+        elif self.number + 1 == self._stretch.end:
+            self._size = min(2 * self._size, _LARGEST_BLOCK)
+            self._stretch = self._run(self._stretch.chain, self._stretch.after, self._size)
+        self.number += 1
+
+    def passed(self) -> tuple[Passage, ...]:
+        """Return the photocell's pulses up to the present sample that were not returned yet."""
+        if not self._due or self._due[0] > self.time_s:
+            return ()
+        now = tuple(edge for edge in self._due if edge <= self.time_s)
+        self._due = self._due[len(now) :]
+        return tuple(Passage(edge, self._angle_at(edge)) for edge in now)
+
+    def _angle_at(self, time_s: float) -> float:
+        """Return the shaft angle shortly before the present sample, from both samples around."""
+        since = time_s - self.time_s
+        speed = self.speed_rad_s
+        slope = (speed - self._angle_and_speed_before[1]) * self.sample_rate_hz
+        return self.angle_rad + (speed + slope / 2.0 * since) * since
+
+    def _chain(self) -> Chain:
+        """Return the rig's chain as it is set now; the profile says how fast, not the set-point."""
+        eccentricity, phase = self._linkage
+        rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
+        around = self._around
+        any_hz = self._rig.oscillator.frequency_hz.high
+        return rig.chain(
+            SetPoint(any_hz, eccentricity, phase, around.carriage_speed_m_s, around.medium)
+        )
+
+    def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:
+        carried = self._due
+        after, run = chain.run(state, count)
+        self.blocks += 1
+        self._due = carried + _edges(run)
+        columns = {one.name: run[one.name].tolist() for one in chain.signals if one.sampled}
+        return _Stretch(chain, state, after, columns, carried)
+
+    def _state_after_present(self) -> ChainState:
+        """Return the state after the present sample, and forget what lies beyond it."""
+        one = self._stretch
+        if self.number + 1 == one.end:
+            return one.after
+        after, run = one.chain.run(one.before, self.number + 1 - one.first)
+        found = one.carried + _edges(run)
+        self._due = tuple(edge for edge in found if edge > self.time_s)
+        return after
+
+
+def _edges(run: Signals) -> tuple[float, ...]:
+    edges = run.get(signals.PHOTOCELL_EDGE_TIME.name)
+    return () if edges is None else tuple(edges.tolist())

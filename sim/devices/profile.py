@@ -1,0 +1,87 @@
+"""The speed that a drive is told: a ramp, then constant, as a function of time alone."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sim.drive import DriveSettings, Shaft
+from sim.signals import FloatArray
+
+
+@dataclass(frozen=True)
+class SpeedProfile:
+    """A shaft that runs from one speed to another at a constant acceleration, and goes on at it.
+
+    Attributes
+    ----------
+    start_s, angle_rad, speed_rad_s
+        When and where the ramp begins, and at what speed.
+    target_rad_s, acceleration_rad_s2
+        Where the ramp ends (any sign), and how steep it is (above 0).
+    """
+
+    start_s: float = 0.0
+    angle_rad: float = 0.0
+    speed_rad_s: float = 0.0
+    target_rad_s: float = 0.0
+    acceleration_rad_s2: float = 1.0
+
+    @property
+    def ramp_s(self) -> float:
+        """How long the ramp takes."""
+        return abs(self.target_rad_s - self.speed_rad_s) / self.acceleration_rad_s2
+
+    def at(self, time_s: FloatArray) -> Shaft:
+        """Return angle, speed and acceleration at each time, none before the start."""
+        since = time_s - self.start_s
+        in_ramp = np.minimum(since, self.ramp_s)
+        slope = math.copysign(self.acceleration_rad_s2, self.target_rad_s - self.speed_rad_s)
+        angle = self.angle_rad + (self.speed_rad_s + slope / 2.0 * in_ramp) * in_ramp
+        ramping = since < self.ramp_s
+        return Shaft(
+            angle + self.target_rad_s * (since - in_ramp),
+            np.where(ramping, self.speed_rad_s + slope * in_ramp, self.target_rad_s),
+            np.where(ramping, slope, 0.0),
+        )
+
+    def angle_and_speed(self, time_s: float) -> tuple[float, float]:
+        """Return both at one time."""
+        shaft = self.at(np.array([time_s]))
+        return float(shaft.angle[0]), float(shaft.speed[0])
+
+    def then(
+        self, time_s: float, target_rad_s: float, acceleration_rad_s2: float
+    ) -> "SpeedProfile":
+        """Return what follows if another speed is commanded at ``time_s``."""
+        angle, speed = self.angle_and_speed(time_s)
+        return SpeedProfile(time_s, angle, speed, target_rad_s, acceleration_rad_s2)
+
+
+@dataclass(frozen=True)
+class ProfiledDrive(DriveSettings):
+    """A drive of the chain that follows a profile in place of the run's set frequency."""
+
+    profile: SpeedProfile = field(default_factory=SpeedProfile)
+
+    def commanded(self, set_hz: float, time_s: FloatArray) -> Shaft:  # noqa: ARG002
+        """Return the motion that the drive is told to make, its ripple and speed error included."""
+        told, share = self.profile.at(time_s), 1.0 + self.speed_error
+        return self._rippled(
+            Shaft(
+                self.initial_angle_rad + share * told.angle,
+                share * told.speed,
+                share * told.acceleration,
+            )
+        )
+
+
+def following(settings: DriveSettings, profile: SpeedProfile) -> ProfiledDrive:
+    """Return a drive as it is in ``settings``, but told by a profile."""
+    return ProfiledDrive(
+        initial_angle_rad=settings.initial_angle_rad,
+        speed_error=settings.speed_error,
+        ripple=settings.ripple,
+        motor=settings.motor,
+        profile=profile,
+    )

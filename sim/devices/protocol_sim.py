@@ -1,0 +1,67 @@
+"""pyserial's handler of ``sim://rig/part``: what a simulated device says is there at once."""
+
+from typing import TYPE_CHECKING
+
+import serial
+
+from sim.devices.registry import world_named
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
+
+    from sim.devices.talkers import Cable
+
+
+class Serial(serial.SerialBase):
+    """A port at the near end of a simulated device's cable; reading never waits."""
+
+    def open(self) -> None:
+        """Open the port.
+
+        Raises
+        ------
+        SerialException
+            If there is no such rig or part, or its plug is out.
+        """
+        rig, _, part = str(self.portstr).removeprefix("sim://").partition("/")
+        try:
+            talkers = world_named(rig).talkers
+        except ValueError as error:
+            raise serial.SerialException(str(error)) from error
+        if part not in talkers:
+            known = ", ".join(talkers) or "none"
+            raise serial.SerialException(f"{rig} has no serial device {part!r}; it has {known}")
+        self._cable: Cable = talkers[part].cable
+        self._plugged()
+        self.is_open = True
+
+    def close(self) -> None:
+        """Close the port."""
+        self.is_open = False
+
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that are there."""
+        self._plugged()
+        return len(self._cable.waiting)
+
+    def read(self, size: int = 1) -> bytes:
+        """Return what is there, at most ``size`` bytes."""
+        self._plugged()
+        taken = bytes(self._cable.waiting[:size])
+        del self._cable.waiting[:size]
+        return taken
+
+    def write(self, b: "Buffer", /) -> int:
+        """Write to the device."""
+        self._plugged()
+        data = bytes(b)
+        self._cable.heard += data
+        return len(data)
+
+    def _reconfigure_port(self) -> None:
+        """A cable in memory has no settings."""
+
+    def _plugged(self) -> None:
+        if not self._cable.plugged:
+            raise serial.SerialException("device disconnected")

@@ -1,0 +1,184 @@
+"""A simulated rig as a whole: the plant, and the devices that a rig's configuration names."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import can
+
+from hardware.amplifier import AmplifierSettings
+from hardware.axis import PositionAxisSettings
+from hardware.description.errors import ConfigurationError
+from hardware.inclinometer import InclinometerSettings
+from hardware.manual_axis import ManualAxisSettings
+from hardware.manual_shaft import ManualShaftSettings
+from hardware.photocell_probe import ProbeSettings
+from hardware.photocell_serial import TimestamperSettings
+from hardware.rig_configuration import Part, RigConfiguration, check
+from hardware.shaft import ShaftSettings
+from sim.devices.amplifier import SimulatedAmplifier, Source
+from sim.devices.axis_drive import AxisDrive
+from sim.devices.network import Wire
+from sim.devices.plant import Passage, Plant, Surroundings
+from sim.devices.shaft_drive import ShaftDrive
+from sim.devices.talkers import Angles, Inclinometer, Talker, Timestamper, held
+from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sim.devices.node import SimulatedNode
+
+_OPERATED: Final = (ManualAxisSettings, ManualShaftSettings)  # a person does it, nothing answers
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is simulated beside the devices.
+
+    Attributes
+    ----------
+    eccentricity_m, strut_phase_rad
+        Where the linkage stands when the power comes on.
+    angles
+        What the inclinometer sees.
+    """
+
+    rig: SimulatedRig
+    around: Surroundings = field(default_factory=Surroundings)
+    eccentricity_m: float = 0.0
+    strut_phase_rad: float = 0.0
+    angles: Angles = field(default_factory=held)
+
+
+class World:
+    """Simulated devices in step with SYNC.
+
+    Every SYNC is one sample: the plant goes on, the devices with it, and the nodes answer.
+
+    Attributes
+    ----------
+    nodes, talkers
+        The devices on the bus and on serial lines, by their part's name in the configuration.
+    missed, extra
+        Faults: so many of the next pulses stay away; so many pulses come at once.
+    bus_off, deaf
+        Faults: the bus's adapter cannot send, or fails in receiving.
+
+    Raises
+    ------
+    ConfigurationError
+        If the configuration does not fit together, or names a driver that has no simulated device.
+    """
+
+    def __init__(self, configuration: RigConfiguration, scene: Scene) -> None:
+        check(configuration)
+        self.wire = Wire()
+        self.wire.on_sync = self.sync
+        self.nodes: dict[str, SimulatedNode] = {}
+        self.talkers: dict[str, Talker] = {}
+        self.missed = self.extra = 0
+        self.bus_off = self.deaf = False
+        self.plant = Plant(
+            scene.rig,
+            scene.around,
+            configuration.sample_rate_hz,
+            scene.eccentricity_m,
+            scene.strut_phase_rad,
+        )
+        self._has_photocell = scene.rig.photocell is not None
+        self._shaft: ShaftDrive | None = None
+        for part in configuration.parts():
+            self._add(part, scene)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time."""
+        return self.plant.time_s
+
+    def tick(self) -> None:
+        """Let one sample pass."""
+        plant, wire = self.plant, self.wire
+        plant.advance()
+        wire.number, wire.time_s = plant.number, plant.time_s
+        for node in self.nodes.values():
+            node.tick()
+        passages = self._passages()
+        if self._shaft is not None:
+            for one in passages:
+                self._shaft.pulse(one)
+        for talker in self.talkers.values():
+            talker.tick(plant.time_s, passages)
+
+    def sync(self) -> None:
+        """Let one sample pass, and the nodes answer."""
+        self.tick()
+        for node in self.nodes.values():
+            node.answer()
+
+    def put_error_frame(self, *, bus_off: bool = False) -> None:
+        """Put an error frame on the bus, as an adapter hands it up."""
+        kind = 0x40 if bus_off else 0x08
+        self.wire.put(can.Message(is_error_frame=True, arbitration_id=kind, data=bytes(8)))
+
+    def _passages(self) -> tuple[Passage, ...]:
+        passages = self.plant.passed()
+        if self.missed and passages:
+            lost = min(self.missed, len(passages))
+            self.missed -= lost
+            passages = passages[lost:]
+        if self.extra:
+            passages += (Passage(self.plant.time_s, self.plant.angle_rad),) * self.extra
+            self.extra = 0
+        return passages
+
+    def _add(self, part: Part, scene: Scene) -> None:
+        settings, rate = part.settings, self.plant.sample_rate_hz
+        if isinstance(settings, ShaftSettings):
+            self._shaft = ShaftDrive(self.wire, part.name, settings, self.plant)
+            self.nodes[part.name] = self._shaft
+        elif isinstance(settings, PositionAxisSettings):
+            self.nodes[part.name] = self._axis(part.name, settings, scene)
+        elif isinstance(settings, AmplifierSettings):
+            self.nodes[part.name] = SimulatedAmplifier(
+                self.wire, part.name, settings, rate, self._source
+            )
+        elif isinstance(settings, TimestamperSettings):
+            self._check_photocell(part.name)
+            self.talkers[part.name] = Timestamper()
+        elif isinstance(settings, InclinometerSettings):
+            self.talkers[part.name] = Inclinometer(
+                settings.sample_rate_hz, settings.rad_per_unit, scene.angles
+            )
+        elif isinstance(settings, ProbeSettings):
+            self._check_photocell(part.name)
+        elif not isinstance(settings, _OPERATED):
+            raise ConfigurationError(
+                f"{part.name}: {type(settings).__module__} has no simulated device; "
+                "leave the part out of the simulated rig"
+            )
+
+    def _axis(self, name: str, settings: PositionAxisSettings, scene: Scene) -> AxisDrive:
+        eccentricity = name == "eccentricity"
+        start = scene.eccentricity_m if eccentricity else scene.strut_phase_rad
+        moved: Callable[[float], None] = self._set_eccentricity if eccentricity else self._set_phase
+        rate = self.plant.sample_rate_hz
+        return AxisDrive(self.wire, name, settings, rate, start, moved)
+
+    def _set_eccentricity(self, metres: float) -> None:
+        self.plant.set_linkage(eccentricity_m=metres)
+
+    def _set_phase(self, radians: float) -> None:
+        self.plant.set_linkage(strut_phase_rad=radians)
+
+    def _source(self, channel: str) -> Source:
+        signal = f"recorded_{channel}"
+        if not self.plant.knows(signal):
+            raise ConfigurationError(
+                f"forces: channel {channel!r} is not recorded by the simulated rig; it has "
+                f"{', '.join(self.plant.recorded)}"
+            )
+        return lambda: self.plant.value(signal)
+
+    def _check_photocell(self, name: str) -> None:
+        if not self._has_photocell:
+            raise ConfigurationError(f"{name}: the simulated rig has no photocell")

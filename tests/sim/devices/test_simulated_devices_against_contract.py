@@ -1,0 +1,101 @@
+"""The simulated devices pass the contract of every role: in process, over multicast, over slcan."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.hardware.contract import (
+    Bench,
+    ForceContract,
+    InclinometerContract,
+    PhotocellContract,
+    PositionAxisContract,
+    ShaftContract,
+)
+from tests.sim.devices.benches import (
+    WHOLE,
+    Hosted,
+    amplifier,
+    bench,
+    by_word,
+    in_process,
+    multicast_works,
+    push,
+    slotted,
+)
+
+PARTS = {
+    "shaft": WHOLE["shaft"],
+    "eccentricity": WHOLE["eccentricity"],
+    "forces": [amplifier(4, "force_aft", "force_fore")],
+    "photocell": WHOLE["photocell"],
+}
+ROUNDS = ("in process", "udp_multicast", "slcan")
+
+
+@pytest.fixture(scope="module", params=ROUNDS)
+def host(request, tmp_path_factory) -> Iterator[Hosted | None]:
+    """``None`` in process; elsewhere the process that serves the rig."""
+    if request.param == "in process":
+        yield None
+        return
+    if request.param == "udp_multicast" and not multicast_works():
+        pytest.skip("multicast does not come through on this machine")
+    one = Hosted(PARTS, tmp_path_factory.mktemp("host"), request.param)
+    yield one
+    one.close()
+
+
+def opened(host: Hosted | None, *parts: str):
+    """A rig of some parts and what sends words to its world."""
+    if host is not None:
+        with host.rig(*parts) as rig:
+            yield rig, host.say
+    else:
+        tables = {part: PARTS[part] for part in parts}
+        with in_process(tables, eccentricity_m=0.001) as (rig, world):
+            yield rig, by_word(world)
+
+
+class TestShaft(ShaftContract):
+    @pytest.fixture
+    def bench(self, host) -> Iterator[Bench]:
+        for rig, _ in opened(host, "shaft"):
+            yield bench(rig)
+
+
+class TestAxis(PositionAxisContract):
+    @pytest.fixture
+    def bench(self, host) -> Iterator[Bench]:
+        for rig, _ in opened(host, "eccentricity"):
+            yield bench(rig)
+
+
+class TestAmplifier(ForceContract):
+    @pytest.fixture
+    def bench(self, host) -> Iterator[Bench]:
+        for rig, send in opened(host, "forces"):
+            yield bench(rig, push(send, "force_aft"))
+
+
+class TestTouchProbe(PhotocellContract):
+    @pytest.fixture
+    def bench(self, host) -> Iterator[Bench]:
+        for rig, send in opened(host, "shaft", "photocell"):
+            yield bench(rig, slotted(rig, send))
+
+
+class TestTimestamper(PhotocellContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        tables = {"shaft": PARTS["shaft"], "photocell": {"driver": "timestamper"}}
+        with in_process(tables, serial=("photocell",)) as (rig, world):
+            yield bench(rig, slotted(rig, by_word(world)))
+
+
+class TestInclinometer(InclinometerContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        tables = {"inclinometer": {"driver": "serial-inclinometer"}}
+        with in_process(tables, on_bus=False, serial=("inclinometer",)) as (rig, world):
+            yield bench(rig, lambda angle: by_word(world)(f"tilt inclinometer {angle!r}"))
