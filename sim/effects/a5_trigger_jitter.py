@@ -27,6 +27,7 @@ class TriggerJitter(Effect):
     name: ClassVar[str] = "trigger-jitter"
     title: ClassVar[str] = "Jitter of the photocell's pulses"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
+    repeats: ClassVar[bool] = False
 
     jitter_rad: float = parameter(5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft")
 

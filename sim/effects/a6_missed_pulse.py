@@ -24,6 +24,7 @@ class MissedPulse(Effect):
     name: ClassVar[str] = "missed-pulse"
     title: ClassVar[str] = "Missed pulses of the photocell"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
+    repeats: ClassVar[bool] = False
 
     every: float = parameter(20.0, 3.0, 10000.0, "1", "N, rounded: one pulse in so many is missing")
 

@@ -28,6 +28,7 @@ class LateGate(Effect):
     name: ClassVar[str] = "late-gate"
     title: ClassVar[str] = "Window of a non-integer number of cycles"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
+    repeats: ClassVar[bool] = False
 
     fraction: float = parameter(0.1, 0.001, 0.9, "1", "d: part of a cycle by which it is too long")
     cycles: float = parameter(10.0, 1.0, 1000.0, "1", "m: cycles that are wanted, rounded")

@@ -27,6 +27,7 @@ class Hum(Effect):
     name: ClassVar[str] = "hum"
     title: ClassVar[str] = "Hum of the mains, and its alias"
     stage: ClassVar[StageName] = StageName.ACQUISITION
+    repeats: ClassVar[bool] = False
 
     amplitude_n: float = parameter(0.2, 0.0, 20.0, "N", "amplitude in both force channels")
     frequency_hz: float = parameter(50.0, 1.0, 2000.0, "Hz", "frequency of the mains, or of what")

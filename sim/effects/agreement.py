@@ -63,7 +63,7 @@ def mismatch(
     states no change at any set-point: a change that does not repeat with the shaft, or none at all.
     """
     worst = float("nan")
-    for set_point in set_points:
+    for set_point in set_points if effect.repeats else ():
         situation = Situation.of(rig, set_point)
         theory = effect.signature(situation)
         if not any(theory.values()):

@@ -79,6 +79,10 @@ class Effect(ABC):
         One line for people.
     stage
         Where it acts.
+    repeats
+        False where it does not repeat with the shaft, so that the periodic steady state has no part
+        of it: its signature, if it has one, is what an average over a record finds, as its own
+        description says.
 
     Raises
     ------
@@ -90,6 +94,7 @@ class Effect(ABC):
     name: ClassVar[str]
     title: ClassVar[str]
     stage: ClassVar[StageName]
+    repeats: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         for one in self.parameters():

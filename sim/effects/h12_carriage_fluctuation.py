@@ -27,6 +27,7 @@ class CarriageFluctuation(Effect):
     name: ClassVar[str] = "carriage-fluctuation"
     title: ClassVar[str] = "Fluctuation of the carriage's speed"
     stage: ClassVar[StageName] = StageName.CARRIAGE
+    repeats: ClassVar[bool] = False
 
     relative: float = parameter(0.003, 0.0, 0.05, "1", "r, of the mean speed")
     frequency_hz: float = parameter(0.37, 0.005, 50.0, "Hz", "W/(2 pi)")

@@ -31,6 +31,7 @@ class ResidualWaves(Effect):
     name: ClassVar[str] = "residual-waves"
     title: ClassVar[str] = "Waves left by the run before"
     stage: ClassVar[StageName] = StageName.MODEL
+    repeats: ClassVar[bool] = False
 
     force_n: float = parameter(3.0, 0.0, 100.0, "N", "amplitude when the run before has ended")
     decay_s: float = parameter(200.0, 10.0, 3600.0, "s", "time in which it falls to 1/e")

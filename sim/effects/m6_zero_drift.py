@@ -25,6 +25,7 @@ class ZeroDrift(Effect):
     name: ClassVar[str] = "zero-drift"
     title: ClassVar[str] = "Drift of the dynamometers' zero"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    repeats: ClassVar[bool] = False
 
     aft_n_s: float = parameter(1e-3, -0.02, 0.02, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.02, 0.02, "N/s", "drift of the fore dynamometer")

@@ -22,10 +22,11 @@ SECONDS_AN_HOUR = 3600.0
 class Temperature(Effect):
     """Gain, zero, viscosity and density follow the temperature; it changes from run to run.
 
-    With the rise D since the campaign began, the gauges read ``F (1 + g D) + z D``, the water's
-    loads go with ``1 + r D``, and its damping with ``1 + b D`` besides: the viscosity falls by 2 %
-    a kelvin, and friction with about its 0.15th power. In a campaign the hours are those of the
-    run: a run that is repeated at the end shows it, and a random order makes it scatter.
+    With the rise D since the campaign began, the gauges read ``F (1 + g D) + z D``, the linear
+    loads of the water go with ``1 + r D``, and its damping with ``1 + b D`` besides: the viscosity
+    falls by 2 % a kelvin, and friction with about its 0.15th power. In a campaign the hours are
+    those of the run: one that is repeated at the end shows it, and a random order makes it
+    scatter.
     """
 
     code: ClassVar[str] = "M8"
@@ -34,7 +35,7 @@ class Temperature(Effect):
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
 
     rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature")
-    hours: float = parameter(4.0, 0.0, 72.0, "h", "time since it was as in the calibration")
+    hours: float = parameter(4.0, 0.0, 240.0, "h", "time since it was as in the calibration")
     gain_1_k: float = parameter(2e-4, -2e-3, 2e-3, "1/K", "gain of the gauges")
     zero_n_k: float = parameter(0.05, -1.0, 1.0, "N/K", "zero of the gauges")
     damping_1_k: float = parameter(-3e-3, -0.02, 0.02, "1/K", "damping, by the viscosity")
