@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.period import Period, Spectra
-from sim.play import PlayState, follow_with_play
+from sim.play import Motion, PlayState, follow_with_play
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -122,11 +122,11 @@ class Mechanism:
         after = list(state or (None, None))
         for i, (strut, names) in enumerate(zip(self._struts, _WRITES, strict=True)):
             d, slope, curvature = self._strut(strut, angle)
-            values = (d, slope * speed, curvature * speed**2 + slope * acceleration, slope)
+            motion = Motion(d, slope * speed, curvature * speed**2 + slope * acceleration)
+            values: tuple[FloatArray, ...] = (*motion, slope)
             if strut[0].half_play_m and block.count:
-                step_s = 1.0 / block.sample_rate_hz
                 after[i], behind = follow_with_play(
-                    after[i], values[:3], strut[0].half_play_m, step_s
+                    after[i], motion, strut[0].half_play_m, 1.0 / block.sample_rate_hz
                 )
                 values = (*behind[:3], slope * behind.contact)
             written |= {one.name: v for one, v in zip(names, values, strict=True)}
@@ -143,10 +143,8 @@ class Mechanism:
                 speed = period.values(inputs[signals.SHAFT_SPEED.name])
                 gained = period.values(inputs[signals.SHAFT_ACCELERATION.name])
                 in_front = (d, slope * speed, curvature * speed**2 + slope * gained)
-                twice = tuple(np.tile(one, 2) for one in in_front)
-                _, behind = follow_with_play(
-                    None, (twice[0], twice[1], twice[2]), strut[0].half_play_m, period.step_s
-                )
+                twice = Motion(*(np.tile(one, 2) for one in in_front))
+                _, behind = follow_with_play(None, twice, strut[0].half_play_m, period.step_s)
                 d, slope = behind.position[period.points :], slope * behind.contact[period.points :]
             motion, lever = period.harmonics(np.column_stack([d, slope])).T
             values = (motion, period.s * motion, period.s**2 * motion, lever)

@@ -8,10 +8,22 @@ from sim.signals import FloatArray
 
 
 class PlayState(NamedTuple):
-    """Position and velocity behind the joint, half a sample after the last one."""
+    """Position and velocity behind the joint, half a sample after the last one.
+
+    ``owed`` is what the next sample still has to show of a jump of the velocity.
+    """
 
     position: float
     velocity: float
+    owed: float = 0.0
+
+
+class Motion(NamedTuple):
+    """Position, velocity and acceleration in front of the joint, one value a sample."""
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
 
 
 class Follower(NamedTuple):
@@ -24,24 +36,19 @@ class Follower(NamedTuple):
 
 
 def follow_with_play(
-    state: PlayState | None,
-    motion: tuple[FloatArray, FloatArray, FloatArray],
-    half_play_m: float,
-    step_s: float,
+    state: PlayState | None, motion: Motion, half_play_m: float, step_s: float
 ) -> tuple[PlayState, Follower]:
     """Return the motion behind a joint with friction, which stays put within the clearance.
 
     Where contact begins the velocity jumps: there velocity and acceleration are means over the
-    sample, from the positions and velocities half a sample before and after it; so the jump is in
-    one sample as a force of the right impulse. The motion in front goes on to second order within
-    half a sample, and where it turns is found between samples.
+    sample, from the positions and velocities half a sample before and after it, and the jump itself
+    is shared by the two samples beside it, so that its impulse comes when it should. The motion in
+    front goes on to second order within a sample, and where it turns is found between samples.
 
     Parameters
     ----------
     state
         ``None`` before the first sample: in the middle of the clearance.
-    motion
-        Position, velocity and acceleration in front of the joint, shape ``(samples,)`` each.
     half_play_m
         Clearance to either side.
     """
@@ -59,14 +66,36 @@ def follow_with_play(
     pushed = ((ends - after >= slack) & (speeds > 0.0)) | ((after - ends >= slack) & (speeds < 0.0))
     carried = np.where(pushed, speeds, 0.0)
     earlier = np.concatenate([[state.velocity], carried[:-1]])
-    position = np.clip(before, d - half_play_m, d + half_play_m)
     whole = pushed & (earlier != 0.0) & ~turning
-    still = ~pushed & (earlier == 0.0) & (after == before)
-    velocity = np.where(whole, v, (after - before) / step_s)
-    acceleration = np.where(whole, a, (carried - earlier) / step_s)
-    contact = np.where(whole, 1.0, np.where(still, 0.0, 0.5))
-    last = PlayState(float(after[-1]), float(carried[-1]))
-    return last, Follower(position, velocity, acceleration, contact)
+    still = ~pushed & (earlier == 0.0)
+    begun = pushed & (earlier == 0.0)
+    jump, fraction = _contact(motion, np.where(begun, before, after), half_play_m, step_s)
+    begins = np.where(begun, jump, 0.0)
+    late = begins * np.clip(fraction, 0.0, 0.5)
+    early = np.where(still & (fraction >= 0.5) & (fraction < 1.0), jump * (1.0 - fraction), 0.0)
+    due = np.concatenate([[state.owed], late[:-1]])
+    shown = early + due + begins * (1.0 - np.abs(np.clip(fraction, -0.5, 0.5)))
+    smooth = np.where(whole, a, (carried - earlier - begins) / step_s)
+    last = PlayState(float(after[-1]), float(carried[-1]), float(late[-1]))
+    return last, Follower(
+        np.clip(before, d - half_play_m, d + half_play_m),
+        np.where(whole, v, (after - before) / step_s),
+        smooth + shown / step_s,
+        np.where(whole, 1.0, np.where(still, 0.0, 0.5)),
+    )
+
+
+def _contact(
+    motion: Motion, held: FloatArray, half_play_m: float, step_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return velocity and time of the next contact, seen from each sample: m/s, and in samples."""
+    d, v, a = motion
+    sign = np.sign(v)
+    gap = half_play_m + sign * (held - d)
+    speed = np.sqrt(np.maximum(v**2 + 2.0 * sign * a * gap, 0.0))
+    mean = np.maximum((np.abs(v) + speed) / 2.0, np.finfo(np.float64).tiny)
+    with np.errstate(over="ignore"):
+        return sign * speed, gap / (mean * step_s)
 
 
 def _held(start: float, extremes: FloatArray, ends: FloatArray, half_play_m: float) -> FloatArray:
