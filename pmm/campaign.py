@@ -3,6 +3,7 @@
 ``docs/campaigns.md`` describes the file for people; :mod:`pmm.campaign_file` reads it.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
@@ -15,11 +16,19 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
+from pmm.radiation_file import RadiationFile
 from sim.acquisition import Acquisition
+from sim.acting import Acting
+from sim.carriage import CarriageSettings
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers
 from sim.effects.campaign import CampaignRun
+from sim.effects.catalogue import build_from
+from sim.effects.effect import Effect
 from sim.hull import HullCoefficients
+from sim.hull_forces import CrossFlow
+from sim.mechanism import Setting
+from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.rig import SimulatedRig
 
@@ -85,6 +94,14 @@ class Simulation:
 
 
 @dataclass(frozen=True)
+class SwitchedOn:
+    """An effect that is on in all runs, by its name in the catalogue, with its parameters."""
+
+    name: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Campaign:
     """A campaign file, read and checked.
 
@@ -96,6 +113,10 @@ class Campaign:
         ``None`` where the file does not say; a simulation needs them, an analysis does not.
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
+    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow
+        More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
+    effects
+        What is switched on besides, in this order.
     reference, analysis
         How the recordings are analysed, unless the command line says otherwise.
     columns
@@ -113,6 +134,14 @@ class Campaign:
     acquisition: Acquisition = field(default_factory=Acquisition)
     photocell: Photocell | None = field(default_factory=Photocell)
     simulation: Simulation = field(default_factory=Simulation)
+    radiation: RadiationFile | None = None
+    carriage: CarriageSettings = field(default_factory=CarriageSettings)
+    linkage_aft: Setting = field(default_factory=Setting)
+    linkage_fore: Setting = field(default_factory=Setting)
+    mounting: Mounting = field(default_factory=Mounting)
+    forces: tuple[Acting, ...] = ()
+    cross_flow: CrossFlow | None = None
+    effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: Settings = field(default_factory=Settings)
     columns: ColumnMap | None = None
@@ -129,6 +158,8 @@ class Campaign:
         ------
         ConfigurationError
             If the oscillator or the model is not described.
+        DataError
+            If the radiation's table does not hold what is needed.
         """
         if self.oscillator is None or self.model is None:
             missing = [key for key in ("oscillator", "model") if getattr(self, key) is None]
@@ -136,6 +167,8 @@ class Campaign:
             raise ConfigurationError(
                 f"campaign {self.name!r}: no table {tables}; the simulation needs it"
             )
+        table = self.radiation
+        memory = None if table is None else table.fitted(self.oscillator.plane)
         return SimulatedRig(
             oscillator=self.oscillator,
             body=self.model,
@@ -144,7 +177,37 @@ class Campaign:
             dynamometers=self.dynamometers,
             acquisition=self.acquisition,
             photocell=self.photocell,
+            radiation=memory,
+            carriage=self.carriage,
+            linkage_aft=self.linkage_aft,
+            linkage_fore=self.linkage_fore,
+            mounting=self.mounting,
+            forces=self.forces,
+            cross_flow=self.cross_flow,
         )
+
+    def effects_on(self, more: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:
+        """Return the effects that the file switches on.
+
+        Parameters
+        ----------
+        more
+            Effects of the user's own, by name.
+
+        Raises
+        ------
+        ConfigurationError
+            If a name, a parameter or a value is wrong: all of them in one message.
+        """
+        built, faults = [], []
+        for number, one in enumerate(self.effects, 1):
+            try:
+                built.append(build_from(one.name, one.parameters, dict(more or {})))
+            except ConfigurationError as error:
+                faults.append(f"effects[{number}]: {error}")
+        if faults:
+            raise ConfigurationError(f"campaign {self.name!r}: " + "; ".join(faults))
+        return tuple(built)
 
     def place(self, run: Run) -> CampaignRun:
         """Return where a run of the campaign stands, if its runs are made in the file's order."""

@@ -54,7 +54,12 @@ def read_campaign(path: str | Path) -> Campaign:
     if campaign is None or faults:
         raise as_error(path, faults, original)
     name = campaign.name if "name" in original else path.resolve().parent.name
-    return replace(campaign, name=name, columns=columns, model_uncertainty=uncertainty)
+    radiation = campaign.radiation
+    if radiation is not None:
+        radiation = replace(radiation, file=str(path.parent / radiation.file))
+    return replace(
+        campaign, name=name, columns=columns, model_uncertainty=uncertainty, radiation=radiation
+    )
 
 
 def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> ColumnMap | None:

@@ -2,9 +2,7 @@
 
 import json
 import tomllib
-import types
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -14,20 +12,16 @@ from typing import (
     Any,
     NamedTuple,
     TypeVar,
-    Union,
-    get_args,
-    get_origin,
-    get_type_hints,
 )
 
 from hardware.description.errors import ConfigurationError
+from pmm.places import Place as Place
+from pmm.places import find
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 T = TypeVar("T")
-
-Place = tuple[str | int, ...]
 
 
 class Fault(NamedTuple):
@@ -77,15 +71,21 @@ def validate(
         found: T = _adapter(key).validate_json(json.dumps(table, default=str), strict=True)
     except ValidationError as error:
         for one in error.errors(include_url=False):
-            place = one["loc"]
+            where = find(kind, one["loc"], table)
+            if where is None:
+                continue
+            place = where.place
             if one["type"] == "unexpected_keyword_argument":
                 table_name = next((key for key in place if isinstance(key, str)), "")
                 extra = extra_keys.get(table_name, ()) if len(place) > 1 else ()
-                faults.append(Fault(place, _unknown(kind, place, extra)))
+                faults.append(Fault(place, _unknown(place, (*where.known, *extra))))
             elif one["type"] == "missing":
                 faults.append(Fault(place, "is missing"))
             else:
                 faults.append(Fault(place, f"= {_short(one['input'])} {_problem(one['msg'])}"))
+        return None
+    except ConfigurationError as error:  # a value that its own class refuses
+        faults.append(Fault((), str(error)))
         return None
     return found
 
@@ -110,26 +110,10 @@ def _short(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _unknown(kind: type, place: Place, extra: Sequence[str]) -> str:
-    known = [*keys_at(kind, place[:-1]), *extra]
+def _unknown(place: Place, known: Sequence[str]) -> str:
     near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
     return f"is not a known key; {hint}"
-
-
-def keys_at(kind: Any, place: Place) -> tuple[str, ...]:
-    """Return the keys of the dataclass that lies at a place within another."""
-    for key in place:
-        kind = _without_none(kind)
-        kind = get_args(kind)[0] if isinstance(key, int) else get_type_hints(kind)[key]
-    kind = _without_none(kind)
-    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
-
-
-def _without_none(kind: Any) -> Any:
-    if get_origin(kind) not in (Union, types.UnionType):
-        return kind
-    return next(part for part in get_args(kind) if part is not type(None))
 
 
 # What a number of that name must be, in whichever table it stands.

@@ -73,7 +73,7 @@ def run(request: Request) -> None:
     folder = Path(campaign.name) if request.output is None else Path(request.output)
     chosen = [campaign.run(name) for name in request.runs] or list(campaign.runs)
     seed = campaign.simulation.seed if request.seed is None else request.seed
-    effects = _effects(request)
+    effects = _effects(request, campaign)
     check_output(path, campaign, chosen, folder, overwrite=request.overwrite)
     written = list(
         simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
@@ -88,9 +88,10 @@ def run(request: Request) -> None:
             output().print(str(figure), soft_wrap=True)
 
 
-def _effects(request: Request) -> tuple[Effect, ...]:
+def _effects(request: Request, campaign: Campaign) -> tuple[Effect, ...]:
+    """Return the effects of the file, and those of the command line after them."""
     more = user_effects(request.effects_file)
-    return tuple(build(text, more) for text in request.effects)
+    return (*campaign.effects_on(more), *(build(text, more) for text in request.effects))
 
 
 def _draw(

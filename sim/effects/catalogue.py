@@ -3,7 +3,7 @@
 import importlib.util
 import pkgutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
@@ -62,20 +62,34 @@ def build(text: str, more: dict[str, type[Effect]] | None = None) -> Effect:
         If the name, a parameter or a value is wrong; with the nearest names, or the range.
     """
     name, _, settings = text.partition(":")
-    kind = find(name.strip(), more)
-    values = dict(_setting(kind, part) for part in settings.split(",") if part.strip())
-    return kind(**values)
+    parts = [part.partition("=") for part in settings.split(",") if part.strip()]
+    return build_from(name.strip(), {key.strip(): value.strip() for key, _, value in parts}, more)
 
 
-def _setting(kind: type[Effect], text: str) -> tuple[str, float]:
-    key, _, value = (part.strip() for part in text.partition("="))
+def build_from(
+    name: str,
+    parameters: Mapping[str, str | float],
+    more: dict[str, type[Effect]] | None = None,
+) -> Effect:
+    """Build an effect from its name and some of its parameters.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`build` does.
+    """
+    kind = find(name, more)
+    return kind(**{key: _setting(kind, key, value) for key, value in parameters.items()})
+
+
+def _setting(kind: type[Effect], key: str, value: str | float) -> float:
     known = [one.name for one in kind.parameters()]
     if key not in known:
         near = get_close_matches(key, known, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'none'}"
         raise ConfigurationError(f"effect {kind.name} has no parameter {key!r}; {hint}")
     try:
-        return key, float(value)
+        return float(value)
     except ValueError:
         raise ConfigurationError(f"effect {kind.name}: {key} = {value!r} is no number") from None
 
