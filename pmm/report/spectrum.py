@@ -178,7 +178,7 @@ def _draw_leakage(axes: "Axes", reading: Harmonics, highest_hz: float) -> list["
     if lobes > _MOST_LOBES:
         zeros = f"; nothing at whole multiples of f/{reading.periods}"
         title += ": top of each lobe" + (zeros if reading.estimator != HANN else "")
-    drawn = []
+    drawn, lowest = [], 1.0
     for n, curve in enumerate(leakage(orders, reading).T, start=1):
         x, part = (
             tops(orders, curve, min(lobes, _POINTS // 4))
@@ -188,6 +188,7 @@ def _draw_leakage(axes: "Axes", reading: Harmonics, highest_hz: float) -> list["
                 curve,
             )
         )
+        lowest = min(lowest, float(part.min()))
         drawn += axes.semilogy(
             x * reading.frequency_hz,
             np.maximum(part, _FLOOR / 10.0),
@@ -199,7 +200,7 @@ def _draw_leakage(axes: "Axes", reading: Harmonics, highest_hz: float) -> list["
     axes.set_xlabel("frequency (Hz)")
     axes.set_ylabel("let through\n(part of amplitude)")
     axes.set_title(title, loc="left")
-    _plain_numbers(axes, (_FLOOR, 2.0))
+    _plain_numbers(axes, (max(_FLOOR, lowest / 2.0), 2.0))
     return drawn
 
 

@@ -192,3 +192,34 @@ def test_a_reading_that_is_not_there_is_refused(kind: str) -> None:
         FIGURES[kind](analysed(), 1)
     with pytest.raises(ConfigurationError, match="no reading -1"):
         reading_of(analysed(), -1)
+
+
+@pytest.mark.parametrize(
+    ("settings", "window"),
+    [
+        ({}, "steady stretch"),
+        ({"opens_s": 3.0, "periods": 5}, "window given"),
+        ({"steady_tolerance": 1e-9}, "steady stretch"),
+    ],
+)
+def test_the_window_is_called_by_how_it_was_come_by(
+    settings: dict[str, object], window: str
+) -> None:
+    labels = {patch.get_label() for patch in gate_figure(analysed(**settings)).axes[0].patches}
+    assert labels == {"record", window, "gate"}
+
+
+def test_a_run_that_is_nowhere_steady_is_not_called_so() -> None:
+    recording = run(noise_n=0.0, loads=1)
+    samples = np.array(recording.samples[:, 0 : recording.sample_count])
+    samples[1] = samples[0] * np.linspace(200.0, 3000.0, samples.shape[1])
+    analysis = analysed(replace(recording, samples=samples), steady_tolerance=0.02)
+    labels = {patch.get_label() for patch in gate_figure(analysis).axes[0].patches}
+    assert labels == {"record", "all periods, not steady", "gate"}
+
+
+def test_the_panel_of_what_is_let_through_has_no_empty_half() -> None:
+    panel = spectrum_figure(analysed()).axes[-1]
+    low, _ = panel.get_ylim()
+    lowest = min(float(np.min(line.get_ydata())) for line in panel.lines)  # type: ignore[arg-type]
+    assert low == pytest.approx(lowest / 2.0)

@@ -145,3 +145,16 @@ def test_numbers_show_what_is_known(value: float, half_width: float, expected: s
 def test_a_phase_that_may_be_any_is_open() -> None:
     assert rounded_phase(12.0, 200.0) == "open"
     assert rounded_phase(-12.0, 2.0) == "−12.0 ± 2.0"
+
+
+def test_a_single_period_has_no_intervals_in_good_english(tmp_path: Path) -> None:
+    write_page([analysed(opens_s=2.0, periods=1)], tmp_path / "a.html", title="t", command="c")
+    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "No intervals: too few periods." in page
+    assert "from the none" not in page
+
+
+def test_phases_that_are_not_known_are_open() -> None:
+    assert rounded_phase(12.0, 90.0) == "open"
+    assert rounded_phase(12.0, 1.0, 0.0) == "open"
+    assert rounded_phase(12.0, 89.0) != "open"
