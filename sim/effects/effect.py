@@ -58,6 +58,10 @@ class Parameter:
     meaning: str
 
 
+def _unit(one: Parameter) -> str:
+    return "" if one.unit == "1" else f" {one.unit}"
+
+
 def parameter(typical: float, low: float, high: float, unit: str, meaning: str) -> Any:
     """Declare a field of an effect; its default is the typical value."""
     return field(
@@ -101,7 +105,7 @@ class Effect(ABC):
             value = getattr(self, one.name)
             if not one.low <= value <= one.high:
                 raise ConfigurationError(
-                    f"effect {self.name}: {one.name} = {value:g} {one.unit} is outside the "
+                    f"effect {self.name}: {one.name} = {value:g}{_unit(one)} is outside the "
                     f"plausible range {one.low:g} to {one.high:g}"
                 )
 

@@ -12,10 +12,13 @@ from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
+from sim.effects.h14_vortex_shedding import VortexShedding
+from sim.effects.m7_saturation import Saturation
 from sim.effects.situation import Situation
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
+from tests.sim.effects.in_time import between, in_time
 
 KINDS = [kind for kind in catalogue().values() if kind.code[0] in "MAH"]
 CODES = [
@@ -103,3 +106,26 @@ def test_blocks_give_the_whole_run(cuts: tuple[int, ...]) -> None:
     for name, values in join(parts).items():
         scale = np.abs(whole[name]).max()
         np.testing.assert_allclose(values, whole[name], rtol=0.0, atol=1e-12 * scale)
+
+
+# What a pulse does that is not on a sample is a matter of the photocell's own tests.
+IN_TIME = [kind() for kind in KINDS if kind.repeats and kind.code not in ("A3", "A4", "M7", "H14")]
+IN_TIME += [Saturation(3.0, 5.0), VortexShedding(lift_n_s2_m2=0.0, step_n=0.3)]
+
+
+@pytest.mark.parametrize("effect", IN_TIME, ids=lambda effect: effect.code)
+def test_the_time_domain_has_the_same_signature(effect: Effect) -> None:
+    """The last cycle of a hundred, when what the water remembers of the start has died out.
+
+    By 400 samples a period: corners, and turns between two samples, (pi/400)^2 and less.
+    """
+    set_point = SetPoint(0.8, 0.02, 1.2, 1.6)
+    rig = vertical_rig().ideal()
+    theory = effect.signature(Situation.of(rig, set_point))
+    changed, nominal = (
+        in_time(one, set_point, 100, 400) for one in (effect.change(rig, set_point), rig)
+    )
+    names = sorted({name for name, _ in theory})
+    last = {name: between(changed.less(nominal), name, *nominal.edges[-2:], 1.0) for name in names}
+    gap = [last[name][order] - value for (name, order), value in theory.items() if order < 5]
+    assert np.linalg.norm(gap) < 1e-3 * np.linalg.norm(list(theory.values()))
