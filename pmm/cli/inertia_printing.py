@@ -69,7 +69,13 @@ def _print_periods(console: "Console", periods: tuple[PeriodRuns, ...]) -> None:
     console.print(table)
     for one in periods:
         for run in one.records:
-            console.print(f"used {run.part.series.name}: {run.part.because}", style="dim")
+            decays = ", ".join(
+                f"time constant {mode.decay.time_constant_s:.4g} s, beta {mode.decay.beta:z.2f} +- "
+                f"{mode.decay.beta_uncertainty:.1g}"
+                for mode in run.modes
+            )
+            text = f"used {run.part.series.name}: {run.part.because}; {decays}"
+            console.print(text, style="dim", soft_wrap=True)
     console.print()
 
 

@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from analysis.inertia.amplitude import PowerDecay
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.result import estimate_numbers
 from pmm.inertia.outcome import Finding, Outcome
@@ -79,6 +80,16 @@ def _period(one: PeriodRuns) -> dict[str, Any]:
         "periods": [estimate_numbers(period) for period in one.periods],
         "runs_s": [list(runs) for runs in one.single],
         "used": [run.part.because for run in one.records],
+        "decay": [[_decay(mode.decay) for mode in run.modes] for run in one.records],
+    }
+
+
+def _decay(one: PowerDecay) -> dict[str, Any]:
+    return {
+        "amplitude": one.amplitude,
+        "time_constant_s": _finite(one.time_constant_s),
+        "beta": one.beta,
+        "beta_uncertainty": one.beta_uncertainty,
     }
 
 

@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.result import Comparison, InertiaResult, compare_with_target
+from analysis.inertia.swing_static import LeverSeries, StaticResult
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -61,6 +62,15 @@ class PlaneAxes:
 
 
 @dataclass(frozen=True)
+class StaticTest:
+    """Tilts under weights and what was fitted to them; ``where`` is its place in the file."""
+
+    where: str
+    series: tuple[LeverSeries, ...]
+    result: StaticResult
+
+
+@dataclass(frozen=True)
 class Outcome:
     """What a job ended in.
 
@@ -78,6 +88,10 @@ class Outcome:
         Lines to be read beside the tables.
     next_step
         Of the guided workflow.
+    statics
+        Of a swing: its tilts under weights.
+    placements
+        Of ballast: each weight's name, mass and place.
     line_errors
         Of a plan: line lengths in m, and the gyradius' error per period error by each reading.
     """
@@ -95,6 +109,7 @@ class Outcome:
     next_step: str | None = None
     axes: PlaneAxes | None = None
     line_errors: Mapping[str, Sequence[tuple[float, float]]] | None = None
+    statics: tuple[StaticTest, ...] = ()
     placements: tuple[tuple[str, float, float, float, float], ...] = ()
 
     @property

@@ -3,6 +3,7 @@
 Static fits give first moments, records give periods; :mod:`analysis.inertia.swing` does the rest.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
-from pmm.inertia.outcome import Finding, Outcome, assessed, compare, once
+from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
 from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
@@ -35,6 +36,7 @@ class _Measured:
     inertia: SwingInertia
     cg: Estimate
     flags: tuple[Flag, ...]
+    static: StaticTest | None = None
 
 
 def run(path: str) -> Outcome:
@@ -64,9 +66,21 @@ def run(path: str) -> Outcome:
         missing,
         table.plane or _PLANES.get(table.model.axis),
         compare(findings, table.targets),
-        tuple(notes),
+        (*notes, *(line for one in states.values() for line in _lever_notes(one))),
         step,
+        statics=tuple(one.static for one in states.values() if one.static is not None),
     )
+
+
+def _lever_notes(one: _Measured) -> Iterator[str]:
+    """Say what each lever alone gives."""
+    for alone in one.static.result.alone if one.static is not None else ():
+        cg, offset = distance(alone.moment, one.state.mass), alone.offset_rad
+        yield (
+            f"{one.key}, {alone.series[0]} alone: CG {1e3 * cg.value:.2f} +- "
+            f"{1e3 * cg.uncertainty:.2g} mm below the pivot, offset {offset.value:.5f} +- "
+            f"{offset.uncertainty:.1g} rad, residual {alone.residual_rms_rad:.1g} rad"
+        )
 
 
 _STATES = ("tare", "loaded", "second_pivot", "check", "tare_again")
@@ -91,7 +105,9 @@ def _measure(job: Job[SwingTable], key: str) -> _Measured:
     )
     flags = (*runs.flags, *(static.flags if static else ()))
     cg = given_or_none(table, "cg_below_pivot_m") or distance(moment, mass)
-    return _Measured(key, state, runs, inertia, cg, flags)
+    series = tuple(one.series() for one in table.levers)
+    test = StaticTest(f"{key}.levers", series, static) if static is not None else None
+    return _Measured(key, state, runs, inertia, cg, flags, test)
 
 
 def _moment(table: StateTable) -> tuple[Estimate, StaticResult | None]:
@@ -105,7 +121,10 @@ def _moment(table: StateTable) -> tuple[Estimate, StaticResult | None]:
         spread = float(
             np.hypot(own.uncertainty, own.value * np.hypot(lever, table.u_tilt_relative))
         )
-        return replace(own, uncertainty=spread), static
+        # Welch and Satterthwaite: only the fit's own part has finite degrees of freedom
+        part = own.uncertainty / spread if spread > 0.0 else 1.0
+        freedom = own.degrees_of_freedom / part**4 if part > 0.0 else math.inf
+        return replace(own, uncertainty=spread, degrees_of_freedom=freedom), static
     if table.moment_kg_m is not None:
         return given(table, "moment_kg_m"), None
     cg, mass = given(table, "cg_below_pivot_m"), given(table, "mass_kg")

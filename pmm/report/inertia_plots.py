@@ -1,8 +1,8 @@
 """The figures of an inertia job, and writing them to files.
 
 For each source of records: the fit over them with what is left, period against amplitude with the
-extrapolation, and spectrum with beats. For each job: budget bars, and the inertia ellipse or the
-error over the lines' length where there is one.
+extrapolation, and spectrum with beats. For a swing's levers: tilts and their fit. For each job:
+budget bars, and the inertia ellipse or the error over the lines' length where there is one.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -17,6 +17,7 @@ from pmm.report.inertia_gates import gates_figure
 from pmm.report.inertia_line import line_figure
 from pmm.report.inertia_record import record_figure
 from pmm.report.inertia_spectrum import spectrum_figure
+from pmm.report.inertia_static import static_figure
 from pmm.report.style import render
 
 if TYPE_CHECKING:
@@ -71,6 +72,8 @@ def _figures(outcome: Outcome) -> Iterator[tuple[str, Callable[[], "Figure"]]]:
             yield f"{own}-spectrum", lambda runs=runs: spectrum_figure(runs)  # type: ignore[misc]
         if runs.gates:
             yield f"{own}-gates", lambda runs=runs: gates_figure(runs)  # type: ignore[misc]
+    for test in outcome.statics:
+        yield _file_name(test.where), lambda test=test: static_figure(test)  # type: ignore[misc]
     if any(one.assessment is not None for one in outcome.findings):
         yield "budget", lambda: budget_figure(outcome)
     axes, lines = outcome.axes, outcome.line_errors
