@@ -4,7 +4,7 @@ import json
 import re
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from click.testing import CliRunner
@@ -15,13 +15,19 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.campaign import Campaign, Run, Simulation
+from pmm.campaign import Campaign, Run, Simulation, SwitchedOn
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.radiation_file import RadiationFile
 from sim.acquisition import Acquisition, Digitiser
+from sim.acting import Acting, AnyLaw
+from sim.carriage import CarriageSettings, Fluctuation
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers, Gauge
 from sim.hull import HullCoefficients
+from sim.hull_forces import CrossFlow
+from sim.mechanism import Setting
+from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.rig import vertical_rig
 
@@ -44,7 +50,7 @@ def test_the_examples_of_the_page_are_valid(text: str, tmp_path: Path) -> None:
 
 
 def test_there_are_examples() -> None:
-    assert len(BLOCKS) == 2
+    assert len(BLOCKS) == 3
 
 
 @pytest.mark.parametrize(
@@ -63,6 +69,15 @@ def test_there_are_examples() -> None:
         Photocell,
         ReferenceChoice,
         Settings,
+        CarriageSettings,
+        Fluctuation,
+        Setting,
+        Mounting,
+        RadiationFile,
+        CrossFlow,
+        Acting,
+        SwitchedOn,
+        *(law for law in get_args(AnyLaw)),
     ],
 )
 def test_every_key_is_documented(kind: type) -> None:
