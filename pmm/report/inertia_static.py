@@ -37,8 +37,8 @@ def static_figure(test: StaticTest) -> "Figure":
         furthest = max(float((one.weight_kg * one.lever_m).max()) for one in test.series)
         axes.plot([0.0, furthest], [offset, offset + slope * furthest], color=TRACE, label="fit")
         axes.set_title(
-            f"first moment {pooled.moment.value:.5g} kg m, u of the fit {pooled.moment.uncertainty:.2g}; "
-            f"offset {1e3 * offset:.3g} mrad",
+            f"first moment {pooled.moment.value:.5g} kg m, u of the fit "
+            f"{pooled.moment.uncertainty:.2g}; offset {1e3 * offset:.3g} mrad",
             loc="left",
         )
         axes.set_ylabel("tangent of the tilt")
