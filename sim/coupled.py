@@ -251,7 +251,7 @@ class _Stretch:
     def _scale(self, torque: FloatArray) -> float:
         """Return what a change of the torque counts relative to: never zero in passing."""
         run = self._parts(torque)[1]
-        size = 0.0
+        size = float(np.abs(run[signals.LOAD_TORQUE.name]).max())
         for strut in ("aft", "fore"):
             reach = np.hypot(run[f"lever_{strut}"], run[f"displacement_{strut}"]).max()
             size += float(np.abs(run[f"force_{strut}"]).max() * reach)

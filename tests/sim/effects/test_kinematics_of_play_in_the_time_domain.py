@@ -14,8 +14,8 @@ from sim.rig import vertical_rig
 RATE_HZ, PERIODS = 200.0, 4
 
 
-# The jump's impulse comes when it should; what is left is the interval's square, and of a small play
-# whose clearance is taken up within a few samples from the turn.
+# The jump's impulse comes when it should; what is left is the interval's square, most of it where
+# the clearance is taken up within a few samples from the turn.
 @pytest.mark.parametrize(("rate_hz", "tolerance"), [(200.0, 1e-2), (2000.0, 5e-5)])
 @pytest.mark.parametrize("frequency_hz", [0.4, 0.8])
 @pytest.mark.parametrize("half_play_m", [5e-5, 1e-3])
