@@ -1,9 +1,12 @@
 """Effects of the measurement against closed forms, over frequency, amplitude, phase, medium."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hardware.description.setpoint import Medium, SetPoint
+from sim.acting import Acting, Point
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
 from sim.effects.m1_gain_error import GainError
@@ -15,12 +18,15 @@ from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
+from sim.laws import Coulomb
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import mismatch
 from tests.sim.effects.in_time import by_cycles, in_time
 
 VERTICAL = vertical_rig().ideal()
 CRANK = horizontal_rig(rod_length_m=1.5).ideal()
+# With a mean force at the aft strut, so that products of mean and first order are there.
+LOADED = replace(VERTICAL, forces=(Acting(Coulomb(0.0, 4.0), Point.AFT),))
 SET_POINTS = [
     SetPoint(frequency, amplitude, phase, speed, medium)
     for frequency in (0.4, 0.9)
@@ -39,6 +45,9 @@ SET_POINTS = [
         (CrossTalk(0.01, -0.03), CRANK, 1e-9),
         (QuadraticGauge(1e-5), VERTICAL, 1e-9),
         (QuadraticGauge(1e-5), CRANK, 1e-9),
+        (GainError(0.005, -0.02), LOADED, 1e-9),
+        (QuadraticGauge(1e-5), LOADED, 1e-9),
+        (GaugeHysteresis(1e-5), LOADED, 1e-3),
         # The points of the period miss the turn of the force by up to half a step: (pi/128)^2.
         (GaugeHysteresis(1e-5), VERTICAL, 1e-3),
         (ZeroOffset(0.3, -0.1), VERTICAL, 1e-9),
@@ -52,14 +61,15 @@ def test_signature(effect: Effect, rig: SimulatedRig, tolerance: float) -> None:
 
 @pytest.mark.parametrize("limits", [(0.9, 0.9), (0.5, 0.5), (0.8, 5.0), (5.0, 0.6)])
 @pytest.mark.parametrize("set_point", SET_POINTS[::4])
-def test_saturation(limits: tuple[float, float], set_point: SetPoint) -> None:
+@pytest.mark.parametrize("rig", [VERTICAL, LOADED])
+def test_saturation(rig: SimulatedRig, limits: tuple[float, float], set_point: SetPoint) -> None:
     """Limits as parts of the force, so that all set-points reach them.
 
     The corners have harmonics with 1/n^2, of which the period's points fold some back: 1e-3.
     """
-    peak = float(np.abs(Situation.of(VERTICAL, set_point).force()).max())
+    peak = float(np.abs(Situation.of(rig, set_point).force()).max())
     effect = Saturation(limits[0] * peak, limits[1] * peak)
-    assert mismatch(effect, VERTICAL, [set_point], points=1024) < 1e-3
+    assert mismatch(effect, rig, [set_point], points=1024) < 1e-3
 
 
 def test_saturation_at_nine_tenths() -> None:
