@@ -5,7 +5,7 @@ from collections import deque
 
 import can
 
-from sim.devices.registry import world_named
+from sim.devices.registry import give_back, take
 
 
 class SimulatedBus(can.BusABC):
@@ -17,11 +17,12 @@ class SimulatedBus(can.BusABC):
     Parameters
     ----------
     channel
-        Name of the simulated rig (see :func:`sim.devices.registry.running`).
+        Name of the simulated rig, or its file (see :mod:`sim.devices.registry`).
     """
 
     def __init__(self, channel: str, **_options: object) -> None:
-        self._world = world_named(channel)
+        self._name = channel
+        self._world = take(channel)
         super().__init__(channel)
         self.channel_info = f"simulated rig {channel}"
         self._frames: deque[can.Message] = deque()
@@ -70,7 +71,9 @@ class SimulatedBus(can.BusABC):
 
     def shutdown(self) -> None:
         """Unplug from the simulated rig."""
-        _remove(self._world.wire.outlets, self._frames)
+        if not self._is_shutdown:
+            _remove(self._world.wire.outlets, self._frames)
+            give_back(self._name)
         super().shutdown()
 
 

@@ -16,6 +16,7 @@ _START, _STOP, _PRE_OPERATIONAL, _RESET, _RESET_COMMUNICATION = 1, 2, 128, 129, 
 _STATES: Final = {_START: 5, _STOP: 4, _PRE_OPERATIONAL: 127}
 _NOT_VALID: Final = 1 << 31
 _CONSUMED_BEAT, _PRODUCED_BEAT = Entry(0x1016, 1), Entry(0x1017)
+_SYNC_PERIOD, _OUT_OF_RANGE = Entry(0x1006), 0x06090030
 _CANNOT_BE_MAPPED, _TOO_LONG = 0x06040041, 0x06040042
 
 
@@ -153,6 +154,8 @@ class SimulatedNode:
         at, value = Entry(index, subindex), od.decode_raw(data)
         if 0x1600 <= index < 0x1604 or 0x1A00 <= index < 0x1A04:
             self._check_mapping(at, value)
+        if at == _SYNC_PERIOD and abs(value * self.sample_rate_hz - 1e6) > self.sample_rate_hz:
+            raise SdoAbortedError(_OUT_OF_RANGE)
         self.values[at] = value
         if at == _PRODUCED_BEAT:
             self._beat_every = max(1, int(value * self.sample_rate_hz / 1000.0)) if value else 0

@@ -1,7 +1,7 @@
 """The speed that a drive is told: a ramp, then constant, as a function of time alone."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -78,10 +78,5 @@ class ProfiledDrive(DriveSettings):
 
 def following(settings: DriveSettings, profile: SpeedProfile) -> ProfiledDrive:
     """Return a drive as it is in ``settings``, but told by a profile."""
-    return ProfiledDrive(
-        initial_angle_rad=settings.initial_angle_rad,
-        speed_error=settings.speed_error,
-        ripple=settings.ripple,
-        motor=settings.motor,
-        profile=profile,
-    )
+    kept = {one.name: getattr(settings, one.name) for one in fields(DriveSettings)}
+    return ProfiledDrive(**kept, profile=profile)

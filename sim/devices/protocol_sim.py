@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import serial
 
-from sim.devices.registry import world_named
+from sim.devices.registry import give_back, take
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer
@@ -23,20 +23,24 @@ class Serial(serial.SerialBase):
         SerialException
             If there is no such rig or part, or its plug is out.
         """
-        rig, _, part = str(self.portstr).removeprefix("sim://").partition("/")
+        self._rig, _, part = str(self.portstr).removeprefix("sim://").rpartition("/")
         try:
-            talkers = world_named(rig).talkers
+            talkers = take(self._rig).talkers
         except ValueError as error:
             raise serial.SerialException(str(error)) from error
-        if part not in talkers:
-            known = ", ".join(talkers) or "none"
-            raise serial.SerialException(f"{rig} has no serial device {part!r}; it has {known}")
+        if part not in talkers or not talkers[part].cable.plugged:
+            give_back(self._rig)
+            known = ", ".join(name for name, one in talkers.items() if one.cable.plugged)
+            raise serial.SerialException(
+                f"{self._rig} has no serial device {part!r}; plugged in: {known or 'none'}"
+            )
         self._cable: Cable = talkers[part].cable
-        self._plugged()
         self.is_open = True
 
     def close(self) -> None:
         """Close the port."""
+        if self.is_open:
+            give_back(self._rig)
         self.is_open = False
 
     @property
