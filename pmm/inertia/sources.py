@@ -9,6 +9,7 @@ import numpy as np
 from analysis.inertia.checks import strongest_axis
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import Passages, passages, read_gate_events
+from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
 from analysis.inertia.repeats import Repeated, combine_runs
@@ -33,6 +34,9 @@ class PeriodSource:
         Recordings of the same set-up, one per release, and which channel of them swings.
     gates, gate_columns, time_column
         Text files of light gates' edges, one per release, and their columns.
+    remove_modulation
+        Whether to take the sway's modulation out of a single gate's periods (eq 14); the period is
+        then that at mid-record, not at no amplitude.
     stopwatch, reaction_s
         Counted swings, and the standard deviation of a person's start and stop together.
     period_s, u_period_s, period_degrees_of_freedom
@@ -47,6 +51,7 @@ class PeriodSource:
     gates: tuple[str, ...] = ()
     gate_columns: tuple[str, ...] = ("State at A", "State at B")
     time_column: str = "Time"
+    remove_modulation: bool = False
     stopwatch: tuple[StopwatchReading, ...] = ()
     reaction_s: float = 0.1
     period_s: float | None = None
@@ -224,9 +229,9 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
         seen = passages(events)
         fits.append((seen, fit_passages(seen)))
         flags += [*events.flags, *seen.flags]
-    periods = [fit.period for _, fit in fits]
+    periods = [_demodulated(seen) if source.remove_modulation else fit.period for seen, fit in fits]
     if len(periods) == 1 and source.known_scatter is None:
-        estimate, flag = _single_gate_run(*fits[0], where)
+        estimate, flag = _single_gate_run(*fits[0], periods[0], where)
         flags.append(flag)
     else:
         joined = combine_runs(periods, known_scatter=source.known_scatter, what=where)
@@ -236,12 +241,21 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
     return PeriodRuns(where, how, (estimate,), (single,), gates=tuple(fits), flags=tuple(flags))
 
 
-def _single_gate_run(seen: Passages, fit: PassageFit, where: str) -> tuple[Estimate, Flag]:
+def _demodulated(seen: Passages) -> Estimate:
+    """Return the period of whole swings without their modulation."""
+    whole = seen.number[2:] - seen.number[:-2] == 2
+    found = remove_modulation(seen.time_s[1:-1][whole], (seen.time_s[2:] - seen.time_s[:-2])[whole])
+    freedom = float(max(int(whole.sum()) - found.fit.covariance.shape[0], 1))
+    return Estimate(found.period_s, found.uncertainty_s, "s", freedom)
+
+
+def _single_gate_run(
+    seen: Passages, fit: PassageFit, own: Estimate, where: str
+) -> tuple[Estimate, Flag]:
     """Let the scatter between a run's parts stand in for that between runs, undivided."""
     parts = np.array_split(np.arange(seen.number.size), _PARTS)
     slopes = [2.0 * np.polyfit(seen.number[one], fit.residual_s[one], 1)[0] for one in parts]
     spread = float(np.std(slopes, ddof=1))
-    own = fit.period
     estimate = replace(
         own,
         uncertainty=float(np.hypot(spread, own.uncertainty)),
