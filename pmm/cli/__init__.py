@@ -96,10 +96,12 @@ def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool)
 def cli(debug: bool) -> None:
     """Planar motion mechanism: simulate runs and resolve recordings into harmonics.
 
-    Exit status: 0 done, 1 the data say no, 2 the request was wrong.
+    Exit status: 0 done, 1 the data or the rig says no, 2 wrong usage.
     """
 
 
 def main() -> None:
     """Run the command line of this process."""
-    cli.main(args=sys.argv[1:], prog_name="pmm")
+    from pmm.cli.hints import pasted
+
+    cli.main(args=sys.argv[1:], prog_name=pasted())

@@ -75,6 +75,8 @@ def run(request: Request) -> None:
     seed = campaign.simulation.seed if request.seed is None else request.seed
     effects = _effects(request, campaign)
     check_output(path, campaign, chosen, folder, overwrite=request.overwrite)
+    if request.plot is not None:
+        check_folder(Path(request.plot), "--plot")
     written = list(
         simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
     )

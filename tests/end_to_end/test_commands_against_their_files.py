@@ -371,3 +371,24 @@ def test_the_version_says_what_it_runs_on() -> None:
         rf"NumPy {re.escape(np.__version__)}\n",
         done.stdout,
     )
+
+
+def test_a_channel_given_twice_is_resolved_once(folder: Path) -> None:
+    options = ("--channel", "force_fore", "--channel", "force_fore", "--json")
+    (rows,) = json.loads(run("analyse", folder, *options).stdout)["runs"]
+    assert [one["name"] for one in rows["gates"][0]["channels"]] == ["force_fore"]
+
+
+def test_forces_go_first_and_lengths_are_in_millimetres(folder: Path) -> None:
+    done = run("analyse", folder / "heave-1.20.nc", "--gate", "5").stdout
+    assert done.index("force_aft [N]") < done.index("displacement_aft [mm]")
+    assert re.search(r"displacement_aft \[mm\].*\n.*\n1 +(19\.9|20\.0)", done)
+
+
+@pytest.mark.parametrize("command", ["simulate", "demo"])
+def test_an_output_in_whose_place_a_file_stands(command: str, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    campaign = () if command == "demo" else (SHIPPED / "vertical.toml",)
+    done = run(command, *campaign, "--output", tmp_path / "file")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "is a file, not a folder" in done.stderr
