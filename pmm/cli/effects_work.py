@@ -16,7 +16,7 @@ from pmm.campaign_file import read_campaign
 from pmm.cli.screen import busy, messages, output
 from sim.effects.agreement import simulated_signature
 from sim.effects.catalogue import build, catalogue, user_effects
-from sim.effects.effect import Effect, Signature
+from sim.effects.effect import Effect, Lines, Signature
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 
@@ -64,6 +64,7 @@ class Shown:
     set_point: SetPoint
     theory: Signature
     simulated: Signature
+    lines: Lines
 
     def peak(self, channel: str) -> float:
         """Return the largest change of a channel, in theory or simulated."""
@@ -105,10 +106,12 @@ def _rig(request: Request) -> SimulatedRig:
 def _shown(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Shown:
     from pmm.report.signature_figure import channels_of
 
-    theory = effect.signature(Situation.of(rig, set_point))
+    situation = Situation.of(rig, set_point)
+    theory = effect.signature(situation)
     channels = channels_of(effect, rig, set_point)
     keys = theory or [(name, order) for name in channels for order in range(4)]
-    return Shown(effect, set_point, theory, simulated_signature(effect, rig, set_point, keys))
+    found = simulated_signature(effect, rig, set_point, keys)
+    return Shown(effect, set_point, theory, found, effect.lines(situation))
 
 
 def _draw(effect: Effect, rig: SimulatedRig, request: Request) -> list[Path]:
@@ -146,6 +149,10 @@ def _document(shown: Shown) -> dict[str, Any]:
                 "set_point": asdict(shown.set_point),
                 "theory": _rows(shown.theory),
                 "simulated": _rows(shown.simulated),
+                "lines": [
+                    {"channel": channel, "frequency_hz": frequency_hz, **_parts(value)}
+                    for (channel, frequency_hz), value in shown.lines.items()
+                ],
             }
         ],
     }
@@ -153,14 +160,13 @@ def _document(shown: Shown) -> dict[str, Any]:
 
 def _rows(signature: Signature) -> list[dict[str, Any]]:
     return [
-        {
-            "channel": channel,
-            "order": order,
-            "in_phase": complex(value).real,
-            "quadrature": complex(value).imag,
-        }
+        {"channel": channel, "order": order, **_parts(value)}
         for (channel, order), value in signature.items()
     ]
+
+
+def _parts(value: complex) -> dict[str, float]:
+    return {"in_phase": complex(value).real, "quadrature": complex(value).imag}
 
 
 def _list(effects: Mapping[str, type[Effect]], *, as_json: bool) -> None:
@@ -214,6 +220,11 @@ def _print_signature(console: "Console", shown: Shown) -> None:
     )
     if not shown.theory:
         console.print("theory states none here")
+    if not shown.effect.repeats:
+        console.print(
+            "it does not repeat with the shaft: theory is what an analysis then finds, the exact "
+            "periodic steady state has no part of it"
+        )
     table = Table(box=None, padding=(0, 1), pad_edge=False)
     for heading in ("channel", "n"):
         table.add_column(heading)
@@ -226,6 +237,8 @@ def _print_signature(console: "Console", shown: Shown) -> None:
             table.add_row(key[0], str(key[1]), *_cells(stated, peak), *_cells(found, peak))
     console.print(table)
     console.print(f"parts below {_SMALL:g} of a channel's largest are left out", style="dim")
+    for (channel, frequency_hz), value in shown.lines.items():
+        console.print(f"beside the harmonics: {channel} {abs(value):.5g} at {frequency_hz:.5g} Hz")
 
 
 def _cells(value: complex, peak: float) -> Sequence[str]:
