@@ -95,6 +95,7 @@ class BifilarTable:
         rows = table.get("suspensions")
         if rows == []:
             yield "suspensions", "is empty; add a table [[suspensions]]"
-        names = [one.get("name") for one in rows or () if isinstance(one, dict)]
+        named = rows if isinstance(rows, list) else []
+        names = [str(one.get("name")) for one in named if isinstance(one, dict)]
         if len(set(names)) < len(names):
             yield "suspensions", "have to have names of their own, each another one"

@@ -137,7 +137,8 @@ class SwingTable:
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """A loaded swing needs the model's mass; the workflow's order is kept."""
-        if "loaded" in table and "mass_kg" not in (table.get("model") or {}):
+        model = table.get("model", {})
+        if "loaded" in table and isinstance(model, dict) and "mass_kg" not in model:
             yield "model", "needs mass_kg, for the inertia of what is on the swing"
         if "tare_again" in table:
             yield from together(table, "tare_again", "check")
