@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
-from analysis.inertia.budget import Budget
+from analysis.inertia.budget import Budget, Correlations
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.parts import Part, combine, part
 from analysis.inertia.result import InertiaResult
@@ -69,6 +70,7 @@ def properties(
     budgets: Sequence[Budget] = (),
     flags: Sequence[Flag] = (),
     cg_z: Estimate | None = None,
+    correlations: Correlations = MappingProxyType({}),
 ) -> tuple[InertiaResult | None, tuple[str, ...]]:
     """Return the mass properties, or the keys that are missing for them.
 
@@ -80,6 +82,9 @@ def properties(
         Parts that hung there and are not the model's, from the same datum.
     cg_z
         Measured, in place of the file's.
+    correlations
+        As in :class:`analysis.inertia.result.InertiaResult`; where parts are taken off they are
+        not carried along.
     """
     mass, x = given_or_none(model, "mass_kg"), given_or_none(model, "cg_x_m")
     z = cg_z or given_or_none(model, "cg_z_m")
@@ -89,8 +94,26 @@ def properties(
         return None, missing or ("a gyradius",)
     if take_off:
         mass, x, z, gyradii = _without(name, (mass, x, z), gyradii, take_off)
-    result = InertiaResult(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags))
+        correlations = {}
+    result = InertiaResult(
+        name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags), correlations
+    )
     return result, ()
+
+
+def correlation(first: Budget, second: Budget, first_u: float, second_u: float) -> float:
+    """Return the correlation of two results that come from some of the same inputs.
+
+    Parameters
+    ----------
+    first_u, second_u
+        Standard uncertainties of the results that are correlated, which may have more to them.
+    """
+    if not (first_u > 0.0 and second_u > 0.0):
+        return 0.0
+    other = {line.name: line.contribution for line in second.shares}
+    covariance = sum(line.contribution * other.get(line.name, 0.0) for line in first.shares)
+    return min(max(covariance / (first_u * second_u), -1.0), 1.0)
 
 
 def _without(

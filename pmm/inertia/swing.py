@@ -9,9 +9,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.inertia.budget import linear_budget
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.result import InertiaResult
-from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swing_inertia
+from analysis.inertia.swing import (
+    SwingInertia,
+    SwingModel,
+    SwingState,
+    model_on_swing,
+    swing_inertia,
+)
 from analysis.inertia.swing_static import StaticResult, distance, fit_static
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Reading, Step, assess_workflow, next_step
@@ -20,7 +27,7 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
-from pmm.inertia.properties import properties
+from pmm.inertia.properties import correlation, properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.swing_tables import StateTable, SwingTable
@@ -220,7 +227,23 @@ def _model(
         budgets=[one.budget for one in parts],
         flags=found.flags,
         cg_z=cg_z,
+        correlations=_correlations(found, mass, cg_z, f"k_{axis}_m"),
     )
+
+
+def _correlations(
+    found: SwingModel, mass: Estimate, cg_z: Estimate | None, name: str
+) -> dict[tuple[str, str], float]:
+    """Return how mass, place and gyradius hang together: the same moments are in all of them."""
+    place, gyradius = found.cg_below_pivot.budget, found.gyradius.budget
+    weight = linear_budget("mass", lambda model_mass_kg: model_mass_kg, {"model_mass_kg": mass})
+    spread = found.gyradius.result.uncertainty
+    tied = {("mass_kg", name): correlation(weight, gyradius, mass.uncertainty, spread)}
+    if cg_z is not None:
+        of_place = cg_z.uncertainty
+        tied["mass_kg", "cg_z_m"] = correlation(weight, place, mass.uncertainty, of_place)
+        tied["cg_z_m", name] = correlation(place, gyradius, of_place, spread)
+    return tied
 
 
 _STEPS = {

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from analysis.inertia.bifilar import yaw_period
+from analysis.inertia.budget import linear_budget
 from analysis.inertia.compound import pendulum_period
 from analysis.inertia.double_pendulum import mode_periods
+from analysis.inertia.estimate import Estimate
 from analysis.inertia.principal import gyradius_about
+from hardware.description.oscillator import Plane
 from pmm.inertia import bifilar, incline, parts, pendulum, plan, swing
 from pmm.inertia.outcome import Outcome
 
@@ -65,6 +68,42 @@ pivot_above_midpoint_m = 0.9
     assert outcome.missing == ()
     assert outcome.next_step is not None
     assert "[check]" in outcome.next_step
+
+
+def test_the_midpoints_inertia_has_the_correlations_in_it(tmp_path: Path) -> None:
+    mass, tare, total = (30.0, 0.01), (3.0, 0.004), (27.0, 0.006)
+    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
+    text = f"""
+gravity_m_s2 = 9.81
+[tare]
+mass_kg = 42.0
+moment_kg_m = {tare[0]}
+u_moment_kg_m = {tare[1]}
+period = {timed(tare_s)}
+[loaded]
+mass_kg = 72.0
+moment_kg_m = {total[0]}
+u_moment_kg_m = {total[1]}
+period = {timed(loaded_s)}
+[model]
+mass_kg = {mass[0]}
+u_mass_kg = {mass[1]}
+cg_x_m = 0.0
+pivot_above_midpoint_m = 0.7
+"""
+    body = swing.run(write(tmp_path, text)).body
+    assert body is not None
+
+    def midpoint(m: float, s0: float, s1: float) -> float:
+        place = (s1 - s0) / m
+        own = (G / (4.0 * math.pi**2)) * (loaded_s**2 * s1 - tare_s**2 * s0) - m * place**2
+        return own + m * (place - 0.7) ** 2
+
+    inputs = {"m": Estimate(*mass), "s0": Estimate(*tare), "s1": Estimate(*total)}
+    whole = linear_budget("I", midpoint, inputs).result
+    own = body.about_midpoint(Plane.VERTICAL)
+    assert own.value == pytest.approx(whole.value, rel=1e-4)
+    assert own.uncertainty == pytest.approx(whole.uncertainty, rel=0.02)
 
 
 def _workflow(known: float, tare_again_s: float, tare_s: float, check_s: float) -> str:
