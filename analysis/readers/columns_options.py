@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from analysis.readers.columns import ChannelColumn, ColumnMap, PhotocellColumn, TimeColumn
-from analysis.readers.headers import TIME_NAMES
+from analysis.readers.headers import TIME_NAMES, unit_hint
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import is_unit, unit
 
@@ -26,7 +26,7 @@ def parse_source(name: str, text: str) -> ChannelColumn:
     unit_name = None
     if ":" in column and not column.endswith(("]", ")")):
         column, unit_name = (part.strip() for part in column.rsplit(":", 1))
-        unit(unit_name)
+        _check_unit(unit_name)
     if not column:
         raise ConfigurationError(f"{name}: no column is named in {text!r}")
     return ChannelColumn(name, column, unit_name, sign)
@@ -54,6 +54,12 @@ def _without_name(pair: str) -> str:
         return f"{pair!r}: for the time column write {TIME_OPTION}={name}:{unit_name or 'ms'}"
     plain = name.partition(" [")[0].replace(" ", "_")
     return f"{pair!r}: write NAME=COLUMN or NAME=COLUMN:UNIT, for example {plain}={pair.strip()}"
+
+
+def _check_unit(name: str) -> None:
+    if not is_unit(name) and unit_hint(name):
+        raise ConfigurationError(f"unknown unit {name!r}{unit_hint(name)}")
+    unit(name)
 
 
 def parse_options(pairs: Iterable[str]) -> ColumnMap:

@@ -49,6 +49,14 @@ def parse_header(number: int, text: str) -> Header:
     return Header(number, text, text or f"column_{number}", None)
 
 
+def unit_hint(name: str) -> str:
+    """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, nothing where no unit is near."""
+    shorter = [name[:k] + name[k + 1 :] for k in range(len(name))]
+    cased = [name.lower(), name.upper(), name[:1].lower() + name[1:].upper(), name.capitalize()]
+    near = next((one for one in (*cased, *shorter) if len(one) > 0 and is_unit(one)), None)
+    return f"; did you mean {near!r}?" if near else ""
+
+
 def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
     """Return the column that ``selector`` names.
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.readers.columns import ChannelColumn, ColumnMap
 from analysis.readers.columns_options import COMMAND_LINE
-from analysis.readers.headers import Header, find_header
+from analysis.readers.headers import Header, find_header, unit_hint
 from analysis.recording import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
@@ -38,7 +38,10 @@ class ChannelPlan:
             text = f"{name}: no unit is stated; values are kept as they are"
             return Unit("", 1.0), (Flag("unit_missing", Severity.WARNING, text, name),)
         if not is_unit(chosen):
-            text = f"{name}: the unit {chosen!r} is not known; values are kept as they are, no unit"
+            text = (
+                f"{name}: the unit {chosen!r} is not known; values are kept as they are, no unit"
+                f"{unit_hint(chosen)}"
+            )
             return Unit("", 1.0), (Flag("unit_unknown", Severity.WARNING, text, name),)
         if own and stated and own.strip() != stated:
             text = f"{name}: the column map says {own!r}, the header {stated!r}; the map is used"

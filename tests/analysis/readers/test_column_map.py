@@ -187,3 +187,11 @@ def test_a_mark_before_a_map_does_not_matter(tmp_path: Path) -> None:
     path = tmp_path / "map.toml"
     path.write_bytes(b"\xef\xbb\xbftime = 'T:ms'\n")
     assert ColumnMap.from_toml(path).time == TimeColumn("T", "ms")
+
+
+@pytest.mark.parametrize(("wrong", "right"), [("kNN", "kN"), ("KN", "kN"), ("MM", "mm")])
+def test_a_misspelt_unit_is_corrected(wrong: str, right: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"'{wrong}'; did you mean '{right}'"):
+        ColumnMap.from_options([f"force_aft=F1:{wrong}"])
+    with pytest.raises(ConfigurationError, match="known units: "):
+        ColumnMap.from_options(["force_aft=F1:furlong"])
