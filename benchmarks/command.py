@@ -13,7 +13,17 @@ from benchmarks.machine import ROOT, describe
 from benchmarks.outcome import Benchmark, judge
 from benchmarks.page import keep, show, write_page
 
-NAMES = ("speed", "accuracy", "coverage", "live", "memory", "startup", "classic", "simulator")
+NAMES = (
+    "speed",
+    "accuracy",
+    "coverage",
+    "live",
+    "memory",
+    "startup",
+    "classic",
+    "simulator",
+    "devices",
+)
 _RESULTS = ROOT / "benchmarks" / "results"
 
 

@@ -23,7 +23,7 @@ QUICK_STOP_DECELERATION = Entry(0x6085)
 _FOLLOWING_ERROR = Entry(0x60F4)
 _WINDOW, _WINDOW_MS = Entry(0x6065), Entry(0x6066)
 _ABORT_CONNECTION, _QUICK_STOP_OPTION = Entry(0x6007), Entry(0x605A)
-_POWERED: Final = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
+_STOPPING: Final = (State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
 _WORDS: Final = {
     state: state.value[1]
     | int(Status.REMOTE)
@@ -97,7 +97,7 @@ class SimulatedDrive(SimulatedNode):
     def tick(self) -> None:
         """Go on by one sample."""
         self.move()
-        if self.state in _POWERED:
+        if self.state in _STOPPING:
             self._after_stop()
         if self.master_lost() is self._connected:
             self._connected = not self._connected

@@ -46,7 +46,8 @@ class SimulatedNode:
         self.beating = self.talking = True
         self._state = _STATES[_PRE_OPERATIONAL]
         self._packed: tuple[tuple[int, Callable[..., bytes], tuple[Entry, ...]], ...] = ()
-        self._beat_every = 0
+        self._beat_every = self._watched = 0
+        self._patience = 0.0  # ticks that the watched heartbeat may stay away; 0: not watched
         self._local = canopen.LocalNode(node_id, self.dictionary)
         wire[node_id] = self._local
         self._local.add_read_callback(self._read)
@@ -89,17 +90,15 @@ class SimulatedNode:
         self._enter(_STATES[_PRE_OPERATIONAL])
         self.values.clear()
         self._local.data_store.clear()
-        self._beat_every = 0
+        self._beat_every, self._patience = 0, 0.0
         self.wire.emit(HEARTBEAT + self.node_id, b"\0")
 
     def master_lost(self) -> bool:
         """Tell whether the heartbeat that this node watches has stayed away for too long."""
-        word = int(self.values.get(_CONSUMED_BEAT, 0))
-        limit_ms, producer = word & 0xFFFF, word >> 16 & 0x7F
-        last = self.wire.beats.get(producer)
-        if not limit_ms or last is None or not self.operational:
+        if not self.operational or not self._patience:
             return False
-        return (self.wire.number - last) * 1000.0 > limit_ms * self.sample_rate_hz
+        last = self.wire.beats.get(self._watched)
+        return last is not None and self.wire.number - last > self._patience
 
     def _on_nmt(self, _identifier: int, data: bytearray, _time: float) -> None:
         command, node_id = data[0], data[1]
@@ -157,6 +156,9 @@ class SimulatedNode:
         if at == _SYNC_PERIOD and abs(value * self.sample_rate_hz - 1e6) > self.sample_rate_hz:
             raise SdoAbortedError(_OUT_OF_RANGE)
         self.values[at] = value
+        if at == _CONSUMED_BEAT:
+            self._watched = int(value) >> 16 & 0x7F
+            self._patience = (int(value) & 0xFFFF) * self.sample_rate_hz / 1000.0
         if at == _PRODUCED_BEAT:
             self._beat_every = max(1, int(value * self.sample_rate_hz / 1000.0)) if value else 0
         self.written(at, value)

@@ -97,25 +97,22 @@ def test_a_receive_thread_waits_instead_of_turning() -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "value", "message"),
+    ("at", "value", "code"),
     [
-        (Entry(0x1A00, 1), 0x10000020, "cannot be mapped"),
-        (Entry(0x1A00, 1), 0x20000020, "cannot be mapped"),
-        (Entry(0x1A02, 0), 9, "0x060"),
-        (Entry(0x1006), 5000, "0x0609"),
+        (Entry(0x1A00, 1), 0x10000020, 0x06040041),  # the device type cannot be mapped
+        (Entry(0x1A00, 1), 0x20000020, 0x06040041),  # there is no such object
+        (Entry(0x1A02, 0), 3, 0x06040042),  # three positions of 32 bits
+        (Entry(0x1006), 5000, 0x06090030),  # another rate than the simulated one
     ],
 )
-def test_a_node_refuses_what_it_cannot_do(at: Entry, value: int, message: str) -> None:
-    with in_process(TABLES) as (rig, world):
-        if at.subindex == 0 and at.object_index == 0x1A02:
-            sdo = rig.master.nodes[0].sdo
-            for sub in range(1, 4):
-                sdo.write(Entry(0x1A02, sub), 0x60640020)
-            value = 3
+def test_a_node_refuses_what_it_cannot_do(at: Entry, value: int, code: int) -> None:
+    with in_process(TABLES) as (rig, _):
+        sdo = rig.master.nodes[0].sdo
+        for sub in range(1, 4):
+            sdo.write(Entry(0x1A02, sub), 0x60640020)
         with pytest.raises(SdoAbortError) as caught:
-            rig.master.nodes[0].sdo.write(at, value)
-        assert caught.value.code in (0x06040041, 0x06040042, 0x06090030)
-        assert message.startswith("0x") or message
+            sdo.write(at, value)
+        assert caught.value.code == code
 
 
 def test_process_objects_can_be_read_live_by_sdo() -> None:
@@ -136,7 +133,7 @@ def test_a_driver_without_a_simulated_device_is_refused() -> None:
 
 def test_a_channel_that_is_not_simulated_is_refused() -> None:
     tables = {"forces": [amplifier(4, "force_x")], "bus": {"interface": "x", "channel": "y"}}
-    with pytest.raises(ConfigurationError, match="force_x.*it has .*force_aft, force_fore"):
+    with pytest.raises(ConfigurationError, match=r"force_x.*it has .*force_aft, force_fore"):
         World(read_rig(tables, DRIVERS), Scene(vertical_rig()))
 
 
