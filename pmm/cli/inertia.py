@@ -67,7 +67,7 @@ def _run(name: str, options: dict[str, Any]) -> None:
 
 @_job("swing")
 def swing(**options: Any) -> None:
-    """Swing: alone, with the model, checked with a known body and a second pivot."""
+    """Swing: alone, with the model, and its checks."""
     _run("swing", options)
 
 
@@ -97,7 +97,7 @@ def combine(**options: Any) -> None:
 
 @_job("ballast")
 def ballast(**options: Any) -> None:
-    """Find where given weights go for a target mass, centre and gyradius."""
+    """Find where given weights go."""
     _run("ballast", options)
 
 
