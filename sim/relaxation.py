@@ -22,10 +22,11 @@ ArrayT = TypeVar("ArrayT", NDArray[np.float64], NDArray[np.complex128])
 Tail: TypeAlias = tuple[tuple[float, ...], ...]
 
 TOLERANCE: Final = 1e-13
-ROUNDING: Final = 1e-11  # changes below it that no longer shrink are rounding
+ROUNDING: Final = 1e-11  # changes below it that shrink no more are rounding
 MOST_SWEEPS: Final = 80
 LONGEST_SWEEP: Final = 1024  # samples that are swept together
 _DEPTH: Final = 4
+_STALLED: Final = 3  # sweeps without a smaller change: mixing now and then makes one worse
 
 
 def relax(
@@ -49,16 +50,19 @@ def relax(
     """
     size = float(np.abs(start).max(initial=0.0)) if scale is None else scale
     allowed = TOLERANCE * np.maximum(size, np.finfo(np.float64).tiny)
-    at, before = start, math.inf
+    at, best, settled, stalled = start, math.inf, start, 0
     answers: list[ArrayT] = []
     changes: list[ArrayT] = []
     for _ in range(MOST_SWEEPS):
         answer = respond(at)
         change = answer - at
         largest = float((np.abs(change) / allowed).max(initial=0.0))
-        if largest <= 1.0 or (largest <= ROUNDING / TOLERANCE and largest >= before):
-            return answer
-        before = largest
+        if largest < best:
+            best, settled, stalled = largest, answer, 0
+        else:
+            stalled += 1
+        if best <= 1.0 or (best <= ROUNDING / TOLERANCE and stalled >= _STALLED):
+            return settled
         answers.append(answer)
         changes.append(change)
         del answers[: -_DEPTH - 1], changes[: -_DEPTH - 1]
