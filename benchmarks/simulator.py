@@ -28,7 +28,7 @@ from sim.water.radiation import Radiation
 RATE_HZ = 200.0
 _SET_POINT = SetPoint(1.0, 0.02, 0.7)
 _HALF_SPACING_M = VERTICAL_1963.half_spacing_m
-_MODEL = ModelOnGauges(
+MODEL = ModelOnGauges(
     frequency_hz=1.0,
     eccentricity_m=0.02,
     strut_phase_rad=0.7,
@@ -61,7 +61,7 @@ def five_effects(rig: SimulatedRig) -> SimulatedRig:
 
 def rig_on_gauges() -> SimulatedRig:
     """Return the rig whose equations :class:`ModelOnGauges` writes down."""
-    one = _MODEL
+    one = MODEL
     rig = vertical_rig().ideal()
     body = Body(mass_kg=70.0, inertia_kg_m2=27.5)
     w, eye = one.memory_rad_s, np.eye(2)
@@ -162,7 +162,7 @@ def _rivals(quick: bool, report: Report) -> tuple[list[Row], float, float]:
     """Time ours, and each integrator at the loosest tolerance that is as accurate."""
     time_s = np.arange(400 if quick else 4000) / RATE_HZ
     report("reference solution")
-    true = _MODEL.forces(time_s, "DOP853", 1e-12)
+    true = MODEL.forces(time_s, "DOP853", 1e-12)
     rig = rig_on_gauges()
     ours = Contender("whole run", whole_run(rig, time_s.size))
     steady = Contender("periodic steady state", lambda: steady_run(rig, _SET_POINT))
@@ -176,7 +176,8 @@ def _rivals(quick: bool, report: Report) -> tuple[list[Row], float, float]:
     best = {}
     for own, stretch in ((ours, time_s), (steady, time_s[:settled])):
         key = "run" if own is ours else "steady"
-        rows.append(_row(own.name, time_s.size, errors[key], own.best_s, own.best_s))
+        samples = time_s.size if key == "run" else int(RATE_HZ)
+        rows.append(_row(own.name, samples, errors[key], own.best_s, own.best_s))
         timed = [_rival(method, stretch, true, errors[key]) for method in METHODS]
         interleave([one for one, _ in timed], 1 if quick else 3, report)
         rows += [_row(one.name, stretch.size, e, one.best_s, own.best_s) for one, e in timed]
@@ -190,11 +191,11 @@ def _rival(
     """Return an integrator at the loosest tolerance, by factors of 10, that errs no more."""
     for exponent in range(-3, -12, -1):
         tolerance = 10.0**exponent
-        found = _error(_MODEL.forces(time_s, method, tolerance), true[:, : time_s.size])
+        found = _error(MODEL.forces(time_s, method, tolerance), true[:, : time_s.size])
         if found <= error:
             break
     name = f"rival: solve_ivp, {method}, rtol {tolerance:.0e}"
-    return Contender(name, lambda: _MODEL.forces(time_s, method, tolerance)), found
+    return Contender(name, lambda: MODEL.forces(time_s, method, tolerance)), found
 
 
 def _error(found: FloatArray, true: FloatArray) -> float:
@@ -205,7 +206,7 @@ def _steady_error(rig: SimulatedRig, true: FloatArray) -> float:
     """Error of the steady state against the last period of the reference, wherever that begins."""
     state = steady_run(rig, _SET_POINT)
     points = int(RATE_HZ)
-    shaft_rad = -np.pi + 2.0 * np.pi * (np.arange(points) / RATE_HZ - _MODEL.ramp_s / 2.0)
+    shaft_rad = -np.pi + 2.0 * np.pi * (np.arange(points) / RATE_HZ - MODEL.ramp_s / 2.0)
     # In the steady state the shaft's angle is 0 at time 0.
     turns = np.exp(1j * np.outer(np.arange(state.spectra["force_aft"].size), shaft_rad))
     both = np.array([state.spectra["force_aft"], state.spectra["force_fore"]])

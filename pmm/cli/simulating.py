@@ -81,6 +81,7 @@ def run(request: Request) -> None:
         simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
     )
     copy_campaign(path, folder)
+    copy_table(path, campaign, folder)
     figures = [] if request.plot is None else _draw(campaign, written, effects, Path(request.plot))
     if request.as_json:
         click.echo(json.dumps(_document(folder, written, effects), indent=1))
@@ -207,6 +208,19 @@ def copy_campaign(path: Path, folder: Path) -> None:
     target = folder / CAMPAIGN_FILE
     if not (target.exists() and target.samefile(path)):
         target.write_bytes(path.read_bytes())
+
+
+def copy_table(path: Path, campaign: Campaign, folder: Path) -> None:
+    """Put the table of added mass beside the campaign file's copy, where that looks for it."""
+    if campaign.radiation is None:
+        return
+    source = Path(campaign.radiation.file)
+    own = path.parent.resolve()
+    if source.resolve().is_relative_to(own):
+        target = folder / source.resolve().relative_to(own)
+        if not (target.exists() and target.samefile(source)):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(source.read_bytes())
 
 
 def _document(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.resolver.weights import gate_weights
-from benchmarks import noises, speed_rivals
+from benchmarks import noises, simulator, speed_rivals
 from benchmarks.accuracy_rivals import RIVALS, Gate, edge_weights
 from benchmarks.signals import Truth, draw_coefficients
 
@@ -64,3 +64,10 @@ def test_noise_is_correlated_as_named() -> None:
     angle = 2.0 * np.pi * 1.37 / 100.0 * lags
     closed = np.exp(-angle / 40.0) * np.cos(angle)
     assert np.mean(swings[:, :1] * swings, axis=0) == pytest.approx(closed, abs=0.06)
+
+
+def test_rival_of_the_simulator_solves_the_same_equations() -> None:
+    time_s = np.arange(300) / simulator.RATE_HZ
+    ours = simulator.whole_run(simulator.rig_on_gauges(), time_s.size)()
+    theirs = simulator.MODEL.forces(time_s, "DOP853", 1e-10)
+    assert theirs == pytest.approx(ours, abs=1e-6 * np.abs(ours).max())
