@@ -23,6 +23,7 @@ NAMES = (
     "classic",
     "simulator",
     "devices",
+    "inertia",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 

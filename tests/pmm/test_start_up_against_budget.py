@@ -1,8 +1,7 @@
-"""``pmm --help`` has to answer at once: within 150 ms, which no heavy import fits into."""
+"""``pmm --help`` has to answer at once, so it imports nothing heavy; the time is a benchmark's."""
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 HOUSE = Path(__file__).parents[2]
@@ -11,20 +10,9 @@ HEAVY = ("numpy", "scipy", "pandas", "xarray", "pydantic", "matplotlib", "rich",
 
 
 def _run(code: str) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(  # noqa: S603
+    return subprocess.run(
         [sys.executable, "-c", code], cwd=HOUSE, capture_output=True, text=True, check=False
     )
-
-
-def test_help_answers_within_the_budget() -> None:
-    took = []
-    for _ in range(10):
-        begun = time.perf_counter()
-        done = _run(HELP)
-        took.append(time.perf_counter() - begun)
-        assert done.returncode == 0
-        assert "simulate" in done.stdout
-    assert min(took) < 0.150
 
 
 def test_help_imports_nothing_heavy() -> None:
