@@ -97,10 +97,13 @@ class Host:
         while (frame := self._carrier.recv(0.0)) is not None:
             before = self.world.wire.number
             self.world.wire.take(frame)
-            while self._frames:
-                self._carrier.send(self._frames.popleft())
+            self._send()
             if self._clock and self.world.wire.number != before:
                 self._lived_s = self._clock()
+
+    def _send(self) -> None:
+        while self._frames:
+            self._carrier.send(self._frames.popleft())
 
     def _live(self) -> None:
         """Let time pass by the clock where no SYNC says it."""
@@ -111,7 +114,8 @@ class Host:
             return
         while self._lived_s + period_s < self._clock():
             self._lived_s += period_s
-            self.world.tick()
+            self.world.live()
+        self._send()
 
     def _speak(self) -> None:
         for name, terminal in self._terminals.items():

@@ -74,12 +74,16 @@ class SimulatedNode:
     def answer(self) -> None:
         """Send heartbeat and process data for the present tick."""
         wire = self.wire
-        if self._beat_every and self.beating and not wire.number % self._beat_every:
-            wire.emit(HEARTBEAT + self.node_id, bytes((self._state,)))
+        self.beat()
         if self.operational and self.talking:
             values = self.values
             for cob_id, pack, entries in self._packed:
                 wire.emit(cob_id, pack(*[values[at] for at in entries]))
+
+    def beat(self) -> None:
+        """Send the heartbeat if it is due in the present tick."""
+        if self._beat_every and self.beating and not self.wire.number % self._beat_every:
+            self.wire.emit(HEARTBEAT + self.node_id, bytes((self._state,)))
 
     def emergency(self, code: int, register: int = 1) -> None:
         """Send an emergency message; code 0 says that all is well again."""

@@ -109,6 +109,12 @@ class World:
         for talker in self.talkers.values():
             talker.tick(plant.time_s, passages)
 
+    def live(self) -> None:
+        """Let one sample pass without SYNC: devices live on, heartbeats too, but no data come."""
+        self.tick()
+        for node in self.nodes.values():
+            node.beat()
+
     def sync(self) -> None:
         """Let one sample pass, and the nodes answer."""
         self.tick()

@@ -128,7 +128,7 @@ class Hosted:
         command = [sys.executable, "-m", "sim.devices", str(file), "--free-running"]
         command += ["--interface", interface, "--port", str(_free_port())]
         self.tables = tables
-        self._process = subprocess.Popen(  # noqa: S603 - our own module
+        self._process = subprocess.Popen(
             command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
         line = self._process.stdout.readline()

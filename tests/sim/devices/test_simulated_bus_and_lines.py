@@ -1,5 +1,6 @@
 """The simulated rig by its name: entry point, file, several users, serial lines, a living host."""
 
+import ast
 import io
 import os
 import threading
@@ -226,3 +227,31 @@ def test_a_wrong_file_is_told_on_the_error_stream(tmp_path: Path, capsys) -> Non
     wrong.write_text("plan = 'vertical'\n[rig]\n")
     assert main([str(wrong)]) == 2
     assert "plan is not a known key; did you mean plane?" in capsys.readouterr().err
+
+
+def test_nothing_else_of_the_simulator_knows_a_bus_a_port_or_the_devices() -> None:
+    """The linter keeps this too, but for parts of the hardware layer that reach no bus."""
+    for path in (ROOT / "sim").rglob("*.py"):
+        if path.is_relative_to(ROOT / "sim" / "devices"):
+            continue
+        for name in _imported(path):
+            assert name.split(".")[0] not in ("can", "canopen", "serial"), path
+            assert not name.startswith("sim.devices"), path
+            assert not name.startswith("hardware") or name.startswith("hardware.description"), path
+
+
+def _imported(path: Path) -> list[str]:
+    found: list[str] = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [one.name for one in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            found.append(node.module or "")
+    return found
+
+
+def test_no_simulated_device_asks_for_the_time() -> None:
+    """Only who hosts a rig hands a clock in."""
+    for path in (ROOT / "sim" / "devices").glob("*.py"):
+        if path.name != "__main__.py":
+            assert not {"time", "datetime"} & set(_imported(path)), path
