@@ -336,7 +336,7 @@ def _command(*arguments: str | Path) -> list[str]:
 
 def test_a_closed_pipe_is_quiet(folder: Path) -> None:
     environment = os.environ | {"PYTHONPATH": str(HOUSE)}
-    with subprocess.Popen(  # noqa: S603
+    with subprocess.Popen(
         _command("analyse", folder, "--json"),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -350,7 +350,7 @@ def test_a_closed_pipe_is_quiet(folder: Path) -> None:
 
 
 def test_the_real_command_in_a_process_of_its_own(folder: Path) -> None:
-    done = subprocess.run(  # noqa: S603
+    done = subprocess.run(
         _command("analyse", folder / "heave-1.20.nc", "--channel", "force_aft"),
         capture_output=True,
         text=True,

@@ -105,7 +105,7 @@ def test_it_is_found_by_name_in_a_process_of_its_own(installed: Path) -> None:
         "from hardware.driver import find_driver; "
         "print(find_driver('text-amplifier', 'forces[0]').open.__module__)"
     )
-    done = subprocess.run(  # noqa: S603
+    done = subprocess.run(
         [sys.executable, "-c", code],
         cwd=HOUSE,
         env={"PYTHONPATH": str(installed)},

@@ -12,7 +12,7 @@ HOUSE = Path(__file__).parents[2]
 
 def _python(code: str, *folders: Path) -> "subprocess.CompletedProcess[str]":
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (*folders, HOUSE)))}
-    return subprocess.run(  # noqa: S603
+    return subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
         text=True,
