@@ -67,12 +67,17 @@ class Assessment:
 
     @property
     def result(self) -> Estimate:
-        """The budget's result, or, where it is not good enough, the Monte Carlo's."""
-        if self.linear_good_enough:
-            return self.budget.result
-        mc = self.monte_carlo
+        """The budget's result, or, where it is not good enough, the Monte Carlo's.
+
+        The Monte Carlo's uncertainty is what its 95 % interval stands for: with two runs of a kind
+        an input is so heavy in its tails that the trials' own deviation has no limit.
+        """
         linear = self.budget.result
-        return Estimate(mc.mean, mc.uncertainty, linear.unit, linear.degrees_of_freedom)
+        if self.linear_good_enough:
+            return linear
+        mc = self.monte_carlo
+        uncertainty = (mc.high - mc.low) / 2.0 / linear.coverage_factor()
+        return Estimate(mc.mean, uncertainty, linear.unit, linear.degrees_of_freedom)
 
     @property
     def interval(self) -> tuple[float, float]:
