@@ -111,7 +111,8 @@ def _is_there(found: ComplexArray, stated: ComplexArray, size: float) -> bool:
 def signature_figure(effect: Effect, grid: Grid, title: str) -> "Figure":
     """Draw the largest parts of a signature: one row a harmonic, in phase and quadrature.
 
-    Circles are simulated, lines are theory; colours are amplitudes. A signature that is a force and
+    Circles are simulated, lines are theory; colours are amplitudes. An effect that does not repeat
+    with the shaft has theory alone: what an analysis of its record then finds. A signature that is a force and
     follows the displacement, the velocity or the acceleration shows it in how the curves fan out.
     """
     from matplotlib.figure import Figure
@@ -122,10 +123,10 @@ def signature_figure(effect: Effect, grid: Grid, title: str) -> "Figure":
         figure.suptitle(f"{effect.code} {effect.title}\n{title}")
         axes = figure.subplots(len(keys), 2, squeeze=False, sharex=True)
         for row, key in zip(axes, keys, strict=True):
-            _draw_row(row, key, grid)
+            _draw_row(row, key, grid, circles=effect.repeats)
         for one in axes[-1]:
             one.set_xlabel("frequency (Hz)")
-        _legend(figure, grid)
+        _legend(figure, grid, circles=effect.repeats)
     return figure
 
 
@@ -154,7 +155,7 @@ def _is_twin(key: Key, grid: Grid) -> bool:
     return bool(gap < 0.02 * _peak(grid, key))
 
 
-def _draw_row(row: Sequence["Axes"], key: Key, grid: Grid) -> None:
+def _draw_row(row: Sequence["Axes"], key: Key, grid: Grid, *, circles: bool) -> None:
     name, order = key
     shown = display(grid.units[name])
     parts = ("mean", "") if order == 0 else (f"in phase {order}", f"quadrature {order}")
@@ -167,7 +168,10 @@ def _draw_row(row: Sequence["Axes"], key: Key, grid: Grid) -> None:
             theory = shown.factor * take(grid.theory[key][number])
             found = shown.factor * take(grid.simulated[key][number])
             axes.plot(grid.frequencies_hz, theory, color=color)
-            axes.plot(grid.frequencies_hz, found, "o", color=color, markersize=4, fillstyle="none")
+            if circles:
+                axes.plot(
+                    grid.frequencies_hz, found, "o", color=color, markersize=4, fillstyle="none"
+                )
         axes.set_title(f"{shown_name(name)}: {part}", loc="left")
         axes.set_ylabel(f"change ({shown.label})")
         _widen(axes, shown.factor * _peak(grid, key))
@@ -180,7 +184,7 @@ def _widen(axes: "Axes", peak: float) -> None:
     axes.set_ylim(min(low - room, -room), max(high + room, room))
 
 
-def _legend(figure: "Figure", grid: Grid) -> None:
+def _legend(figure: "Figure", grid: Grid, *, circles: bool) -> None:
     from matplotlib.lines import Line2D
 
     entries = [
@@ -188,11 +192,10 @@ def _legend(figure: "Figure", grid: Grid) -> None:
         for number, value in enumerate(grid.amplitudes_m)
     ]
     entries.append(Line2D([], [], color="#000000", label="theory"))
-    entries.append(
-        Line2D(
-            [], [], color="#000000", marker="o", fillstyle="none", linestyle="", label="simulated"
+    if circles:
+        entries.append(
+            Line2D([], [], color="#000000", marker="o", fillstyle="none", ls="", label="simulated")
         )
-    )
     figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
 
 
