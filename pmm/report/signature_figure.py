@@ -112,8 +112,8 @@ def signature_figure(effect: Effect, grid: Grid, title: str) -> "Figure":
     """Draw the largest parts of a signature: one row a harmonic, in phase and quadrature.
 
     Circles are simulated, lines are theory; colours are amplitudes. An effect that does not repeat
-    with the shaft has theory alone: what an analysis of its record then finds. A signature that is a force and
-    follows the displacement, the velocity or the acceleration shows it in how the curves fan out.
+    with the shaft has theory alone: what an analysis of its record then finds. What follows the
+    displacement, the velocity or the acceleration shows it in how the curves fan out.
     """
     from matplotlib.figure import Figure
 
