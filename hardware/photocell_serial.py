@@ -51,6 +51,7 @@ class SerialPhotocell:
         self._pulses: list[Pulse] = []
         self._count: int | None = None
         self._at_s: float | None = None  # of the last pulse, in the rig's time
+        self._waiting_s: float | None = None  # since when the first pulse is due
         self._period_s: float | None = None
         self._heard_s: float | None = None
         self._told: set[type] = set()
@@ -61,7 +62,7 @@ class SerialPhotocell:
     def expect(self, frequency_hz: float | None) -> None:
         """Say how fast the shaft turns; ``None``: it is idle, a lost port is opened again."""
         self._period_s = 1.0 / frequency_hz if frequency_hz else None
-        self._at_s = None
+        self._at_s = self._waiting_s = None
         self._told.clear()
 
     def tick(self, cycle: Cycle) -> None:
@@ -100,7 +101,7 @@ class SerialPhotocell:
             If the port is still not there.
         """
         self._port.open()
-        self._heard_s, self._at_s, self._count = None, None, None
+        self._heard_s, self._at_s, self._waiting_s, self._count = None, None, None, None
         self._told.clear()
 
     def close(self) -> None:
@@ -154,9 +155,10 @@ class SerialPhotocell:
             )
         if self._period_s is None:
             return
-        if self._at_s is None:
-            self._at_s = now_s
-        periods = (now_s - self._at_s) / self._period_s
+        if self._at_s is None and self._waiting_s is None:
+            self._waiting_s = now_s  # no pulse yet: the first may come at once, or a period later
+        since_s = self._waiting_s if self._at_s is None else self._at_s
+        periods = 0.0 if since_s is None else (now_s - since_s) / self._period_s
         for kind, limit_periods in (
             (PhotocellDeadError, _DEAD_PERIODS),
             (PhotocellMissedError, _MISSED_PERIODS),

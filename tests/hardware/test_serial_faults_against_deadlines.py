@@ -203,6 +203,20 @@ def test_the_drift_of_the_clock_is_fitted() -> None:
     assert np.max(np.abs(error)) < 0.002
 
 
+def test_the_first_pulse_may_come_at_any_time_after_it_is_expected(cell, talker) -> None:
+    """The shaft may stand anywhere when pulses are first counted on."""
+    pulse(cell, talker, 1, 5)
+    cell.photocell.expect(1.0)
+    pulse(cell, talker, 2, 30)
+    pulse(cell, talker, 3, 99)
+    assert [one.number for one in cell.photocell.take()] == [1, 2, 3]
+    cell.photocell.expect(1.0)
+    run(cell, 90)
+    talker.say(Kind.TIME, 5.0 + cell.number * PERIOD_S, 3)
+    with pytest.raises(PhotocellMissedError, match=r"no pulse for 1\.5"):
+        run(cell, 70)
+
+
 def test_missed_dead_and_extra_pulses(cell, talker) -> None:
     cell.photocell.expect(2.0)
     for number in (1, 2, 3):

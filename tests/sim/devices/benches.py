@@ -201,9 +201,6 @@ def slotted(rig: Rig, send: Callable[[str], object]) -> Callable[[float], None]:
         rig.run_until(lambda: rig.shaft.enabled, 100, "enable")
         rig.shaft.turn(frequency_hz)
         rig.run_until(lambda: rig.shaft.at_speed, 1000, "speed")
-        # Counting pulses begins at one, as run control does it.
-        rig.photocell.take()
-        rig.run_until(lambda: bool(rig.photocell.take()), 1000, "pulse")
 
     return apply
 
