@@ -105,6 +105,12 @@ def gate_weights(opening: float, closing: float, count: int) -> tuple[int, Float
 
 def _fold_into_record(first: int, weights: FloatArray, count: int) -> tuple[int, FloatArray]:
     """Hand the weights of samples outside the record to the six nearest inside."""
+    # A short gate at one end reaches fewer than six inside: take in those on its other side.
+    if first + len(weights) > count:
+        ahead = max(0, first - (count - 2 * REACH))
+        first, weights = first - ahead, np.concatenate((np.zeros(ahead), weights))
+    if first < 0:
+        weights = np.concatenate((weights, np.zeros(max(0, 2 * REACH - first - len(weights)))))
     missing = max(0, -first)
     for k in range(missing):
         weights[missing : missing + 2 * REACH] += weights[k] * _extrapolation(missing - k)

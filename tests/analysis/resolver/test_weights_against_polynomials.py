@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from analysis.resolver.weights import gate_weights
@@ -62,6 +62,8 @@ def test_weights_are_additive(a: float, first: float, second: float) -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(edges)
+@example((0.0, 2.0))
+@example((COUNT - 3.0, COUNT - 1.0))
 def test_weights_are_the_same_read_backwards(pair: tuple[float, float]) -> None:
     opening, closing = sorted(pair)
     mirrored = spread(COUNT - 1.0 - closing, COUNT - 1.0 - opening)[::-1]
