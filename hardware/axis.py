@@ -214,7 +214,7 @@ class DriveAxis:
             )
         )
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Pursue the move or the homing, one step a cycle.
 
         Raises

@@ -43,7 +43,7 @@ class InclinometerSettings:
 class SerialInclinometer:
     """A :class:`hardware.roles.Inclinometer`; its samples are numbered by its lines."""
 
-    def __init__(self, name: str, settings: InclinometerSettings, services: Services) -> None:  # noqa: ARG002
+    def __init__(self, name: str, settings: InclinometerSettings, services: Services) -> None:
         self.name = name
         self.channels: tuple[Channel, ...] = (Channel(name, "rad", settings.range_rad),)
         self.sample_rate_hz = settings.sample_rate_hz

@@ -171,7 +171,7 @@ class ManualAxis:
         self._target = position
         self._ask(f"{self.name}: set the {self._settings.dial} to {dial} and read it")
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Look for an answer.
 
         Raises

@@ -84,7 +84,7 @@ class ManualShaft:
         """Nothing to reset."""
         self.disable()
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Look for an answer.
 
         Raises

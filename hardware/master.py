@@ -29,7 +29,7 @@ class _Network(canopen.Network):
         super().__init__()
         self._send = send
 
-    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:  # noqa: ARG002
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         self._send(can_id, bytes(data))
 
 

@@ -57,7 +57,7 @@ class ProbePhotocell:
         if frequency_hz is None:
             self._last, self._told = None, None
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Take the edges of the cycle.
 
         Raises

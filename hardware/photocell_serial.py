@@ -42,7 +42,7 @@ class SerialPhotocell:
         Drift of its clock against the bus.
     """
 
-    def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:  # noqa: ARG002
+    def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:
         self.name = name
         self.fit = ClockFit()
         self._settings = settings

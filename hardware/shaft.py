@@ -180,7 +180,7 @@ class DriveShaft:
             )
         )
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Take the cycle's positions and keep the drive going."""
         for number, values in self.drive.node.streams[0].samples:
             counts = self._unwrap(int(values[2]))

@@ -164,7 +164,7 @@ class Acquisition:
         """The recorded channels."""
         return tuple(signals.recorded(line.channel) for line in self.lines)
 
-    def start(self, sample_rate_hz: float, seed: int) -> tuple[LineState, ...]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[LineState, ...]:
         """Return the beginning of each channel's own noise."""
         return tuple(
             LineState(

@@ -60,7 +60,7 @@ class Carriage:
     def start(self, sample_rate_hz: float, seed: int) -> None:
         """Return no state: the speed follows from the time alone."""
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:  # noqa: ARG002
+    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
         """Return the carriage speed over the block."""
         speed = np.full(block.count, self.mean_m_s)
         for one in self.settings.fluctuations:
@@ -68,6 +68,6 @@ class Carriage:
             speed += self.mean_m_s * one.relative * np.sin(turned)
         return state, {signals.CARRIAGE_SPEED.name: speed}
 
-    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:  # noqa: ARG002
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the mean speed; what fluctuates does so beside the period."""
         return period, {signals.CARRIAGE_SPEED.name: period.constant(self.mean_m_s)}

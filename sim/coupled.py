@@ -53,7 +53,7 @@ class LoadedDrive:
     reads: ClassVar[tuple[Signal, ...]] = (signals.LOAD_TORQUE,)
     writes: ClassVar[tuple[Signal, ...]] = SHAFT
 
-    def start(self, sample_rate_hz: float, seed: int) -> LoadedState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> LoadedState:
         """Return the state before the first sample: no deviation yet."""
         return LoadedState()
 

@@ -167,11 +167,11 @@ class ConstantSpeedDrive:
     def start(self, sample_rate_hz: float, seed: int) -> None:
         """Return no state: the motion follows from the time alone."""
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:  # noqa: ARG002
+    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
         """Return the shaft's angle, speed and acceleration over the block."""
         return state, self.settings.commanded(self.frequency_hz, block.time_s).signals
 
-    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:  # noqa: ARG002
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the period that the shaft really has, and its harmonics."""
         real = period.at(self.settings.frequency_hz(self.frequency_hz))
         return real, self.settings.ripple_over(real)

@@ -86,7 +86,7 @@ class Dynamometers:
         signals.DYNAMOMETER_FORCE_FORE,
     )
 
-    def start(self, sample_rate_hz: float, seed: int) -> DynamometerState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> DynamometerState:
         """Return the state before the first sample."""
         return (None, None)
 

@@ -86,7 +86,7 @@ class Hull:
         """The linear part at the mean carriage speed."""
         return _system(self)
 
-    def start(self, sample_rate_hz: float, seed: int) -> HullState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> HullState:
         """Return the state before the first sample: calm water, a mounting that is at rest."""
         return HullState()
 

@@ -107,7 +107,7 @@ class Mechanism:
                 f"eccentricity_m = {self.eccentricity_m:g}: the crank could not turn"
             )
 
-    def start(self, sample_rate_hz: float, seed: int) -> PlayStates | None:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> PlayStates | None:
         """Return no state: the struts follow the shaft at once, or after the play of a joint."""
         return None
 

@@ -74,7 +74,7 @@ class Photocell:
     )
     writes: ClassVar[tuple[Signal, ...]] = (signals.PHOTOCELL_EDGE_TIME,)
 
-    def start(self, sample_rate_hz: float, seed: int) -> PhotocellState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> PhotocellState:
         """Return the state before the first sample."""
         return PhotocellState(None, start_stream(seed, self.name))
 

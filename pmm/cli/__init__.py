@@ -23,11 +23,11 @@ _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 class Commands(click.Group):
     """The group of all commands, which turns our errors into messages and exit statuses."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+    def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the commands' names."""
         return sorted(_COMMANDS)
 
-    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a command."""
         if name not in _COMMANDS:
             return None

@@ -11,7 +11,7 @@ JOBS = ("swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan")
 class Jobs(click.Group):
     """The group of the jobs, in the order in which they are explained."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+    def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the jobs' names."""
         return list(JOBS)
 

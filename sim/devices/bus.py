@@ -36,7 +36,7 @@ class SimulatedBus(can.BusABC):
         """Whether the controller is in order."""
         return can.BusState.ERROR if self._world.bus_off else can.BusState.ACTIVE
 
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Send a frame; the nodes answer at once.
 
         Raises

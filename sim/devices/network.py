@@ -66,7 +66,7 @@ class Wire(canopen.Network):
         for outlet in self.outlets:
             outlet.append(frame)
 
-    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:  # noqa: ARG002
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send what canopen's nodes say."""
         self.emit(can_id, bytes(data))
 

@@ -148,7 +148,7 @@ class SimulatedNode:
 
         return take
 
-    def _read(self, index: int, subindex: int, od: Any) -> Number | None:  # noqa: ARG002
+    def _read(self, index: int, subindex: int, od: Any) -> Number | None:
         return self.values.get((index, subindex))
 
     def _write(self, index: int, subindex: int, od: Any, data: bytes) -> None:

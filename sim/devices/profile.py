@@ -64,7 +64,7 @@ class ProfiledDrive(DriveSettings):
 
     profile: SpeedProfile = field(default_factory=SpeedProfile)
 
-    def commanded(self, set_hz: float, time_s: FloatArray) -> Shaft:  # noqa: ARG002
+    def commanded(self, set_hz: float, time_s: FloatArray) -> Shaft:
         """Return the motion that the drive is told to make, its ripple and speed error included."""
         told, share = self.profile.at(time_s), 1.0 + self.speed_error
         return self._rippled(

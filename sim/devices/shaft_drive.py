@@ -54,7 +54,7 @@ class ShaftDrive(SimulatedDrive):
     def _arrived(self) -> bool:
         return self._plant.time_s >= self._arrives_s
 
-    def obey(self, control: int, risen: int) -> None:  # noqa: ARG002
+    def obey(self, control: int, risen: int) -> None:
         """Follow the target velocity, or halt."""
         wanted = 0.0 if halting(control) else self.values[TARGET_VELOCITY] / self._per_rad_s
         top = abs(self.number(_TOP_SPEED) / self._per_rad_s)

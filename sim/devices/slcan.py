@@ -32,14 +32,14 @@ class SlcanAdapter:
         """Return the file descriptor, for ``select``."""
         return self._terminal.fileno()
 
-    def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002
+    def recv(self, timeout: float | None = None) -> can.Message | None:
         """Return the next frame that the controller has sent, or ``None``; never waits."""
         *commands, self._rest = (self._rest + self._terminal.read()).split(b"\r")
         for command in commands:
             self._terminal.write(self._obey(command.strip()))
         return self._frames.popleft() if self._frames else None
 
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Send a frame to the controller, if it has opened the channel."""
         if self._open and not msg.is_error_frame:
             data = bytes(msg.data).hex().upper()

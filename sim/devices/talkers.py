@@ -124,7 +124,7 @@ class Inclinometer(_Sayer):
         self._rate_hz, self._rad_per_unit = sample_rate_hz, rad_per_unit
         self._number = 0
 
-    def tick(self, time_s: float, passages: tuple[Passage, ...]) -> None:  # noqa: ARG002
+    def tick(self, time_s: float, passages: tuple[Passage, ...]) -> None:
         """Say the samples up to a time."""
         while self._number <= time_s * self._rate_hz:
             angle = self.angles(self._number) / self._rad_per_unit

@@ -36,7 +36,7 @@ class AmplifierLag(Effect):
         """Whole number of poles."""
         return round(self.poles)
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the low-pass in both force channels."""
         kind = FilterKind.RC if self.order == 1 else FilterKind.BUTTERWORTH
         own = LowPass(self.cutoff_hz, kind, self.order)

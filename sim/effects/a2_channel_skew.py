@@ -27,7 +27,7 @@ class ChannelSkew(Effect):
     aft_s: float = parameter(0.0, 0.0, 0.02, "s", "delay of the aft force")
     fore_s: float = parameter(1e-3, 0.0, 0.02, "s", "delay of the fore force")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these delays on top of what the channels have."""
         delays = (self.aft_s, self.fore_s)
         return with_force_channels(

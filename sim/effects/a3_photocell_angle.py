@@ -27,7 +27,7 @@ class PhotocellAngle(Effect):
 
     late_rad: float = parameter(0.01, -0.2, 0.2, "rad", "shaft angle at which the pulse comes")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the mark moved; one without a photocell stays as it is."""
         if rig.photocell is None:
             return rig

@@ -27,7 +27,7 @@ class PhotocellDelay(Effect):
 
     delay_s: float = parameter(1e-3, 0.0, 0.05, "s", "from the mark to the pulse")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the pulse delayed; one without a photocell stays as it is."""
         if rig.photocell is None:
             return rig

@@ -28,7 +28,7 @@ class MissedPulse(Effect):
 
     every: float = parameter(20.0, 3.0, 10000.0, "1", "N, rounded: one pulse in so many is missing")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with such a photocell; the more frequent miss stands."""
         if rig.photocell is None:
             return rig

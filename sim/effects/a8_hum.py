@@ -33,7 +33,7 @@ class Hum(Effect):
     frequency_hz: float = parameter(50.0, 1.0, 2000.0, "Hz", "frequency of the mains, or of what")
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the hum; hum of the same frequency that it has already is added to.
 
         Raises
@@ -56,11 +56,11 @@ class Hum(Effect):
 
         return with_force_channels(rig, humming)
 
-    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+    def signature(self, situation: Situation) -> Signature:
         """Return nothing: it does not repeat with the shaft."""
         return {}
 
-    def lines(self, situation: Situation) -> Lines:  # noqa: ARG002
+    def lines(self, situation: Situation) -> Lines:
         """Return the line in both channels, before it folds."""
         line = self.amplitude_n * complex(np.exp(1j * self.phase_rad))
         return dict.fromkeys(((name, self.frequency_hz) for name in RECORDED_FORCES), line)

@@ -30,7 +30,7 @@ class SpeedRippleEffect(Effect):
     order: float = parameter(1.0, 0.1, 10.0, "1", "times a revolution")
     phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this ripple on its drive."""
         ripple = (*rig.drive.ripple, SpeedRipple(self.order, self.relative, self.phase_rad))
         return replace(rig, drive=replace(rig.drive, ripple=ripple))

@@ -35,7 +35,7 @@ class TorqueCogging(Effect):
         5.0, 0.5, 500.0, "kg m2", "of the motor, at the crank, where the rig has none"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this torque on its motor."""
         motor = self._shaft.motor() if rig.drive.motor is None else rig.drive.motor
         torque = Cogging(round(self.order), self.torque_n_m, self.phase_rad)

@@ -29,7 +29,7 @@ class SpeedDroop(Effect):
 
     droop_rad_s_n_m: float = parameter(0.02, 1e-4, 0.5, "rad/(s N m)", "speed lost per mean torque")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with a motor that nothing brings back to its speed.
 
         A motor that the rig has keeps its inertia, and its droop is added to.

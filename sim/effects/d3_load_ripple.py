@@ -32,7 +32,7 @@ class LoadRipple(Effect):
         0.05, 0.001, 2.0, "Hz", "bandwidth of what brings the mean speed back, critically damped"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with a motor of this inertia.
 
         A motor that the rig has and that droops goes on to do so.

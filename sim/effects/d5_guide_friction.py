@@ -25,7 +25,7 @@ class GuideFriction(Effect):
     friction_n: float = parameter(5.0, 0.0, 50.0, "N", "friction force at each strut")
     viscous_n_s_m: float = parameter(0.0, 0.0, 200.0, "N s/m", "viscous friction at each strut")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction as a load of its shaft."""
         guides = rig.drive.guides
         more = replace(
@@ -35,6 +35,6 @@ class GuideFriction(Effect):
         )
         return replace(rig, drive=replace(rig.drive, guides=more))
 
-    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+    def signature(self, situation: Situation) -> Signature:
         """Return no change: nothing is below the guides that could measure it."""
         return {}

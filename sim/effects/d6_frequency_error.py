@@ -23,7 +23,7 @@ class FrequencyError(Effect):
 
     relative: float = parameter(1e-3, -0.02, 0.02, "1", "real over set frequency, less 1")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig whose drive turns at another speed than it is told."""
         ratio = (1.0 + rig.drive.speed_error) * (1.0 + self.relative)
         return replace(rig, drive=replace(rig.drive, speed_error=ratio - 1.0))

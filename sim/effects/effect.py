@@ -138,18 +138,18 @@ class Effect(ABC):
         For tests, documentation and display only: nothing that diagnoses uses it.
         """
 
-    def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:  # noqa: ARG002
+    def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:
         """Return the set-point that is really run; most effects leave it."""
         return set_point
 
-    def lines(self, situation: Situation) -> Lines:  # noqa: ARG002
+    def lines(self, situation: Situation) -> Lines:
         """Return what theory predicts beside the multiples of the shaft's frequency.
 
         Most effects repeat with the shaft and have no such lines.
         """
         return {}
 
-    def at_run(self, run: CampaignRun) -> Self:  # noqa: ARG002
+    def at_run(self, run: CampaignRun) -> Self:
         """Return the effect as it is during one run of a campaign; most are always the same.
 
         One that builds up or dies out over a campaign takes its own parameters for the time from

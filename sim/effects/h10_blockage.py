@@ -31,7 +31,7 @@ class Blockage(Effect):
         """Speed of the flow over the carriage's."""
         return blockage_speed_factor(self.section_ratio, 1.0)
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with a faster flow, on top of what the tank does already."""
         return replace(rig, flow_factor=rig.flow_factor * self.factor)
 

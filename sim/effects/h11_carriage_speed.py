@@ -27,7 +27,7 @@ class CarriageSpeedError(Effect):
 
     relative: float = parameter(0.003, -0.05, 0.05, "1", "d, relative to the speed")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this error on top of the carriage's own."""
         error = (1.0 + rig.carriage.speed_error) * (1.0 + self.relative) - 1.0
         return replace(rig, carriage=replace(rig.carriage, speed_error=error))

@@ -33,13 +33,13 @@ class CarriageFluctuation(Effect):
     frequency_hz: float = parameter(0.37, 0.005, 50.0, "Hz", "W/(2 pi)")
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "p, at the first sample")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this fluctuation beside those that the carriage has."""
         own = Fluctuation(self.relative, self.frequency_hz, self.phase_rad)
         carriage = replace(rig.carriage, fluctuations=(*rig.carriage.fluctuations, own))
         return replace(rig, carriage=carriage)
 
-    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+    def signature(self, situation: Situation) -> Signature:
         """Return nothing: it does not repeat with the shaft."""
         return {}
 

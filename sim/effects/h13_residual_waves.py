@@ -52,12 +52,12 @@ class ResidualWaves(Effect):
         waited = min(run.waited_s, LONGEST_WAIT_S)
         return replace(self, waited_s=waited, frequency_hz=run.before.frequency_hz)
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this force on the model's heave or sway."""
         tone = Tone(self.left_n, self.frequency_hz, self.phase_rad, self.decay_s)
         return with_laws(rig, (Point.TRANSLATION, tone))
 
-    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+    def signature(self, situation: Situation) -> Signature:
         """Return nothing: it does not repeat with the shaft."""
         return {}
 

@@ -34,7 +34,7 @@ class QuadraticDamping(Effect):
     )
     rotation_n_m_s2: float = parameter(50.0, 0.0, 10000.0, "N m s2", "of pitch or yaw")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s2_m2, self.rotation_n_m_s2)
         return with_laws(rig, *zip(POINTS, map(Quadratic, sizes), strict=True))

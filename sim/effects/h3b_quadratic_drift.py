@@ -37,7 +37,7 @@ class QuadraticDrift(Effect):
     )
     drift_m_s: float = parameter(0.01, -0.3, 0.3, "m/s", "v0, mean velocity across")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of heave or sway."""
         law = Quadratic(self.translation_n_s2_m2, self.drift_m_s)
         return with_laws(rig, (Point.THROUGH_WATER, law))

@@ -34,7 +34,7 @@ class CubicDamping(Effect):
     )
     rotation_n_m_s3: float = parameter(80.0, 0.0, 20000.0, "N m s3", "of pitch or yaw")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s3_m3, self.rotation_n_m_s3)
         return with_laws(rig, *zip(POINTS, map(Cubic, sizes), strict=True))

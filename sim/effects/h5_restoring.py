@@ -30,7 +30,7 @@ class NonlinearRestoring(Effect):
     k2_n_m2: float = parameter(5000.0, -1e5, 1e5, "N/m2", "quadratic part, in heave")
     k3_n_m3: float = parameter(50000.0, -2e6, 2e6, "N/m3", "cubic part, in heave")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with half of this restoring at each strut."""
         half = Spring(0.0, self.k2_n_m2 / 2.0, self.k3_n_m3 / 2.0)
         return with_laws(rig, *((point, half) for point in STRUTS))

@@ -29,7 +29,7 @@ class Memory(Effect):
     rotation_n_m_rad: float = parameter(60.0, 0.0, 20000.0, "N m/rad", "K of pitch or yaw")
     rate_1_s: float = parameter(5.0, 0.1, 100.0, "1/s", "beta, at which it fades")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this memory, one state for each motion, beside what its water has."""
         kernel = np.diag([self.translation_n_m, self.rotation_n_m_rad])
         fading = -self.rate_1_s * np.eye(2)

@@ -37,7 +37,7 @@ class TankWalls(Effect):
     strength: float = parameter(0.3, 0.0, 3.0, "1", "damping of a mode over open water's there")
     damping_ratio: float = parameter(0.02, 0.002, 0.3, "1", "of the modes")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the modes beside what its water remembers."""
         tank = Tank(self.breadth_m, self.depth_m, MODES, self.strength, self.damping_ratio)
         walls = with_walls(

@@ -32,7 +32,7 @@ class SurfaceSuction(Effect):
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
     rate_1_m: float = parameter(8.0, 0.5, 60.0, "1/m", "2 k: twice the wave number")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with half of the suction at each strut."""
         half = Exponential(self.suction_n_s2_m2 / 2.0, self.rate_1_m, reference_speed_m_s=1.0)
         return with_laws(rig, *((point, half) for point in STRUTS))

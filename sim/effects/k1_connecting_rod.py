@@ -29,7 +29,7 @@ class ConnectingRod(Effect):
         0.0, -0.05, 0.05, "m", "by how much the rod's guide misses the crank's centre"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this rod on both cranks."""
         aft, fore = (
             replace(one, rod_offset_m=one.rod_offset_m + self.rod_offset_m)

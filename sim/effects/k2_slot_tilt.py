@@ -26,7 +26,7 @@ class SlotTilt(Effect):
     tilt_aft_rad: float = parameter(0.005, -0.02, 0.02, "rad", "tilt of the aft strut's slot")
     tilt_fore_rad: float = parameter(0.0, -0.02, 0.02, "rad", "tilt of the fore strut's slot")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the slots tilted."""
         aft, fore = rig.linkage_aft, rig.linkage_fore
         return replace(

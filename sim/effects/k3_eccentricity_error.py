@@ -22,7 +22,7 @@ class EccentricityError(Effect):
     error_aft_m: float = parameter(1e-4, -1e-3, 1e-3, "m", "added to the aft strut's eccentricity")
     error_fore_m: float = parameter(0.0, -1e-3, 1e-3, "m", "added to the fore strut's eccentricity")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these errors in its settings."""
         aft, fore = rig.linkage_aft, rig.linkage_fore
         aft_m = aft.eccentricity_error_m + self.error_aft_m

@@ -25,7 +25,7 @@ class StrutPhaseError(Effect):
 
     error_rad: float = parameter(0.005, -0.02, 0.02, "rad", "added to the fore strut's phase")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this error in the fore strut's phase."""
         fore = rig.linkage_fore
         turned = replace(fore, phase_error_rad=fore.phase_error_rad + self.error_rad)

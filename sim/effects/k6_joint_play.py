@@ -29,7 +29,7 @@ class JointPlay(Effect):
 
     half_play_m: float = parameter(5e-5, 0.0, 1e-3, "m", "clearance to either side, h")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both struts."""
         aft, fore = (
             replace(one, half_play_m=one.half_play_m + self.half_play_m)

@@ -27,7 +27,7 @@ class GainError(Effect):
     aft: float = parameter(0.005, -0.05, 0.05, "1", "gain error of the aft dynamometer")
     fore: float = parameter(0.0, -0.05, 0.05, "1", "gain error of the fore dynamometer")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these gains on top of what the gauges have."""
         errors = (self.aft, self.fore)
         return with_gauges(rig, lambda one, i: replace(one, gain=one.gain * (1.0 + errors[i])))

@@ -27,7 +27,7 @@ class QuadraticGauge(Effect):
         2e-6, -1e-4, 1e-4, "1/N", "q of both gauges; 0.1 % of a full scale of 500 N is 2e-6"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this curvature on top of what the gauges have."""
         return with_gauges(
             rig, lambda one, _: replace(one, curvature_1_n=one.curvature_1_n + self.curvature_1_n)

@@ -31,7 +31,7 @@ class GaugeHysteresis(Effect):
         2e-6, 0.0, 1e-4, "1/N", "beta of both gauges; 0.05 % of a full scale of 500 N is 2e-6"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this loop on top of what the gauges have."""
         return with_gauges(
             rig, lambda one, _: replace(one, hysteresis_1_n=one.hysteresis_1_n + self.beta_1_n)

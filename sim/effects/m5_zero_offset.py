@@ -28,11 +28,11 @@ class ZeroOffset(Effect):
     aft_n: float = parameter(0.3, -5.0, 5.0, "N", "offset of the aft dynamometer")
     fore_n: float = parameter(0.0, -5.0, 5.0, "N", "offset of the fore dynamometer")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these offsets on top of what the gauges have."""
         offsets = (self.aft_n, self.fore_n)
         return with_gauges(rig, lambda one, i: replace(one, offset_n=one.offset_n + offsets[i]))
 
-    def signature(self, situation: Situation) -> Signature:  # noqa: ARG002
+    def signature(self, situation: Situation) -> Signature:
         """Return the offsets as means."""
         return at_struts(np.array([self.aft_n, self.fore_n]), 0, RECORDED_FORCES)

@@ -30,7 +30,7 @@ class ZeroDrift(Effect):
     aft_n_s: float = parameter(1e-3, -0.02, 0.02, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.02, 0.02, "N/s", "drift of the fore dynamometer")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these drifts on top of what the gauges have."""
         drifts = (self.aft_n_s, self.fore_n_s)
         return with_gauges(

@@ -29,7 +29,7 @@ class Saturation(Effect):
     upper_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest positive reading")
     lower_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest negative reading, its size")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these limits, or the narrower ones that the gauges have."""
 
         def limited(one: Gauge, _: int) -> Gauge:

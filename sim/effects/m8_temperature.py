@@ -50,7 +50,7 @@ class Temperature(Effect):
         """Return the effect at the run's time."""
         return replace(self, hours=run.since_start_s / SECONDS_AN_HOUR)
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig as it is when warm."""
         gain, zero = 1.0 + self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
 

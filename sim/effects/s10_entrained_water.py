@@ -28,7 +28,7 @@ class EntrainedWater(Effect):
     slosh_hz: float = parameter(1.2, 0.1, 10.0, "Hz", "frequency of its sloshing")
     damping_ratio: float = parameter(0.03, 0.001, 0.5, "1", "of its sloshing, to critical")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the sloshing as two more states of the water's memory.
 
         The force per velocity, m s (c s + k)/(m s^2 + c s + k), is c and a proper remainder.

@@ -29,7 +29,7 @@ class StrutTare(Effect):
     viscous_n_s_m: float = parameter(2.0, 0.0, 50.0, "N s/m", "linear drag of each strut")
     quadratic_n_s2_m2: float = parameter(5.0, 0.0, 200.0, "N s2/m2", "quadratic drag of each strut")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the struts' mass in the body, and their drag in water."""
         body, both = rig.body, 2.0 * self.mass_kg
         share = body.mass_kg / (body.mass_kg + both)

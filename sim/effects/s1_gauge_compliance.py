@@ -28,7 +28,7 @@ class GaugeCompliance(Effect):
     stiffness_n_m: float = parameter(5e5, 2e4, 1e8, "N/m", "stiffness of each strut and gauge")
     damping_n_s_m: float = parameter(200.0, 0.0, 5e3, "N s/m", "its damping")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig on these springs, in series with those that it has."""
         mounting = rig.mounting
         stiffness = in_series(mounting.gauge_stiffness_n_m, self.stiffness_n_m)

@@ -28,7 +28,7 @@ class FrameCompliance(Effect):
     mass_kg: float = parameter(500.0, 10.0, 5e3, "kg", "what of the frame moves")
     damping_n_s_m: float = parameter(2e3, 0.0, 1e5, "N s/m", "its damping")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig on this frame, in series with the stiffness that it has."""
         mounting = rig.mounting
         soft = replace(

@@ -29,7 +29,7 @@ class CoulombFriction(Effect):
 
     friction_n: float = parameter(0.3, 0.0, 5.0, "N", "friction force at each strut")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
         law = Coulomb(self.friction_n)
         added = (Acting(law, Point.AFT), Acting(law, Point.FORE))

@@ -32,7 +32,7 @@ class StribeckFriction(Effect):
         0.02, 0.001, 0.2, "m/s", "speed at which 1/e of the excess is left"
     )
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
         law = Stribeck(self.excess_n, self.stribeck_speed_m_s)
         added = (Acting(law, Point.AFT), Acting(law, Point.FORE))

@@ -34,7 +34,7 @@ class LoadDependentFriction(Effect):
     friction: float = parameter(0.02, 0.0, 0.3, "1", "coefficient of friction")
     side_load_n: float = parameter(0.0, -500.0, 500.0, "N", "steady load on the guide")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
         law = LoadFriction(self.friction, self.side_load_n)
         added = (Acting(law, Point.AFT), Acting(law, Point.FORE))

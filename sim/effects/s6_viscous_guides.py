@@ -22,7 +22,7 @@ class ViscousGuides(Effect):
 
     viscous_n_s_m: float = parameter(2.0, 0.0, 50.0, "N s/m", "at each strut")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
         law = Viscous(self.viscous_n_s_m)
         added = (Acting(law, Point.AFT), Acting(law, Point.FORE))

@@ -32,7 +32,7 @@ class Cable(Effect):
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")
     stiffness_n_m3: float = parameter(0.0, 0.0, 1e5, "N/m3", "stiffening")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the cable at the midpoint between the struts."""
         spring = Spring(
             self.stiffness_n_m, self.stiffness_n_m2, self.stiffness_n_m3, self.preload_n

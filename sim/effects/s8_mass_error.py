@@ -21,7 +21,7 @@ class MassError(Effect):
 
     relative: float = parameter(0.005, -0.05, 0.05, "1", "error relative to the model's mass")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the real mass; centre of gravity and inertia stay."""
         body = replace(rig.body, mass_kg=rig.body.mass_kg * (1.0 + self.relative))
         return replace(rig, body=body)

@@ -28,7 +28,7 @@ class InertiaError(Effect):
     cg_x_m: float = parameter(0.002, -0.02, 0.02, "m", "centre of gravity too far forward by")
     cg_z_m: float = parameter(0.002, -0.02, 0.02, "m", "centre of gravity too low by")
 
-    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:  # noqa: ARG002
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the real inertia and centre of gravity."""
         body = replace(
             rig.body,

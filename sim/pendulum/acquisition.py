@@ -39,7 +39,7 @@ class SampledSensors:
         """The recorded channels."""
         return tuple(recorded(sensor.channel) for sensor in self.sensors)
 
-    def start(self, sample_rate_hz: float, seed: int) -> tuple[NoiseState, ...]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[NoiseState, ...]:
         """Return the beginning of each channel's own noise."""
         return tuple(start_stream(seed, self.name, one.channel.name) for one in self.sensors)
 

@@ -106,7 +106,7 @@ class FreeBody:
         moved = tuple(one.displacement for one in every) + tuple(one.rate for one in every)
         return moved + tuple(one.acceleration for one in every)
 
-    def start(self, sample_rate_hz: float, seed: int) -> BodyState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> BodyState:
         """Return a body at rest, not yet let go."""
         n = len(self.body.coordinates)
         return BodyState((0.0,) * (2 * n), (0.0,) * n, free=False)

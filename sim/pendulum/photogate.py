@@ -96,7 +96,7 @@ class Photogate:
         """The edges."""
         return (self.edge_time, self.blocked)
 
-    def start(self, sample_rate_hz: float, seed: int) -> PhotogateState:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> PhotogateState:
         """Return the state before the first sample."""
         chance, jitter = (start_stream(seed, self.name, of) for of in ("chance", "jitter"))
         return PhotogateState(None, missing=False, chance=chance, jitter=jitter)

@@ -59,7 +59,7 @@ class Release:
         held = tuple(one.held for one in self.coordinates)
         return (RELEASE_HOLD, *held, *(one.kick for one in self.coordinates))
 
-    def start(self, sample_rate_hz: float, seed: int) -> tuple[float, ...]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[float, ...]:
         """Return this run's displacements and rates."""
         n = len(self.coordinates)
         _, draws = draw_normal(start_stream(seed, self.name), 2 * n)
@@ -72,7 +72,7 @@ class Release:
         self,
         state: tuple[float, ...],
         block: Block,
-        inputs: Signals,  # noqa: ARG002
+        inputs: Signals,
     ) -> tuple[tuple[float, ...], Signals]:
         """Return the same for every sample but the hold, which ends."""
         # half a part in 1e9 of a sample: a whole number of samples stays one

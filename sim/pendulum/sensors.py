@@ -93,7 +93,7 @@ class Sensors:
         """One signal per instrument."""
         return tuple(sensor.signal for sensor in self.sensors)
 
-    def start(self, sample_rate_hz: float, seed: int) -> tuple[SensorState, ...]:  # noqa: ARG002
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[SensorState, ...]:
         """Return settled instruments with this run's zeros."""
         return tuple(SensorState(_zero(one, self.name, seed), 0.0, None) for one in self.sensors)
 

@@ -30,7 +30,7 @@ class Settings:
 class TextAmplifier:
     """A :class:`hardware.roles.ForceChannels`; its samples carry their own numbers."""
 
-    def __init__(self, name: str, settings: Settings, services: Services) -> None:  # noqa: ARG002
+    def __init__(self, name: str, settings: Settings, services: Services) -> None:
         self.name = name
         self.sample_rate_hz = settings.sample_rate_hz
         self.channels = tuple(Channel(one, "N", settings.full_scale_n) for one in settings.names)
@@ -44,7 +44,7 @@ class TextAmplifier:
         """Start the samples."""
         self._port.write(b"R%d\n" % round(self.sample_rate_hz))
 
-    def tick(self, cycle: Cycle) -> None:  # noqa: ARG002
+    def tick(self, cycle: Cycle) -> None:
         """Take the lines of the cycle; say an overload once."""
         overloaded = self._overloaded
         for raw in self._port.lines():
