@@ -12,7 +12,7 @@ from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.campaign import Campaign, Run
 from pmm.report.labels import display, plain
-from pmm.report.style import PALETTE, TRACE, drawing, render
+from pmm.report.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
@@ -225,14 +225,8 @@ def save_chain_figure(
     list of Path
         The files written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     figure = run_figure(campaign, run, effects, seed)
-    written = []
-    for suffix in ("svg", "png"):
-        path = folder / f"{run.name}-chain.{suffix}"
-        path.write_bytes(render(figure, suffix, f"{run.name}-chain"))
-        written.append(path)
-    return written
+    return write_figure(figure, folder, f"{run.name}-chain")
 
 
 def run_figure(campaign: Campaign, run: Run, effects: Sequence[Effect], seed: int) -> "Figure":

@@ -18,7 +18,7 @@ from pmm.report.inertia_line import line_figure
 from pmm.report.inertia_record import record_figure
 from pmm.report.inertia_spectrum import spectrum_figure
 from pmm.report.inertia_static import static_figure
-from pmm.report.style import render
+from pmm.report.style import write_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,14 +48,9 @@ def save_figures(
     ConfigurationError
         If a format is not known.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     written = []
     for kind, draw in _figures(outcome):
-        figure, name = draw(), f"{stem}-{kind}"
-        for suffix in formats:
-            path = folder / f"{name}.{suffix}"
-            path.write_bytes(render(figure, suffix, name))
-            written.append(path)
+        written += write_figure(draw(), folder, f"{stem}-{kind}", formats)
     return written
 
 

@@ -13,7 +13,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.report.gate import gate_figure
 from pmm.report.phasors import phasor_figure
 from pmm.report.spectrum import spectrum_figure
-from pmm.report.style import render
+from pmm.report.style import write_figure
 
 __all__ = ["FIGURES", "gate_figure", "phasor_figure", "save_figures", "spectrum_figure"]
 
@@ -46,12 +46,7 @@ def save_figures(
     """
     if not stem or Path(stem).name != stem:
         raise ConfigurationError(f"figures cannot be named {stem!r}; give a name without a folder")
-    folder.mkdir(parents=True, exist_ok=True)
     written = []
     for kind, draw in FIGURES.items():
-        figure = draw(analysis)
-        for suffix in formats:
-            path = folder / f"{stem}-{kind}.{suffix}"
-            path.write_bytes(render(figure, suffix, f"{stem}-{kind}"))
-            written.append(path)
+        written += write_figure(draw(analysis), folder, f"{stem}-{kind}", formats)
     return written

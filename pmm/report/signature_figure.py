@@ -10,7 +10,7 @@ import numpy as np
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.report.labels import display, shown_name
-from pmm.report.style import PALETTE, drawing, render
+from pmm.report.style import PALETTE, drawing, write_figure
 from sim.effects.agreement import phasor
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
@@ -217,10 +217,4 @@ def save_signature_figure(
         for one in effect.parameters()
     )
     figure = signature_figure(effect, grid, values)
-    folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for suffix in ("svg", "png"):
-        path = folder / f"{effect.name}-signature.{suffix}"
-        path.write_bytes(render(figure, suffix, f"{effect.name}-signature"))
-        written.append(path)
-    return written
+    return write_figure(figure, folder, f"{effect.name}-signature")

@@ -2,9 +2,10 @@
 
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hardware.description.errors import ConfigurationError
@@ -92,6 +93,23 @@ def render(figure: "Figure", kind: str, salt: str) -> bytes:
         mpl.rcParams["svg.hashsalt"] = salt
         figure.savefig(written, format=kind, metadata=_NO_DATES[kind])
     return compact(written.getvalue()) if kind == "svg" else written.getvalue()
+
+
+def write_figure(
+    figure: "Figure", folder: Path, name: str, formats: Sequence[str] = ("svg", "png")
+) -> list[Path]:
+    """Write a figure as ``<name>.<format>`` and return the files; the folder is made.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`render`.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.{suffix}" for suffix in formats]
+    for path, suffix in zip(paths, formats, strict=True):
+        path.write_bytes(render(figure, suffix, name))
+    return paths
 
 
 def compact(svg: bytes) -> bytes:
