@@ -1,0 +1,136 @@
+"""One run of a plan, with all defaults resolved."""
+
+import json
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+
+from hardware.description.setpoint import SetPoint
+from pmm.plan.kinds import Motion, RunKind
+
+
+class LoadDirection(StrEnum):
+    """Whether a load step was reached by adding or by taking off: it shows hysteresis."""
+
+    UP = "up"
+    DOWN = "down"
+
+
+@dataclass(frozen=True, slots=True)
+class LoadStep:
+    """A known load on one gauge: a check weight, or about what a push by hand is.
+
+    Attributes
+    ----------
+    channel
+        The gauge that is loaded, by its channel's name; the others show the cross-talk.
+    force_n
+        The load in newtons with the channel's sign, 0 for the empty gauge.
+    direction
+        How the step was reached.
+    """
+
+    channel: str
+    force_n: float
+    direction: LoadDirection = LoadDirection.UP
+
+
+@dataclass(frozen=True, slots=True)
+class KnownMass:
+    """A mass added to the model for a run in air.
+
+    Attributes
+    ----------
+    mass_kg
+        What is added.
+    x_m
+        Where its centre lies, forward of the midpoint between the struts.
+    inertia_kg_m2
+        About its own centre.
+    """
+
+    mass_kg: float
+    x_m: float = 0.0
+    inertia_kg_m2: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class RunPlan:
+    """One run.
+
+    Attributes
+    ----------
+    name
+        Unique within the plan; the run's folder and recording are named by it.
+    kind, motion
+        What the run is for, and how the model moves.
+    set_point
+        Frequency (0 for a run at rest), eccentricity (**amplitude** of each strut, half its
+        stroke), strut phase, carriage speed and medium.
+    drift_rad
+        Steady drift angle of the model to the tow, positive for the bow to starboard.
+    periods
+        Periods of the gate; 0 for a run at rest. With a target, the fewest.
+    settling_periods
+        Periods after the run-up and before the gate may open.
+    duration_s
+        How long a run at rest is recorded; 0 for an oscillation.
+    pause_before_s
+        Wait for calm water before the run.
+    repeat
+        Which repeat of its condition this is, from 1.
+    target_relative
+        Stop when the 95 % half-width of the first harmonic of every force channel is below this
+        part of its size; ``None`` to run the periods that are planned.
+    max_periods
+        Where a run with a target ends at the latest; equals ``periods`` without one.
+    load, known_mass
+        Of check weights and pushes, and of the run with a known mass.
+    prompts
+        What the operator is to do and confirm before the run, one after the other.
+    zero_before, zero_after
+        Names of the runs that tell the gauges' zero before and after; empty where there is none.
+    entry
+        Name of the plan's entry that the run comes from.
+    """
+
+    name: str
+    kind: RunKind
+    motion: Motion
+    set_point: SetPoint
+    drift_rad: float = 0.0
+    periods: int = 0
+    settling_periods: int = 0
+    duration_s: float = 0.0
+    pause_before_s: float = 0.0
+    repeat: int = 1
+    target_relative: float | None = None
+    max_periods: int = 0
+    load: LoadStep | None = None
+    known_mass: KnownMass | None = None
+    prompts: tuple[str, ...] = ()
+    zero_before: str = ""
+    zero_after: str = ""
+    entry: str = ""
+
+    @property
+    def oscillates(self) -> bool:
+        """Whether the shaft turns in this run."""
+        return self.set_point.frequency_hz > 0.0
+
+    @property
+    def measured_s(self) -> float:
+        """Longest time that is measured, in seconds: the periods at most, or the duration."""
+        if not self.oscillates:
+            return self.duration_s
+        return self.max_periods / self.set_point.frequency_hz
+
+    @property
+    def moving_s(self) -> float:
+        """Longest time at speed: settling, one period to find the pulse, and what is measured."""
+        if not self.oscillates:
+            return self.duration_s
+        return self.measured_s + (self.settling_periods + 1) / self.set_point.frequency_hz
+
+    def to_json(self) -> str:
+        """Return the run as a JSON document, to be kept with its recording."""
+        return json.dumps(asdict(self))
