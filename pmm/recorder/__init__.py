@@ -1,0 +1,1 @@
+"""What happens in a run is on the disk within a second: journals, completion marker, recovery."""
