@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from hardware.demand import Demand
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
@@ -28,9 +29,9 @@ class Question:
         """Whether an answer is waited for."""
         return self._text is not None
 
-    def ask(self, text: str) -> None:
-        """Begin to ask."""
-        self._text = text
+    def ask(self, text: str, wanted: float | None = None, per_unit: float = 1.0) -> None:
+        """Begin to ask; ``wanted`` is the value asked for, ``per_unit`` divisions of the dial."""
+        self._text = Demand(text, self._name, wanted, per_unit)
 
     def withdraw(self) -> None:
         """Wait for no answer any more."""
@@ -191,7 +192,8 @@ class ManualAxis:
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it first")
         self.settled = False
-        self._question.ask(f"{text} [{self._settings.dial_unit}]")
+        one = self._settings
+        self._question.ask(f"{text} [{one.dial_unit}]", self._target, one.dial_per_unit)
 
     def _take(self, dial: float) -> None:
         value = dial / self._settings.dial_per_unit

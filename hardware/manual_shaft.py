@@ -68,13 +68,14 @@ class ManualShaft:
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it before it turns")
         self._wanted_hz = frequency_hz
-        self._question.ask(f"{self.name}: set {frequency_hz:g} Hz and read the speed [Hz]")
+        text = f"{self.name}: set {frequency_hz:g} Hz and read the speed [Hz]"
+        self._question.ask(text, frequency_hz)
 
     def stop(self) -> None:
         """Ask the operator to stop the shaft, unless it stands."""
         self._wanted_hz = 0.0
         if self.moving:
-            self._question.ask(f"{self.name}: stop the shaft, then enter 0 [Hz]")
+            self._question.ask(f"{self.name}: stop the shaft, then enter 0 [Hz]", 0.0)
 
     def quick_stop(self) -> None:
         """Ask for a stop: a hand-set shaft has no other way than its emergency stop."""
@@ -98,7 +99,8 @@ class ManualShaft:
         self.measured_frequency_hz = abs(answer)
         wanted = self._wanted_hz
         if abs(answer - wanted) > self._tolerance_share * wanted:
-            self._question.ask(f"{self.name}: set {wanted:g} Hz and read the speed [Hz]")
+            text = f"{self.name}: set {wanted:g} Hz and read the speed [Hz]"
+            self._question.ask(text, wanted)
             raise DialReadingError(
                 self.name,
                 f"reads {answer:g} Hz; wanted {wanted:g} Hz within {self._tolerance_share:.0%}",

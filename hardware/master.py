@@ -15,6 +15,7 @@ from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
 
 Clock = Callable[[], float]
 Observer = Callable[[can.Message], None]
+Prompt = Callable[[str], str | None]
 _NMT, _SYNC, _EMCY, _HEARTBEAT = 0x000, 0x080, 0x080, 0x700
 _START, _PRE_OPERATIONAL = 0x01, 0x80
 _REPEAT_CYCLES: Final = 10  # RPDOs go out when they change, and again so often
@@ -74,6 +75,11 @@ class Master:
         self._missing = 0
         beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
         self._beat_every = max(1, int(beat_cycles))
+
+    @property
+    def operator(self) -> Callable[[Prompt], Prompt] | None:
+        """What the bus knows of an operator: a simulated rig's does with its own hands."""
+        return getattr(self._bus, "operator", None)
 
     def add(
         self,

@@ -48,6 +48,8 @@ class Rig:
         The devices by role, behind the interlock; absent ones are ``None``.
     faults
         What is latched: nothing moves before :meth:`reset`.
+    prompt
+        How the operator is asked; on a simulated rig by way of its simulated operator.
 
     Raises
     ------
@@ -76,6 +78,9 @@ class Rig:
         try:
             if configuration.bus is not None:
                 self.master = Master(configuration.bus, clock, observers)
+            operator = self.master.operator if self.master is not None else None
+            prompt = operator(prompt) if operator is not None else prompt
+            self.prompt = prompt
             self._open(Services(clock, prompt, configuration.sample_rate_hz, self.master))
         except BaseException:
             self.close()

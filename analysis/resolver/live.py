@@ -144,6 +144,14 @@ class LiveResolver:
         """Return the readings that still waited for samples beyond their edge, at a run's end."""
         return self._close_periods(reach=0)
 
+    def so_far(self) -> Harmonics | None:
+        """Return the reading over the finished periods of a gate that may not be full yet.
+
+        For a gate that ends when its uncertainty is small enough; ``None`` before the first whole
+        period and while every one has missing samples.
+        """
+        return self._read() if self._any_sound() else None
+
     def provisional(self) -> Provisional | None:
         """Return the needles as they stand: the last gate and what has come of the next period.
 

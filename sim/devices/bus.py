@@ -5,6 +5,8 @@ from collections import deque
 
 import can
 
+from hardware.driver import Prompt
+from sim.devices.operator import SimulatedOperator
 from sim.devices.registry import give_back, take
 
 
@@ -35,6 +37,10 @@ class SimulatedBus(can.BusABC):
     def state(self) -> can.BusState:
         """Whether the controller is in order."""
         return can.BusState.ERROR if self._world.bus_off else can.BusState.ACTIVE
+
+    def operator(self, person: Prompt) -> Prompt:
+        """Return who does by hand what a rig asks for; ``person`` is asked about dials first."""
+        return SimulatedOperator(self._world, person)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Send a frame; the nodes answer at once.

@@ -81,6 +81,7 @@ class Plant:
         self.profile = SpeedProfile()
         self.blocks = 0
         self._rig, self._around = rig, around
+        self._body = rig.body
         self._linkage = (eccentricity_m, strut_phase_rad)
         self._size, self._changed = 1, False
         chain = self._chain()
@@ -132,6 +133,31 @@ class Plant:
             phase if strut_phase_rad is None else strut_phase_rad,
         )
         self._changed = self._changed or self._linkage != before
+
+    @property
+    def linkage(self) -> tuple[float, float]:
+        """Eccentricity in metres and strut phase in radians, as they are set."""
+        return self._linkage
+
+    def surround(
+        self, carriage_speed_m_s: float | None = None, medium: Medium | None = None
+    ) -> None:
+        """Tow at another speed, or put the model into another medium, from the next sample on."""
+        before, one = self._around, self._around
+        self._around = replace(
+            one,
+            carriage_speed_m_s=(
+                one.carriage_speed_m_s if carriage_speed_m_s is None else carriage_speed_m_s
+            ),
+            medium=one.medium if medium is None else medium,
+        )
+        self._changed = self._changed or self._around != before
+
+    def load(self, mass_kg: float) -> None:
+        """Let the model carry a mass at the midpoint between the struts besides its own."""
+        body = replace(self._body, mass_kg=self._body.mass_kg + mass_kg)
+        self._changed = self._changed or body != self._rig.body
+        self._rig = replace(self._rig, body=body)
 
     def advance(self) -> None:
         """Go on to the next sample."""

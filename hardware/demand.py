@@ -1,0 +1,42 @@
+"""A question to the operator that also says in numbers what it asks for.
+
+A person reads the text. An operator that is a program (that of a simulated rig) reads the rest, so
+that no program has to understand sentences.
+"""
+
+
+class Demand(str):
+    """A question with what is to be done.
+
+    Attributes
+    ----------
+    part
+        What is to be changed: an axis by its name, ``"carriage"``, ``"medium"``, ``"mass"``, or
+        ``"load"`` of the channel in :attr:`channel`.
+    value
+        The wanted value in SI units (a word for the medium); ``None`` where something is read only.
+    per_unit
+        Divisions of the answer per SI unit: 1000 where millimetres are read off a dial.
+    channel
+        The gauge that a load is for.
+    """
+
+    __slots__ = ("channel", "part", "per_unit", "value")
+
+    part: str
+    value: float | str | None
+    per_unit: float
+    channel: str
+
+    def __new__(
+        cls,
+        text: str,
+        part: str,
+        value: float | str | None = None,
+        per_unit: float = 1.0,
+        channel: str = "",
+    ) -> "Demand":
+        """Make a question from its text and what it asks for."""
+        made = super().__new__(cls, text)
+        made.part, made.value, made.per_unit, made.channel = part, value, per_unit, channel
+        return made
