@@ -3,20 +3,18 @@
 import math
 from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import asdict, replace
-from difflib import get_close_matches
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from analysis.readers import ColumnMap
 from hardware.description.errors import ConfigurationError
-from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
+from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign import Campaign, Run
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.model_uncertainty import take_uncertainty
-
-PRESETS = {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
+from pmm.oscillator_table import expand_preset
 
 # Key for people -> key in SI, and the factor between.
 _UNITS = {
@@ -46,7 +44,7 @@ def read_campaign(path: str | Path) -> Campaign:
     uncertainty = take_uncertainty(table, faults)
     faults += limit_faults(table)
     columns = _take_columns(table, path, faults)
-    _expand_preset(table, faults)
+    expand_preset(table, faults)
     _expand_units(table, faults)
     _none_for_false(table)
     campaign = validate(Campaign, table, faults, _EXTRA_KEYS)
@@ -75,19 +73,6 @@ def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> Col
     except ConfigurationError as error:
         faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
         return None
-
-
-def _expand_preset(table: dict[str, Any], faults: list[Fault]) -> None:
-    """Fill in the oscillator that a preset stands for; the keys beside it win."""
-    oscillator = table.get("oscillator")
-    if not isinstance(oscillator, dict) or "preset" not in oscillator:
-        return
-    preset = oscillator.pop("preset")
-    if preset not in PRESETS:
-        names = " or ".join(PRESETS)
-        faults.append(Fault(("oscillator", "preset"), f"= {preset!r} should be {names}"))
-        preset = get_close_matches(str(preset), PRESETS, n=1, cutoff=0.0)[0]
-    table["oscillator"] = asdict(PRESETS[preset]) | oscillator
 
 
 def _expand_units(table: dict[str, Any], faults: list[Fault]) -> None:

@@ -78,7 +78,7 @@ def validate(
             if one["type"] == "unexpected_keyword_argument":
                 table_name = next((key for key in place if isinstance(key, str)), "")
                 extra = extra_keys.get(table_name, ()) if len(place) > 1 else ()
-                faults.append(Fault(place, _unknown(place, (*where.known, *extra))))
+                faults.append(Fault(place, unknown(place, (*where.known, *extra))))
             elif one["type"] == "missing":
                 faults.append(Fault(place, "is missing"))
             else:
@@ -110,7 +110,8 @@ def _short(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _unknown(place: Place, known: Sequence[str]) -> str:
+def unknown(place: Place, known: Sequence[str]) -> str:
+    """Say that a key is not known, and which one may be meant."""
     near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
     return f"is not a known key; {hint}"
