@@ -1,0 +1,162 @@
+"""What a campaign's result is made of, row by row: plain frozen records that a file can hold."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What one value of a campaign's table is, and what it holds for.
+
+    Attributes
+    ----------
+    name
+        Of the coefficient: ``a33``, ``Z_wdot``, ``Y_vvv``, ``X_rr`` ...
+    method
+        How it was had: :data:`LINEAR`, :data:`ZERO_FREQUENCY`, or what
+        :mod:`analysis.coefficients.cycle_fit` calls its own.
+    frequency_hz
+        0 for static runs and for what was extrapolated to zero frequency; NaN where several
+        frequencies share the value.
+    translation_amplitude_m, rotation_amplitude_rad
+        Largest of the runs (amplitudes, not strokes).
+    retained
+        Part of the load that the coefficient stands for over the largest part that it is left from;
+        below 0.1 digits are lost. NaN where nothing is taken off.
+    misfit
+        Residual over what scatter leads to expect; NaN without any left over.
+    """
+
+    name: str
+    unit: str
+    method: str
+    frequency_hz: float
+    speed_m_s: float
+    translation_amplitude_m: float
+    rotation_amplitude_rad: float
+    runs: tuple[str, ...]
+    retained: float
+    misfit: float
+
+
+LINEAR = "linear"
+ZERO_FREQUENCY = "zero frequency"
+
+
+@dataclass(frozen=True)
+class Check:
+    """One quantity from two ways.
+
+    Attributes
+    ----------
+    kind
+        ``"two tests"``, ``"static drift"``, ``"restoring"``, ``"single and multiple runs"``.
+    first, second
+        Where the two values come from.
+    difference, standard_uncertainty, degrees_of_freedom
+        First less second, with what both share left out of its uncertainty.
+    agrees
+        Whether the difference lies within its interval.
+    """
+
+    kind: str
+    name: str
+    unit: str
+    first: str
+    second: str
+    first_value: float
+    second_value: float
+    difference: float
+    standard_uncertainty: float
+    degrees_of_freedom: float
+    agrees: bool
+    message: str
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """A repeat that stands off from its kind.
+
+    Attributes
+    ----------
+    ratio
+        Distance from the others over its standard uncertainty.
+    limit
+        What one run in a hundred such campaigns would exceed by chance.
+    """
+
+    run: str
+    others: tuple[str, ...]
+    load: str
+    ratio: float
+    limit: float
+    message: str
+
+
+@dataclass(frozen=True)
+class FormChoice:
+    """Which non-linear form the data support.
+
+    Attributes
+    ----------
+    load
+        ``force`` or ``moment``.
+    forms
+        Those compared, best first.
+    parameters, chi_square, aicc, weights
+        Of each form: number of coefficients, weighted squares of the residuals (not over-
+        dispersed: see ``dispersion``), Akaike's criterion for few data, and its weight.
+    dispersion
+        Squares left over by the richest form for each degree of freedom, at least 1: the others'
+        are divided by it, so that a model that fits nowhere does not seem to decide.
+    verdict
+        A form, or ``"not separable"``.
+    evidence_ratio
+        Of the best form over the next that is not contained in the verdict.
+    """
+
+    load: str
+    runs: tuple[str, ...]
+    forms: tuple[str, ...]
+    parameters: tuple[int, ...]
+    chi_square: tuple[float, ...]
+    aicc: tuple[float, ...]
+    weights: tuple[float, ...]
+    dispersion: float
+    verdict: str
+    evidence_ratio: float
+    message: str
+
+
+@dataclass(frozen=True)
+class Missing:
+    """What was asked for, or would be expected, and cannot be had from these runs."""
+
+    name: str
+    message: str
+
+
+@dataclass(frozen=True)
+class ReferenceRow:
+    """A value beside that of a reference table.
+
+    Attributes
+    ----------
+    reference
+        Name of the table: strip theory, a panel method, CFD.
+    difference
+        Measured less reference.
+    within
+        Whether the reference lies within the measured interval, widened by ``allowance``.
+    """
+
+    name: str
+    unit: str
+    frequency_hz: float
+    speed_m_s: float
+    reference: str
+    measured: float
+    half_width: float
+    expected: float
+    difference: float
+    allowance: float
+    within: bool

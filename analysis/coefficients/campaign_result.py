@@ -1,0 +1,195 @@
+"""The coefficients of a whole campaign, with all that was found on the way; kept as data."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import (
+    Check,
+    Entry,
+    FormChoice,
+    Missing,
+    Outlier,
+    ReferenceRow,
+)
+from analysis.coefficients.names import Form
+from analysis.uncertainty import FloatArray, UncertainValues
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag
+from hardware.description.oscillator import Plane
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, eq=False)
+class TrialColumns:
+    """What a Monte Carlo gave beside the linear budget, by entry; NaN where none was drawn.
+
+    Attributes
+    ----------
+    count
+        Trials; 0 for none at all.
+    standard_uncertainty, low, high
+        Standard deviation and ends of the symmetric interval, shape ``(n,)``.
+    """
+
+    count: int
+    standard_uncertainty: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def no_trials(size: int) -> TrialColumns:
+    """Return the columns of a campaign without Monte Carlo."""
+    return TrialColumns(0, *(np.full(size, np.nan) for _ in range(3)))
+
+
+@dataclass(frozen=True, eq=False)
+class CampaignCoefficients:
+    """All coefficients of a campaign: one table over frequency, speed, amplitude and method.
+
+    Attributes
+    ----------
+    form, plane
+        Of all names.
+    normalisation
+        The system of all values; every table has to name it.
+    level
+        Of the intervals.
+    entries
+        What each value is, n of them; a name stands more than once.
+    uncertain
+        The n values with every input's contribution: correlations between all of them are kept.
+    trials
+        The Monte Carlo beside it.
+    choices, checks, outliers, missing, references, flags
+        What was found: forms that the data support, consistency between runs, repeats that stand
+        off, what cannot be had, a reference table beside the values, and what was noticed.
+    """
+
+    form: Form
+    plane: Plane
+    normalisation: str
+    level: float
+    entries: tuple[Entry, ...]
+    uncertain: UncertainValues
+    trials: TrialColumns
+    choices: tuple[FormChoice, ...] = ()
+    checks: tuple[Check, ...] = ()
+    outliers: tuple[Outlier, ...] = ()
+    missing: tuple[Missing, ...] = ()
+    references: tuple[ReferenceRow, ...] = ()
+    flags: tuple[Flag, ...] = ()
+
+    @property
+    def values(self) -> FloatArray:
+        """Of all entries, shape ``(n,)``, in the entries' units."""
+        return self.uncertain.values
+
+    @property
+    def half_widths(self) -> FloatArray:
+        """Of the intervals of all entries, shape ``(n,)``."""
+        return self.uncertain.half_width(self.level)
+
+    def rows(
+        self, name: str | None = None, *, method: str | None = None, speed_m_s: float | None = None
+    ) -> list[int]:
+        """Return the places of entries, in order of frequency and then amplitude.
+
+        Parameters
+        ----------
+        name, method, speed_m_s
+            Those wanted; all where ``None``.
+        """
+
+        def wanted(entry: Entry) -> bool:
+            return (
+                name in (None, entry.name)
+                and method in (None, entry.method)
+                and speed_m_s in (None, entry.speed_m_s)
+            )
+
+        found = [k for k, entry in enumerate(self.entries) if wanted(entry)]
+        return sorted(found, key=lambda k: _order(self.entries[k]))
+
+    def row(self, name: str, *, method: str | None = None) -> int:
+        """Return the place of a coefficient that stands once.
+
+        Raises
+        ------
+        DataError
+            If there is none, or more than one; the message says which there are.
+        """
+        found = self.rows(name, method=method)
+        if len(found) != 1:
+            known = ", ".join(dict.fromkeys(entry.name for entry in self.entries))
+            why = "; ".join(one.message for one in self.missing if one.name == name)
+            raise DataError(
+                f"{name} stands {len(found)} times in the campaign's table (there are: {known})"
+                + (f": {why}" if why else "")
+            )
+        return found[0]
+
+    def table(self) -> Iterator[Mapping[str, Any]]:
+        """Yield a row per entry: the entry's own, value, uncertainty, interval, Monte Carlo."""
+        spread, freedom = self.uncertain.standard_uncertainty, self.uncertain.degrees_of_freedom
+        half = self.half_widths
+        for k, entry in enumerate(self.entries):
+            yield {
+                "name": entry.name,
+                "unit": entry.unit,
+                "method": entry.method,
+                "frequency_hz": entry.frequency_hz,
+                "speed_m_s": entry.speed_m_s,
+                "translation_amplitude_m": entry.translation_amplitude_m,
+                "rotation_amplitude_rad": entry.rotation_amplitude_rad,
+                "runs": entry.runs,
+                "value": float(self.values[k]),
+                "standard_uncertainty": float(spread[k]),
+                "half_width": float(half[k]),
+                "degrees_of_freedom": float(freedom[k]),
+                "trials_low": float(self.trials.low[k]),
+                "trials_high": float(self.trials.high[k]),
+                "retained": entry.retained,
+                "misfit": entry.misfit,
+            }
+
+    def shares(self, row: int) -> Mapping[str, float]:
+        """Return what part of one value's variance each input has, largest first."""
+        return self.uncertain.shares(row)
+
+    def taken(self, rows: Sequence[int]) -> "CampaignCoefficients":
+        """Return some of the entries, with all that was found."""
+        chosen = list(rows)
+        trials = self.trials
+        return replace(
+            self,
+            entries=tuple(self.entries[k] for k in chosen),
+            uncertain=self.uncertain.taken(chosen),
+            trials=TrialColumns(
+                trials.count,
+                trials.standard_uncertainty[chosen],
+                trials.low[chosen],
+                trials.high[chosen],
+            ),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as JSON can hold it (see :mod:`analysis.coefficients.exchange`)."""
+        from analysis.coefficients.exchange import to_dict
+
+        return to_dict(self)
+
+    def to_dataset(self) -> "xr.Dataset":
+        """Return all of it as NetCDF can hold it (see :mod:`analysis.coefficients.exchange`)."""
+        from analysis.coefficients.exchange import to_dataset
+
+        return to_dataset(self)
+
+
+def _order(entry: Entry) -> tuple[float, float, float]:
+    frequency = -1.0 if np.isnan(entry.frequency_hz) else entry.frequency_hz
+    return (entry.speed_m_s, frequency, entry.translation_amplitude_m)

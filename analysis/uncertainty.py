@@ -1,0 +1,222 @@
+"""Numbers whose uncertainties have common causes: values, and what each input adds to them.
+
+A budget of one number forgets what it shares with the next. Here every input (a run's scatter, the
+mass, the speed) keeps its own columns through all that follows, so that a difference of two
+coefficients, or a curve through many, knows what cancels. All is linear; GTC makes the same numbers
+of it (:meth:`UncertainValues.gtc_numbers`), and Monte Carlo stands beside it where it is made.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.errors import ConfigurationError
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Contribution:
+    """What one input adds to some of the values.
+
+    Attributes
+    ----------
+    label
+        The input. Contributions with the same label are of the same deviates, wherever they stand.
+    degrees_of_freedom
+        Of the input's standard uncertainty; infinite where it is stated.
+    rows
+        Which values, shape ``(r,)``, each once.
+    parts
+        Change of these values per standard deviation of each of k independent deviates, shape
+        ``(r, k)``, in the values' units.
+    """
+
+    label: str
+    degrees_of_freedom: float
+    rows: IntArray
+    parts: FloatArray
+
+    def dense(self, size: int) -> FloatArray:
+        """Return the parts of all values, shape ``(size, k)``."""
+        found = np.zeros((size, self.parts.shape[1]))
+        found[self.rows] = self.parts
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class UncertainValues:
+    """Values with all that is uncertain in them.
+
+    Attributes
+    ----------
+    values
+        Shape ``(n,)``.
+    contributions
+        One per input, with labels that differ.
+    """
+
+    values: FloatArray
+    contributions: tuple[Contribution, ...] = ()
+
+    def __len__(self) -> int:
+        """Return the number of values."""
+        return len(self.values)
+
+    def covariance(self, rows: Sequence[int] | None = None) -> FloatArray:
+        """Return the covariance of all values, or of some, shape ``(n, n)``."""
+        chosen = self if rows is None else self.taken(rows)
+        size = len(chosen)
+        total = np.zeros((size, size))
+        for one in chosen.contributions:
+            total[np.ix_(one.rows, one.rows)] += one.parts @ one.parts.T
+        return total
+
+    def variances(self) -> FloatArray:
+        """Return each input's part of each variance, shape ``(inputs, n)``."""
+        found = np.zeros((len(self.contributions), len(self)))
+        for k, one in enumerate(self.contributions):
+            found[k, one.rows] = (one.parts**2).sum(axis=1)
+        return found
+
+    @property
+    def standard_uncertainty(self) -> FloatArray:
+        """One standard deviation of each, shape ``(n,)``."""
+        return np.asarray(np.sqrt(self.variances().sum(axis=0)))
+
+    @property
+    def degrees_of_freedom(self) -> FloatArray:
+        """Effective degrees of freedom (Welch and Satterthwaite), shape ``(n,)``."""
+        by_input = self.variances()
+        freedom = np.array([one.degrees_of_freedom for one in self.contributions])
+        known = np.where(freedom > 0.0, freedom, np.inf)
+        loss = (by_input**2 / known[:, None]).sum(axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = by_input.sum(axis=0) ** 2 / loss
+        return np.asarray(np.where(loss > 0.0, found, np.where(np.isnan(loss), np.nan, np.inf)))
+
+    def half_width(self, level: float = 0.95) -> FloatArray:
+        """Return the half-width of each one's interval (Student's t), shape ``(n,)``."""
+        return student_factor(self.degrees_of_freedom, level) * self.standard_uncertainty
+
+    def shares(self, row: int) -> Mapping[str, float]:
+        """Return what part of one value's variance each input has, largest first."""
+        parts = self.variances()[:, row]
+        total = parts.sum()
+        named = {
+            one.label: float(part / total) if total > 0.0 else 0.0
+            for one, part in zip(self.contributions, parts, strict=True)
+            if part > 0.0
+        }
+        return dict(sorted(named.items(), key=lambda item: -item[1]))
+
+    def taken(self, rows: Sequence[int]) -> "UncertainValues":
+        """Return some of the values, in this order."""
+        chosen = np.asarray(rows, dtype=np.int64)
+        place = np.full(len(self), -1)
+        place[chosen] = np.arange(len(chosen))
+        if len(np.unique(chosen)) != len(chosen):
+            return self.mapped(np.eye(len(self))[chosen])
+        found = []
+        for one in self.contributions:
+            keep = place[one.rows] >= 0
+            if keep.any():
+                found.append(replace(one, rows=place[one.rows[keep]], parts=one.parts[keep]))
+        return UncertainValues(self.values[chosen], tuple(found))
+
+    def mapped(self, matrix: FloatArray) -> "UncertainValues":
+        """Return ``matrix @ values``, uncertainties and all; ``matrix`` has the shape (m, n)."""
+        everywhere = np.arange(len(matrix))
+        found = (
+            replace(one, rows=everywhere, parts=matrix[:, one.rows] @ one.parts)
+            for one in self.contributions
+        )
+        return UncertainValues(matrix @ self.values, tuple(found))
+
+    def plus(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "UncertainValues":
+        """Return the values with one more input, or with more of one that is there.
+
+        Parameters
+        ----------
+        parts
+            Change of each value per standard deviation of the input, shape ``(n,)``.
+
+        Raises
+        ------
+        ConfigurationError
+            If the label is that of an input with several deviates.
+        """
+        column = np.asarray(parts, dtype=np.float64)[:, None]
+        kept = [one for one in self.contributions if one.label != label]
+        for one in self.contributions:
+            if one.label != label:
+                continue
+            if one.parts.shape[1] != 1:
+                raise ConfigurationError(f"{label!r} has {one.parts.shape[1]} deviates, not one")
+            column = column + one.dense(len(self))
+        kept.append(Contribution(label, freedom, np.arange(len(self)), column))
+        return replace(self, contributions=tuple(kept))
+
+    def gtc_numbers(self, rows: Sequence[int]) -> list[Any]:
+        """Return some of the values as GTC's uncertain numbers, correlated through their inputs."""
+        import GTC  # type: ignore[import-untyped]
+
+        chosen = self.taken(rows)
+        totals: list[Any] = [float(value) for value in chosen.values]
+        for one in chosen.contributions:
+            count, freedom = one.parts.shape[1], max(one.degrees_of_freedom, 1.0)
+            if count == 1:
+                deviates = [GTC.ureal(0.0, 1.0, freedom, label=one.label)]
+            else:
+                labels = [f"{one.label} {k + 1}" for k in range(count)]
+                deviates = GTC.multiple_ureal([0.0] * count, [1.0] * count, freedom, labels)
+            for row, parts in zip(one.rows, one.parts, strict=True):
+                for part, deviate in zip(parts, deviates, strict=True):
+                    totals[row] = totals[row] + float(part) * deviate
+        return totals
+
+
+def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
+    """Put values below each other; inputs of the same label are the same input.
+
+    Raises
+    ------
+    ConfigurationError
+        If two inputs of one label differ in number of deviates or degrees of freedom.
+    """
+    gathered: dict[str, list[Contribution]] = {}
+    first = 0
+    for one in several:
+        for part in one.contributions:
+            moved = replace(part, rows=part.rows + first)
+            gathered.setdefault(part.label, []).append(moved)
+        first += len(one)
+    values = np.concatenate([one.values for one in several]) if several else np.zeros(0)
+    return UncertainValues(values, tuple(_one_input(parts) for parts in gathered.values()))
+
+
+def _one_input(parts: Sequence[Contribution]) -> Contribution:
+    first = parts[0]
+    for other in parts[1:]:
+        same = other.degrees_of_freedom == first.degrees_of_freedom
+        if other.parts.shape[1] != first.parts.shape[1] or not same:
+            raise ConfigurationError(
+                f"two inputs are called {first.label!r}, and they differ; give runs names that "
+                "differ"
+            )
+    rows = np.concatenate([part.rows for part in parts])
+    return replace(first, rows=rows, parts=np.concatenate([part.parts for part in parts]))
+
+
+def student_factor(degrees_of_freedom: FloatArray, level: float) -> FloatArray:
+    """Return how many standard deviations make a half-width; normal for infinite freedom."""
+    from scipy.special import ndtri, stdtrit
+
+    place = 0.5 + level / 2.0
+    endless = np.isinf(degrees_of_freedom)
+    finite = np.where(endless, 1.0, degrees_of_freedom)
+    return np.asarray(np.where(endless, ndtri(place), stdtrit(finite, place)))
