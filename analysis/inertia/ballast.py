@@ -2,14 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
+from analysis.inertia.numeric import FloatArray, Value
 from analysis.inertia.parts import Part, combined
 from hardware.description.errors import ConfigurationError
 
 _STARTS = 12
+_HOLD = 1e-4  # tolerances a box's width from its middle: tells equal solutions apart, no more
 _AXES = ("x_m", "y_m", "z_m")
 _TURNS = ("roll_m", "pitch_m", "yaw_m")
 
@@ -104,22 +107,33 @@ def place_ballast(
         everything[free] = place
         return everything
 
+    hold = _HOLD / (high - low)[free]
+
     def misfit(place: FloatArray) -> FloatArray:
         errors = _errors(_body(base, weights, full(place)), target)
-        held = 1e-4 * (place - middle[free]) / (high - low)[free]
-        return np.concatenate(
-            [[_scaled(key, value, target) for key, value in errors.items()], held]
-        )
+        scaled = [_scaled(key, value, target) for key, value in errors.items()]
+        return np.concatenate([scaled, hold * (place - middle[free])])
+
+    def slope(place: FloatArray) -> FloatArray:
+        rows = _slopes(_body(base, weights, full(place)), weights, full(place), target)
+        return np.concatenate([rows[:, free], np.diag(hold)])
 
     best = middle
     if free.any():
         generator = np.random.default_rng(seed)
         starts = [middle[free]]
         starts += [generator.uniform(low[free], high[free]) for _ in range(_STARTS)]
-        solved = [
-            least_squares(misfit, start, bounds=(low[free], high[free]), xtol=1e-14, ftol=1e-14)
-            for start in starts
-        ]
+        settle = partial(
+            least_squares,
+            jac=slope,
+            bounds=(low[free], high[free]),
+            # the dogleg: equal solutions make a valley along which "trf" creeps for seconds
+            method="dogbox",
+            xtol=1e-10,
+            ftol=1e-10,
+            gtol=1e-10,
+        )
+        solved = [settle(misfit, start) for start in starts]
         best = full(np.asarray(min(solved, key=lambda one: float(one.cost)).x))
     body = _body(base, weights, best)
     errors = _errors(body, target)
@@ -161,7 +175,31 @@ def _errors(body: FloatArray, target: Target) -> dict[str, float]:
     return errors
 
 
-def _scaled(key: str, error: float, target: Target) -> float:
+def _slopes(
+    body: FloatArray, weights: Sequence[Weight], place: FloatArray, target: Target
+) -> FloatArray:
+    """Return the scaled errors' derivatives by all coordinates, shape ``(errors, 3 weights)``.
+
+    A weight moves the centre of gravity by its share of the mass, and an inertia about it by
+    ``2 m (p - c)`` in each coordinate across the axis: what the centre's own motion adds is nil.
+    """
+    mass = np.array([one.mass_kg for one in weights])
+    arm = 2.0 * mass[:, None] * (place.reshape(-1, 3) - body[1:4])
+    rows = []
+    for key in _errors(body, target):
+        row = np.zeros((len(weights), 3))
+        if key in _AXES:
+            row[:, _AXES.index(key)] = mass / body[0]
+        elif key in _TURNS:
+            turn = _TURNS.index(key)
+            across = [k for k in range(3) if k != turn]
+            gyradius = np.sqrt(max(body[4 + turn], 0.0) / body[0])
+            row[:, across] = arm[:, across] / max(2.0 * body[0] * gyradius, 1e-300)
+        rows.append(_scaled(key, row.ravel(), target))
+    return np.reshape(rows, (-1, place.size))
+
+
+def _scaled(key: str, error: Value, target: Target) -> Any:
     return error / (target.tolerance_mass_kg if key == "mass_kg" else target.tolerance_m)
 
 

@@ -133,6 +133,31 @@ def test_ballast_says_what_cannot_be_met_and_how_near_it_gets() -> None:
     assert found.positions_m[0, 0] == pytest.approx(1.2, abs=1e-6)
 
 
+def test_of_many_equal_solutions_the_one_nearest_the_middles_is_found() -> None:
+    """Four equal weights in equal boxes, x alone asked for: each goes as far as the others."""
+    weights = [Weight(f"w{k}", 10.0, (-2.0, -0.3, -0.1), (2.0, 0.3, 0.2)) for k in range(4)]
+    found = place_ballast(hull(), weights, Target(80.0, (0.2, None, None)), seed=4)
+    needed = (80.0 * 0.2 - 40.0 * 0.02) / 40.0
+    assert found.positions_m == pytest.approx(np.tile([needed, 0.0, 0.05], (4, 1)), abs=1e-5)
+
+
+def test_ballast_meets_what_some_places_give() -> None:
+    """Twelve coordinates, all six targets, made from places within the boxes."""
+    weights = [Weight(f"w{k}", 10.0, (-1.0, -0.3, -0.1), (1.0, 0.3, 0.2)) for k in range(4)]
+    places = np.random.default_rng(6).uniform((-0.9, -0.25, -0.08), (0.9, 0.25, 0.15), (4, 3))
+    zero = exactly(0.0, "m")
+    some = [
+        part(f"w{k}", exactly(10.0, "kg"), (x, y, z), (zero, zero, zero))
+        for k, (x, y, z) in enumerate([[exactly(v, "m") for v in row] for row in places])
+    ]
+    made = combine("made", [hull(), *some])
+    x, y, z = (one.value for one in made.centre_of_gravity)
+    roll, pitch, yaw = (one.value for one in made.gyradii)
+    found = place_ballast(hull(), weights, Target(80.0, (x, y, z), (roll, pitch, yaw)), seed=2)
+    assert found.feasible, found.message
+    assert max(map(abs, found.errors.values())) < 1e-6
+
+
 def test_fixed_ballast_and_bad_boxes() -> None:
     fixed = Weight("w", 10.0, (0.1, 0.0, 0.0), (0.1, 0.0, 0.0))
     assert place_ballast(hull(), [fixed], Target(50.0)).feasible
