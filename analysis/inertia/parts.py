@@ -3,15 +3,19 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
+from analysis.inertia.budget import Correlations
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.numeric import FloatArray, jacobian
 from hardware.description.errors import ConfigurationError, DataError
 
 NAMES = ("mass_kg", "x_m", "y_m", "z_m", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
 _SIZE = len(NAMES)
+# What a part is made of, and what is read from one again.
+MADE_OF = ("mass_kg", "x_m", "y_m", "z_m", "k_roll_m", "k_pitch_m", "k_yaw_m")
 
 
 @dataclass(frozen=True)
@@ -54,17 +58,34 @@ class Part:
     @property
     def gyradii(self) -> tuple[Estimate, Estimate, Estimate]:
         """Roll, pitch and yaw gyradius, m; the covariance with the mass is in them."""
-        mass = float(self.parameters[0])
-        out = []
+        spread = np.sqrt(np.maximum(np.diag(self._measured_covariance()), 0.0))
+        values = np.sqrt(np.maximum(self.parameters[4:7], 0.0) / self.parameters[0])
+        roll, pitch, yaw = (
+            Estimate(float(value), float(u), "m")
+            for value, u in zip(values, spread[4:], strict=True)
+        )
+        return roll, pitch, yaw
+
+    def correlations(self) -> dict[tuple[str, str], float]:
+        """Return the correlations between mass, place and gyradii, by pairs of :data:`MADE_OF`."""
+        covariance = self._measured_covariance()
+        spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        return {
+            (MADE_OF[i], MADE_OF[k]): float(covariance[i, k] / (spread[i] * spread[k]))
+            for i in range(len(MADE_OF))
+            for k in range(i + 1, len(MADE_OF))
+            if spread[i] * spread[k] > 0.0 and covariance[i, k] != 0.0
+        }
+
+    def _measured_covariance(self) -> FloatArray:
+        """Return the covariance of mass, place and gyradii, shape ``(7, 7)``."""
+        mass, slope = float(self.parameters[0]), np.zeros((len(MADE_OF), _SIZE))
+        slope[:4, :4] = np.eye(4)
         for k in (4, 5, 6):
             gyradius = math.sqrt(max(float(self.parameters[k]), 0.0) / mass)
-            slope = np.zeros(_SIZE)
             if gyradius > 0.0:
-                slope[k] = 0.5 / (mass * gyradius)
-                slope[0] = -0.5 * gyradius / mass
-            spread = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
-            out.append(Estimate(gyradius, spread, "m"))
-        return out[0], out[1], out[2]
+                slope[k, [0, k]] = -0.5 * gyradius / mass, 0.5 / (mass * gyradius)
+        return np.asarray(slope @ self.covariance @ slope.T)
 
     def _estimate(self, k: int, unit: str) -> Estimate:
         spread = float(np.sqrt(max(self.covariance[k, k], 0.0)))
@@ -77,6 +98,8 @@ def part(
     position: tuple[Estimate, Estimate, Estimate],
     gyradii: tuple[Estimate, Estimate, Estimate],
     products_kg_m2: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    *,
+    correlations: Correlations = MappingProxyType({}),
 ) -> Part:
     """Make a part from mass, centre of gravity and gyradii.
 
@@ -86,6 +109,8 @@ def part(
         Roll, pitch, yaw; 0 for a point mass. Their products with the mass tie inertia to mass.
     products_kg_m2
         ``Ixy``, ``Ixz``, ``Iyz``, without uncertainty.
+    correlations
+        Between mass, place and gyradii, by pairs of :data:`MADE_OF`.
 
     Raises
     ------
@@ -104,7 +129,11 @@ def part(
 
     slope = jacobian(turn, at)
     spread = np.array([one.uncertainty for one in inputs])
-    return Part(name, np.asarray(turn(at)), (slope * spread**2) @ slope.T)
+    tied = np.eye(len(MADE_OF))
+    for (first, second), r in correlations.items():
+        i, k = MADE_OF.index(first), MADE_OF.index(second)
+        tied[i, k] = tied[k, i] = r
+    return Part(name, np.asarray(turn(at)), slope @ (tied * np.outer(spread, spread)) @ slope.T)
 
 
 def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -> Part:

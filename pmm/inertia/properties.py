@@ -12,6 +12,7 @@ from hardware.description.flags import Flag
 from pmm.inertia.given import given, given_or_none
 
 AXES = ("roll", "pitch", "yaw")
+_PLACES = {"cg_x_m": "x_m", "cg_z_m": "z_m"}  # a result's name -> a part's
 
 
 @dataclass(frozen=True)
@@ -83,8 +84,8 @@ def properties(
     cg_z
         Measured, in place of the file's.
     correlations
-        As in :class:`analysis.inertia.result.InertiaResult`; where parts are taken off they are
-        not carried along.
+        As in :class:`analysis.inertia.result.InertiaResult`, of what hung; what is taken off is
+        independent of them.
     """
     mass, x = given_or_none(model, "mass_kg"), given_or_none(model, "cg_x_m")
     z = cg_z or given_or_none(model, "cg_z_m")
@@ -93,8 +94,9 @@ def properties(
     if mass is None or x is None or z is None or not gyradii:
         return None, missing or ("a gyradius",)
     if take_off:
-        mass, x, z, gyradii = _without(name, (mass, x, z), gyradii, take_off)
-        correlations = {}
+        (mass, x, z), gyradii, correlations = _without(
+            name, (mass, x, z), gyradii, take_off, correlations
+        )
     result = InertiaResult(
         name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags), correlations
     )
@@ -121,16 +123,22 @@ def _without(
     whole: tuple[Estimate, Estimate, Estimate],
     gyradii: Mapping[str, Estimate],
     take_off: Sequence[PartTable],
-) -> tuple[Estimate, Estimate, Estimate, dict[str, Estimate]]:
+    correlations: Correlations,
+) -> tuple[tuple[Estimate, Estimate, Estimate], dict[str, Estimate], Correlations]:
     """Take parts off by the parallel axis theorem, covariances and all."""
     nothing = exactly(0.0, "m")
     mass, x, z = whole
     roll, pitch, yaw = (gyradii.get(axis, nothing) for axis in AXES)
-    hung = part(name, mass, (x, nothing, z), (roll, pitch, yaw))
+    tied = {(_PLACES.get(a, a), _PLACES.get(b, b)): r for (a, b), r in correlations.items()}
+    hung = part(name, mass, (x, nothing, z), (roll, pitch, yaw), correlations=tied)
     left = combine(name, [hung], without=[one.part() for one in take_off])
     own = dict(zip(AXES, left.gyradii, strict=True))
     kept = {
         axis: replace(own[axis], degrees_of_freedom=value.degrees_of_freedom)
         for axis, value in gyradii.items()
     }
-    return left.mass, left.centre_of_gravity[0], left.centre_of_gravity[2], kept
+    names = {place: name for name, place in _PLACES.items()}
+    known = {"mass_kg", *_PLACES, *(f"k_{axis}_m" for axis in kept)}
+    own_tied = {(names.get(a, a), names.get(b, b)): r for (a, b), r in left.correlations().items()}
+    own_tied = {pair: r for pair, r in own_tied.items() if set(pair) <= known}
+    return (left.mass, left.centre_of_gravity[0], left.centre_of_gravity[2]), kept, own_tied

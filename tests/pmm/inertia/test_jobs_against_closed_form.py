@@ -1,6 +1,7 @@
 """Jobs whose periods are computed from known bodies give these bodies back."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -104,6 +105,56 @@ pivot_above_midpoint_m = 0.7
     own = body.about_midpoint(Plane.VERTICAL)
     assert own.value == pytest.approx(whole.value, rel=1e-4)
     assert own.uncertainty == pytest.approx(whole.uncertainty, rel=0.02)
+
+
+def test_taking_parts_off_keeps_the_correlations(tmp_path: Path) -> None:
+    """A mount of 5 kg is on the swing with the model; by hand, its moments are subtracted."""
+    mass, tare, total = (35.0, 0.01), (3.0, 0.0005), (30.0, 0.02)
+    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (72, 30)))
+    text = f"""
+gravity_m_s2 = 9.81
+[tare]
+mass_kg = 42.0
+moment_kg_m = {tare[0]}
+u_moment_kg_m = {tare[1]}
+period = {timed(tare_s)}
+[loaded]
+mass_kg = 77.0
+moment_kg_m = {total[0]}
+u_moment_kg_m = {total[1]}
+period = {timed(loaded_s)}
+[model]
+mass_kg = {mass[0]}
+u_mass_kg = {mass[1]}
+cg_x_m = 0.0
+pivot_above_midpoint_m = 0.3
+[[take_off]]
+name = "mount"
+mass_kg = 5.0
+u_mass_kg = 0.02
+z_m = -0.1
+k_pitch_m = 0.2
+"""
+    body = swing.run(write(tmp_path, text)).body
+    assert body is not None
+
+    def midpoint(m: float, s0: float, s1: float, mount: float) -> float:
+        about_pivot = (G / (4.0 * math.pi**2)) * (loaded_s**2 * s1 - tare_s**2 * s0)
+        hung = about_pivot - 2.0 * 0.3 * (s1 - s0) + m * 0.3**2  # moved to the midpoint
+        return hung - mount * (0.2**2 + 0.1**2)
+
+    inputs = {
+        "m": Estimate(*mass),
+        "s0": Estimate(*tare),
+        "s1": Estimate(*total),
+        "mount": Estimate(5.0, 0.02),
+    }
+    whole = linear_budget("I", midpoint, inputs).result
+    own = body.about_midpoint(Plane.VERTICAL)
+    assert own.value == pytest.approx(whole.value, rel=1e-6)
+    assert own.uncertainty == pytest.approx(whole.uncertainty, rel=0.02)
+    loose = replace(body, correlations={}).about_midpoint(Plane.VERTICAL)
+    assert abs(loose.uncertainty / whole.uncertainty - 1.0) > 0.2
 
 
 def _workflow(known: float, tare_again_s: float, tare_s: float, check_s: float) -> str:
