@@ -2,7 +2,9 @@
 
 import math
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +21,8 @@ from hardware.errors import (
 )
 from hardware.roles import Block, Cycle, Role, Sample, blocks
 
-_INVALID, _OVERLOADS = 0x01, 0x06  # bits of the analogue input's status (6150)
+# Bits of the analogue input's status (6150); an overload comes with or without "not valid".
+_INVALID, _OVERLOADS = 0x01, 0x06
 _PATIENCE_CYCLES = 2
 _TARE_S = 1.0  # tare takes the mean of the samples since then
 
@@ -59,7 +62,7 @@ class AmplifierSettings:
     tpdos
         Objects of each TPDO; the EDS's own mapping where none is given.
     settings
-        Objects to write before operation, for example sensor type or filter: ``"6110:1" = 71``.
+        Objects to write before operation, for example sensor type or filter: ``"6110:1" = 70``.
     stuck_s
         A channel that repeats one raw value for so long is stuck; 0 does not look.
     """
@@ -116,7 +119,7 @@ class Amplifier:
         if not samples:
             return
         found = [self._look(i) for i in range(len(self._channels))]
-        valid = [not isinstance(one, SensorInvalidError) for one in found]
+        valid = [self._is_valid(i) for i in range(len(self._channels))]
         for number, raw in samples:
             values = self._scaled(raw, valid)
             self._recent.append(values)
@@ -145,6 +148,14 @@ class Amplifier:
     def zero(self) -> tuple[float, ...]:
         """What the tare takes off each channel, in the channels' units."""
         return tuple(self._zero)
+
+    def carried(self) -> dict[str, Any]:
+        """Return the tare; see :mod:`hardware.opening`."""
+        return {"zero": self._zero}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Go on with that tare."""
+        self._zero = list(carried["zero"])
 
     def take(self) -> tuple[Block, ...]:
         """Return the samples since the last call; shape of each: ``(channels, samples)``."""
@@ -184,21 +195,27 @@ class Amplifier:
             for value, one, good in zip(raw, self._channels, valid, strict=True)
         )
 
+    def _is_valid(self, i: int) -> bool:
+        return not self._state(i) & _INVALID
+
+    def _state(self, i: int) -> int:
+        at = self._status[i]
+        return int(self._node.values[at]) if at is not None else 0
+
     def _look(self, i: int) -> HardwareError | None:
         """Return what is wrong with a channel now."""
         one, raw = self._channels[i], self._node.values[self._values[i]]
-        at = self._status[i]
-        status = int(self._node.values[at]) if at is not None else 0
+        status = self._state(i)
         value = raw * one.scale + one.offset
-        if status & _INVALID or not math.isfinite(value):
-            return SensorInvalidError(
-                self.name, f"{one.name} is not valid (status 0x{status:02X}); check the gauge"
-            )
         if status & _OVERLOADS or abs(value) >= one.full_scale:
             return BridgeSaturatedError(
                 self.name,
                 f"{one.name} = {value:g} {one.unit} (status 0x{status:02X}); "
                 f"full scale {one.full_scale:g} {one.unit}; reduce amplitude or frequency",
+            )
+        if status & _INVALID or not math.isfinite(value):
+            return SensorInvalidError(
+                self.name, f"{one.name} is not valid (status 0x{status:02X}); check the gauge"
             )
         return self._stuck(i, raw)
 

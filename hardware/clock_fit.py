@@ -28,6 +28,11 @@ class ClockFit:
         """How much faster the rig's clock runs: 1e-6 is one microsecond a second."""
         return self._slope - 1.0
 
+    @property
+    def marks(self) -> list[tuple[float, float]]:
+        """The marks that count now: the device's time and the rig's time when it had arrived."""
+        return list(zip(self._device, self._rig, strict=True))
+
     def add(self, device_s: float, arrived_s: float) -> None:
         """Take a mark: the device's time in it, and the rig's time when it had arrived."""
         self._device.append(device_s)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry, Layout, layout, load
 from hardware.roles import Device, Role
+from hardware.serial_port import Ports, SerialPort
 
 if TYPE_CHECKING:
     from hardware.master import Master
@@ -70,6 +71,8 @@ class Services:
         The bus; ``None`` in a rig without one.
     shaft
         The rig's shaft, for a photocell that is wired to its drive.
+    port
+        Opens a serial port by its device's name and settings, so that what it says is logged.
     """
 
     clock: Callable[[], float]
@@ -77,6 +80,7 @@ class Services:
     sample_rate_hz: float
     master: "Master | None" = None
     shaft: "Shaft | None" = None
+    port: Ports = SerialPort
 
 
 def join(plan: NodePlan, services: Services) -> "Node":

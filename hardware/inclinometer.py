@@ -1,7 +1,9 @@
 """The inclinometer of the swing, on a serial line."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
@@ -14,7 +16,7 @@ from hardware.errors import (
 )
 from hardware.lines import SEQUENCE_MODULUS, Kind, Line, Unwrapped, decode
 from hardware.roles import Block, Cycle, Role, Sample, blocks
-from hardware.serial_port import PortSettings, SerialPort
+from hardware.serial_port import PortSettings
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class SerialInclinometer:
         self.channels: tuple[Channel, ...] = (Channel(name, "rad", settings.range_rad),)
         self.sample_rate_hz = settings.sample_rate_hz
         self._settings = settings
-        self._port = SerialPort(name, settings.port)
+        self._port = services.port(name, settings.port)
         self._sequence = Unwrapped(SEQUENCE_MODULUS)
         self._samples: list[Sample] = []
         self._heard_s: float | None = None
@@ -82,6 +84,14 @@ class SerialInclinometer:
         """Return the samples since the last call: one channel, in radians."""
         taken, self._samples = self._samples, []
         return blocks(taken)
+
+    def carried(self) -> dict[str, Any]:
+        """Return the count of lines; see :mod:`hardware.opening`."""
+        return {"sequence": self._sequence.value}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Count on from there."""
+        self._sequence.value = carried["sequence"]
 
     def reset_fault(self) -> None:
         """Open a lost port again and begin anew.

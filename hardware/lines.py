@@ -75,16 +75,16 @@ def decode(raw: bytes, device: str) -> Line:
 
 
 class Unwrapped:
-    """Makes a counter of limited width count on."""
+    """Makes a counter of limited width count on; ``value`` is the full count so far."""
 
     def __init__(self, modulus: int) -> None:
         self._modulus = modulus
-        self._value: int | None = None
+        self.value: int | None = None
 
     def take(self, raw: int) -> int:
         """Return the full count for a raw value, which lies less than half a turn from the last."""
-        if self._value is None:
-            self._value = raw
+        if self.value is None:
+            self.value = raw
         half = self._modulus // 2
-        self._value += (raw - self._value + half) % self._modulus - half
-        return self._value
+        self.value += (raw - self.value + half) % self._modulus - half
+        return self.value

@@ -1,8 +1,9 @@
 """The photocell on the shaft drive's touch probe: latched position and edge counter, no clock."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry, has
@@ -13,15 +14,24 @@ from hardware.roles import Cycle, Pulse, Role
 from hardware.shaft import DriveShaft
 
 _FUNCTION, _SOURCE = Entry(0x60B8), Entry(0x60D0, 1)
-# Touch probe 1 on, every event, input of touch probe 1, positive edge.
+# Touch probe 1 on, every event, input of touch probe 1, positive edge. A drive looks at 60D0 only
+# with bits 3 and 2 of the function at 10.
 ARMED: Final = 0x0013
+SOURCE_BY_60D0: Final = 0x0008
 _INPUT_1: Final = 1
 _MISSED_TURNS, _DEAD_TURNS, _EXTRA_TURNS = 1.5, 3.5, 0.5
 
 
 @dataclass(frozen=True)
 class ProbeSettings:
-    """Settings of a photocell on the touch probe: its input (60D0) of the drive."""
+    """Settings of a photocell on the touch probe.
+
+    Attributes
+    ----------
+    source
+        As in object 60D0: 1 to 4 the drive's touch probe inputs, other numbers as its manual says.
+        At 1 the object is left alone, because not every drive has it.
+    """
 
     source: int = _INPUT_1
 
@@ -45,12 +55,25 @@ class ProbePhotocell:
         self._pulses: list[Pulse] = []
 
     def prepare(self) -> None:
-        """Arm the probe; a drive takes a new function only after a zero."""
+        """Arm the probe; a drive takes a new function only after a zero.
+
+        Raises
+        ------
+        ConfigurationError
+            If a source is asked for that the drive cannot be told.
+        """
         node = self._shaft.drive.node
         node.sdo.write(_FUNCTION, 0)
-        if has(node.dictionary, _SOURCE):
-            node.sdo.write(_SOURCE, self._settings.source)
-        node.sdo.write(_FUNCTION, ARMED)
+        if self._settings.source == _INPUT_1:
+            node.sdo.write(_FUNCTION, ARMED)
+            return
+        if not has(node.dictionary, _SOURCE):
+            raise ConfigurationError(
+                f"{self.name}.source = {self._settings.source}: the drive's EDS has no object "
+                f"{_SOURCE} to choose a source by; leave source out and use touch probe input 1"
+            )
+        node.sdo.write(_SOURCE, self._settings.source)
+        node.sdo.write(_FUNCTION, ARMED | SOURCE_BY_60D0)
 
     def expect(self, frequency_hz: float | None) -> None:
         """Begin to count turns anew; the shaft's own position says how far it turned."""
@@ -76,6 +99,15 @@ class ProbePhotocell:
         """Return the pulses since the last call."""
         taken, self._pulses = tuple(self._pulses), []
         return taken
+
+    def carried(self) -> dict[str, Any]:
+        """Return the edges so far and where the last was; see :mod:`hardware.opening`."""
+        return {"edges": self._edges, "last": self._last}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Count on from there."""
+        self._edges = self._count.value = carried["edges"]
+        self._last = carried["last"]
 
     def reset_fault(self) -> None:
         """Count turns from here."""

@@ -1,6 +1,8 @@
 """The photocell on a small microcontroller that stamps its pulses and sends them by serial line."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from hardware.clock_fit import ClockFit
 from hardware.driver import Driver, Services
@@ -14,7 +16,7 @@ from hardware.errors import (
 )
 from hardware.lines import TICK_MODULUS, Kind, Line, Unwrapped, decode
 from hardware.roles import Cycle, Pulse, Role
-from hardware.serial_port import PortSettings, SerialPort
+from hardware.serial_port import PortSettings
 
 _MISSED_PERIODS, _DEAD_PERIODS, _EXTRA_PERIODS = 1.5, 3.5, 0.5
 
@@ -46,7 +48,7 @@ class SerialPhotocell:
         self.name = name
         self.fit = ClockFit()
         self._settings = settings
-        self._port = SerialPort(name, settings.port)
+        self._port = services.port(name, settings.port)
         self._ticks = Unwrapped(TICK_MODULUS)
         self._pulses: list[Pulse] = []
         self._count: int | None = None
@@ -91,6 +93,16 @@ class SerialPhotocell:
         """Return the pulses since the last call."""
         taken, self._pulses = tuple(self._pulses), []
         return taken
+
+    def carried(self) -> dict[str, Any]:
+        """Return counts and the marks of the clocks; see :mod:`hardware.opening`."""
+        return {"ticks": self._ticks.value, "count": self._count, "marks": self.fit.marks}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Go on from there."""
+        self._ticks.value, self._count = carried["ticks"], carried["count"]
+        for device_s, arrived_s in carried["marks"]:
+            self.fit.add(device_s, arrived_s)
 
     def reset_fault(self) -> None:
         """Open a lost port again and begin anew.

@@ -12,6 +12,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.driver import Prompt, Services
 from hardware.errors import HardwareError, Reaction, TransitionTimeoutError
 from hardware.interlock import guard_axis, guard_shaft
+from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
 from hardware.rig_configuration import Part, RigConfiguration, check
@@ -26,6 +27,7 @@ from hardware.roles import (
     Powered,
     Shaft,
 )
+from hardware.serial_port import Port, Ports, PortSettings, SerialPort
 
 
 class Rig:
@@ -41,6 +43,10 @@ class Rig:
         How the operator is asked (see :class:`hardware.driver.Services`).
     observers
         Called with every CAN frame sent and received.
+    line_observers
+        Called with the cycle's number, the device's name and the line for every serial line.
+    ports
+        Opens serial ports; a replay opens the logged ones.
 
     Attributes
     ----------
@@ -66,12 +72,16 @@ class Rig:
         pacer: Pacer,
         prompt: Prompt,
         observers: Sequence[Observer] = (),
+        line_observers: Sequence[LineObserver] = (),
+        ports: Ports = SerialPort,
     ) -> None:
         check(configuration)
         self.configuration = configuration
         self.faults: list[HardwareError] = []
         self.number = 0
         self._pacer = pacer
+        self._line_observers = tuple(line_observers)
+        self._ports = ports
         self._devices: list[Device] = []
         self._period_s = 1.0 / configuration.sample_rate_hz
         self.master: Master | None = None
@@ -81,7 +91,8 @@ class Rig:
             operator = self.master.operator if self.master is not None else None
             prompt = operator(prompt) if operator is not None else prompt
             self.prompt = prompt
-            self._open(Services(clock, prompt, configuration.sample_rate_hz, self.master))
+            self._open(Services(clock, prompt, configuration.sample_rate_hz, self.master,
+                                port=self._port))  # fmt: skip
         except BaseException:
             self.close()
             raise
@@ -176,6 +187,16 @@ class Rig:
             self.master.reset()
         self.faults.clear()
 
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """All devices, in the order in which they tick."""
+        return tuple(self._devices)
+
+    def latch(self, error: HardwareError) -> None:
+        """Latch a fault that was found above the devices, and do what it asks for."""
+        self._latch(error)
+        self._react([error])
+
     def powered(self) -> tuple[Powered, ...]:
         """Return the axes that the rig has."""
         axes = (self.shaft, self.eccentricity, self.phase)
@@ -208,6 +229,14 @@ class Rig:
         self.eccentricity, self.phase = (
             guard_axis(axis, shaft, lambda: self.faults) if axis else None for axis in axes
         )
+
+    def _port(self, name: str, settings: PortSettings) -> Port:
+        port = self._ports(name, settings)
+        return HeardPort(port, self._hear, name) if self._line_observers else port
+
+    def _hear(self, device: str, line: bytes) -> None:
+        for observe in self._line_observers:
+            observe(self.number, device, line)
 
     def _device(self, part: Part | None, services: Services) -> Device | None:
         if part is None:

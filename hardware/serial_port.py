@@ -1,7 +1,8 @@
 """Serial ports: local, or on a device server (``socket://``, ``rfc2217://``), read by lines."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol, TypeAlias
 
 import serial
 from serial.tools import list_ports
@@ -27,6 +28,39 @@ class PortSettings:
     url: str
     baud_rate: int = 115200
     write_timeout_s: float = 0.2
+
+
+class Port(Protocol):
+    """What a serial device reads and writes; :class:`SerialPort` says what each does."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the port is open, as far as is known."""
+        ...
+
+    def open(self) -> None:
+        """Open the port if it is not."""
+        ...
+
+    def lines(self) -> list[bytes]:
+        """Return the whole lines that have arrived."""
+        ...
+
+    def write(self, data: bytes) -> None:
+        """Write."""
+        ...
+
+    def recover(self, now_s: float) -> bool:
+        """Try to open a lost port again."""
+        ...
+
+    def close(self) -> None:
+        """Close the port."""
+        ...
+
+
+Ports: TypeAlias = Callable[[str, PortSettings], Port]
+"""Opens a port from its device's name and its settings."""
 
 
 def resolve(url: str) -> str:

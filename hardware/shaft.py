@@ -2,7 +2,9 @@
 
 import math
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from hardware.cia402 import Goal, Mode, Status
 from hardware.description.channels import SHAFT_ANGLE, Channel
@@ -195,6 +197,15 @@ class DriveShaft:
         """Return the shaft angles since the last call."""
         taken, self._samples = self._samples, []
         return blocks(taken)
+
+    def carried(self) -> dict[str, Any]:
+        """Return the count and the latest of its way; see :mod:`hardware.opening`."""
+        return {"counts": self._counts, "track": list(self._track)}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Count on from there."""
+        self._counts = carried["counts"]
+        self._track.extend((number, counts) for number, counts in carried["track"])
 
     def position_near(self, raw: int) -> int:
         """Return the count, never wrapping, of a 32-bit position near the present one."""

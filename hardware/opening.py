@@ -1,0 +1,38 @@
+"""What a rig's devices carry over from before a run begins.
+
+A count that has wrapped, a tare, the marks of a clock: with them a raw log that begins in the
+middle of a rig's life is decoded to the very same samples again. A driver of a lab that carries
+something over offers the two methods of :class:`Carrying`.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+from hardware.rig import Rig
+
+
+@runtime_checkable
+class Carrying(Protocol):
+    """A device whose samples depend on what came before."""
+
+    name: str
+
+    def carried(self) -> dict[str, Any]:
+        """Return it, in what JSON can hold."""
+        ...
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Take it, before the first cycle."""
+        ...
+
+
+def opening_of(rig: Rig) -> dict[str, dict[str, Any]]:
+    """Return what the devices carry over now, by their names; ask between two cycles."""
+    return {one.name: one.carried() for one in rig.devices if isinstance(one, Carrying)}
+
+
+def carry_on(rig: Rig, opening: Mapping[str, Mapping[str, Any]]) -> None:
+    """Let the devices of a fresh rig go on where others stood."""
+    for one in rig.devices:
+        if isinstance(one, Carrying) and one.name in opening:
+            one.carry_on(opening[one.name])
