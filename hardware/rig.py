@@ -16,6 +16,7 @@ from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
 from hardware.rig_configuration import Part, RigConfiguration, check
+from hardware.rest import come_to_rest
 from hardware.roles import (
     PROTOCOLS,
     Cycle,
@@ -79,6 +80,7 @@ class Rig:
         self.configuration = configuration
         self.faults: list[HardwareError] = []
         self.number = 0
+        self._prepared = False
         self._pacer = pacer
         self._line_observers = tuple(line_observers)
         self._ports = ports
@@ -117,6 +119,7 @@ class Rig:
             device.prepare()
         if self.master is not None:
             self.master.start()
+        self._prepared = True
 
     def cycle(self) -> Cycle:
         """Run one cycle: bus, devices, outputs.
@@ -203,7 +206,15 @@ class Rig:
         return tuple(one for one in axes if one is not None)
 
     def close(self) -> None:
-        """Close devices and bus; may be called twice."""
+        """Leave the axes at rest and without power, close devices and bus; may be called twice."""
+        try:
+            if self._prepared:
+                self._prepared = False
+                come_to_rest(self)
+        finally:
+            self._let_go()
+
+    def _let_go(self) -> None:
         for device in self._devices:
             device.close()
         self._devices = []

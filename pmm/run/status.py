@@ -1,0 +1,114 @@
+"""What there is to see of a run: a frozen picture of one moment, for a terminal or a console."""
+
+import math
+from dataclasses import dataclass, field
+
+from hardware.description.flags import Flag
+from pmm.run.gate import GateState
+from pmm.run.states import State
+
+
+@dataclass(frozen=True)
+class HarmonicRow:
+    """First harmonic and mean of a channel.
+
+    Attributes
+    ----------
+    in_phase, quadrature
+        Of the first harmonic, in the channel's unit.
+    half_width
+        Of the larger 95 % interval of the two; NaN while there is none.
+    final
+        Whether it covers whole periods; a needle between pulses is not final.
+    """
+
+    channel: str
+    unit: str
+    mean: float
+    in_phase: float
+    quadrature: float
+    half_width: float = math.nan
+    final: bool = False
+
+    @property
+    def amplitude(self) -> float:
+        """Of the first harmonic."""
+        return math.hypot(self.in_phase, self.quadrature)
+
+
+@dataclass(frozen=True)
+class CycleStatistics:
+    """How late the cycles of a run began, in seconds.
+
+    Attributes
+    ----------
+    late
+        Cycles that began more than half a period late.
+    """
+
+    cycles: int = 0
+    p50_s: float = 0.0
+    p99_s: float = 0.0
+    worst_s: float = 0.0
+    late: int = 0
+
+
+@dataclass(frozen=True)
+class Status:
+    """One moment of run control.
+
+    Attributes
+    ----------
+    run, kind
+        Of the present run; empty before the first.
+    run_number, run_count
+        Which run of how many, from 1.
+    periods, wanted_periods
+        Of the gate; for a run at rest seconds take their place.
+    question
+        What the operator is asked; empty if nothing.
+    alarms
+        What went wrong, the latest last.
+    free_bytes
+        On the disk that is recorded to; ``None`` where nothing is recorded.
+    """
+
+    state: State
+    cycle: int
+    time_s: float
+    run: str = ""
+    kind: str = ""
+    run_number: int = 0
+    run_count: int = 0
+    frequency_hz: float = 0.0
+    gate: GateState = GateState.CLOSED
+    periods: int = 0
+    wanted_periods: int = 0
+    harmonics: tuple[HarmonicRow, ...] = ()
+    question: str = ""
+    alarms: tuple[str, ...] = ()
+    statistics: CycleStatistics = field(default_factory=CycleStatistics)
+    free_bytes: int | None = None
+
+
+@dataclass(frozen=True)
+class RunOutcome:
+    """How a run ended.
+
+    Attributes
+    ----------
+    outcome
+        ``"complete"``, ``"stopped"`` or ``"fault"``.
+    file
+        Its recording; empty if none was made.
+    """
+
+    run: str
+    kind: str
+    outcome: str
+    file: str
+    periods: int
+    harmonics: tuple[HarmonicRow, ...]
+    flags: tuple[Flag, ...]
+    statistics: CycleStatistics
+    reason: str = ""

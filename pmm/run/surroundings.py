@@ -1,0 +1,118 @@
+"""What only people can change: carriage, medium, loads, added mass. Asked for one thing at a time."""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from hardware.demand import Demand
+from hardware.driver import Prompt
+from pmm.plan.kinds import RunKind
+from pmm.plan.run_plan import RunPlan
+
+Answered = Callable[[Demand, str], None]
+
+
+@dataclass
+class Surroundings:
+    """How things stand, as far as the operator has been asked to set them.
+
+    Attributes
+    ----------
+    load
+        Channel and newtons of the weight that hangs on a gauge.
+    drift_rad
+        How the model is turned to the tow.
+    """
+
+    medium: str = "water"
+    carriage_speed_m_s: float = 0.0
+    drift_rad: float = 0.0
+    mass_kg: float = 0.0
+    load: tuple[str, float] = ("", 0.0)
+
+    def before(self, run: RunPlan) -> Iterator[Demand]:
+        """Yield what has to be done before a run, at rest."""
+        yield from self._change_medium(str(run.set_point.medium))
+        yield from self._change_mass(run)
+        yield from self._change_drift(run.drift_rad)
+        wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
+        yield from self._change_load(
+            ("", 0.0) if wanted is None else (wanted.channel, wanted.force_n)
+        )
+        for text in run.prompts:
+            yield Demand(f"{run.name}: {text}; press Enter when it is done", "prompt")
+
+    def tow(self, speed_m_s: float) -> Iterator[Demand]:
+        """Yield what brings the carriage to a speed; 0 stops it."""
+        if speed_m_s == self.carriage_speed_m_s:
+            return
+        self.carriage_speed_m_s = speed_m_s
+        text = (
+            f"carriage: tow at {speed_m_s:g} m/s; press Enter when the speed is steady"
+            if speed_m_s
+            else "carriage: stop and go back; press Enter when it stands"
+        )
+        yield Demand(text, "carriage", speed_m_s)
+
+    def push(self, channel: str, force_n: float) -> Iterator[Demand]:
+        """Yield what has somebody push a gauge by hand, or let go."""
+        yield from self._change_load((channel, force_n), by_hand=True)
+
+    def _change_load(self, load: tuple[str, float], *, by_hand: bool = False) -> Iterator[Demand]:
+        (before, held), (channel, force_n) = self.load, load
+        self.load = load
+        if before and before != channel and held:
+            yield Demand(f"load: take everything off {before}; press Enter", "load", 0.0, 1.0, before)
+        if channel and (before != channel or held != force_n):
+            how = ("push" if force_n else "let go of") if by_hand else "load"
+            text = f"load: {how} {channel} with {force_n:g} N; press Enter when it is so"
+            yield Demand(text, "load", force_n, 1.0, channel)
+
+    def _change_medium(self, medium: str) -> Iterator[Demand]:
+        if medium != self.medium:
+            self.medium = medium
+            yield Demand(f"medium: bring the model into {medium}; press Enter", "medium", medium)
+
+    def _change_mass(self, run: RunPlan) -> Iterator[Demand]:
+        mass_kg = run.known_mass.mass_kg if run.known_mass else 0.0
+        if mass_kg == self.mass_kg:
+            return
+        self.mass_kg = mass_kg
+        what = f"add {mass_kg:g} kg at x = {run.known_mass.x_m:g} m" if run.known_mass else "take off"
+        yield Demand(f"mass: {what} (the known mass); press Enter", "mass", mass_kg)
+
+    def _change_drift(self, drift_rad: float) -> Iterator[Demand]:
+        if drift_rad != self.drift_rad:
+            self.drift_rad = drift_rad
+            text = f"drift: turn the model by {drift_rad:.4f} rad to the tow; press Enter"
+            yield Demand(text, "drift", drift_rad)
+
+
+class Questions:
+    """Asks demands one by one, once a cycle, so that the loop never waits for a person."""
+
+    def __init__(self, prompt: Prompt, answered: Answered) -> None:
+        self._prompt, self._answered = prompt, answered
+        self._open: deque[Demand] = deque()
+
+    @property
+    def present(self) -> str:
+        """The question that waits for its answer; empty without one."""
+        return str(self._open[0]) if self._open else ""
+
+    def ask(self, demands: Iterator[Demand]) -> None:
+        """Add questions."""
+        self._open.extend(demands)
+
+    def withdraw(self) -> None:
+        """Ask no more."""
+        self._open.clear()
+
+    def done(self) -> bool:
+        """Ask on; tell whether everything is answered."""
+        while self._open:
+            answer = self._prompt(self._open[0])
+            if answer is None:
+                return False
+            self._answered(self._open.popleft(), answer)
+        return True
