@@ -1,102 +1,38 @@
 """Reading ``rig.toml``: the devices, the limits, the model, the tank and the recorder."""
 
+import hashlib
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
-from hardware.rig_configuration import RigConfiguration
-
-
-@dataclass(frozen=True)
-class Tank:
-    """The towing tank; ``length_m`` is what the carriage may use, from rest to rest."""
-
-    length_m: float
-    width_m: float
-    carriage_acceleration_m_s2: float
-    highest_speed_m_s: float
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What the struts and the shaft may do beyond what the drives' own limits say.
-
-    Attributes
-    ----------
-    stroke_m
-        Travel of a strut from end to end: **twice** the largest amplitude.
-    velocity_m_s, acceleration_m_s2
-        Peak of one strut.
-    """
-
-    stroke_m: float | None = None
-    velocity_m_s: float | None = None
-    acceleration_m_s2: float | None = None
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """Range of a force channel.
-
-    Attributes
-    ----------
-    channel
-        Its name.
-    full_scale_n
-        Beyond it the run is stopped on the profile.
-    safe_load_n
-        Beyond it the axes are stopped quickly; ``None`` for 1.5 times the full scale.
-    """
-
-    channel: str
-    full_scale_n: float
-    safe_load_n: float | None = None
-
-
-@dataclass(frozen=True)
-class StructuralMode:
-    """A natural frequency of model and mounting, as the pluck test found it.
-
-    Attributes
-    ----------
-    damping_ratio
-        Part of the critical damping; it sets how near is too near.
-    """
-
-    name: str
-    frequency_hz: float
-    damping_ratio: float = 0.02
-
-
-@dataclass(frozen=True)
-class PhotocellOffset:
-    """Shaft angle at the photocell's mark, and the delay of its pulses."""
-
-    angle_offset_rad: float = 0.0
-    latency_s: float = 0.0
-
-
-@dataclass(frozen=True)
-class RecorderSettings:
-    """Where campaigns are kept, and how often data are flushed.
-
-    Attributes
-    ----------
-    folder
-        Campaign folders are made in it, seen from the rig's file.
-    flush_s
-        Longest wall time between two flushes.
-    reserve_mb
-        Disk space that has to stay free.
-    """
-
-    folder: str = "."
-    flush_s: float = 1.0
-    reserve_mb: float = 200.0
+from hardware.rig_configuration import RigConfiguration, read_rig
+from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.oscillator_table import expand_preset
+from pmm.plan.rig_checks import (
+    DEVICES,
+    SIMULATED,
+    channels_of,
+    gauge_faults,
+    gauges_of,
+    point_at_simulation,
+    table_faults,
+)
+from pmm.plan.rig_tables import (
+    Gauge,
+    HullEstimate,
+    Limits,
+    PhotocellOffset,
+    RecorderSettings,
+    RigTables,
+    Ship,
+    StructuralMode,
+    Tank,
+)
 
 
 @dataclass(frozen=True)
@@ -107,10 +43,12 @@ class RigFile:
     ----------
     hardware
         The devices, as :class:`hardware.rig.Rig` opens them.
-    model
-        Mass and inertia, for the estimate of forces; ``None`` where the file does not say.
+    hardware_tables
+        The tables that they were read from, paths of simulated rigs resolved.
+    model, hull
+        For the estimate of forces; ``None`` where the file does not say.
     gauges
-        Ranges of the force channels.
+        Ranges of the force channels: the file's, else those of the amplifiers.
     modes
         Structural modes from a pluck test.
     realtime
@@ -123,7 +61,10 @@ class RigFile:
     sha256: str
     oscillator: Oscillator
     hardware: RigConfiguration
-    model: Body | None = None
+    hardware_tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    name: str = "rig"
+    model: Ship | None = None
+    hull: HullEstimate | None = None
     tank: Tank | None = None
     limits: Limits = field(default_factory=Limits)
     gauges: tuple[Gauge, ...] = ()
@@ -133,6 +74,31 @@ class RigFile:
     realtime: bool = True
     campaign: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
+    @property
+    def sample_rate_hz(self) -> float:
+        """Samples per second of all channels."""
+        return self.hardware.sample_rate_hz
+
+
+@dataclass(frozen=True)
+class Examined:
+    """What could be made of a rig's file: all of it, or the parts that a plan is read against.
+
+    Attributes
+    ----------
+    rig
+        ``None`` where the file has errors.
+    oscillator, channels
+        As far as they could be read.
+    error
+        All errors of the file.
+    """
+
+    rig: RigFile | None = None
+    oscillator: Oscillator | None = None
+    channels: tuple[str, ...] | None = None
+    error: ConfigurationError | None = None
+
 
 def read_rig_file(path: str | Path) -> RigFile:
     """Read a rig's file.
@@ -140,6 +106,75 @@ def read_rig_file(path: str | Path) -> RigFile:
     Raises
     ------
     ConfigurationError
-        With every error of the file.
+        If the file cannot be read, or for unknown keys (with a suggestion), wrong types, values
+        beyond their limits, and devices that do not fit together: all errors of the file in one
+        message, each with its place in the file.
     """
-    raise NotImplementedError(path)
+    found = examine_rig(Path(path))
+    if found.rig is None:
+        raise found.error or ConfigurationError(f"{path}: cannot be read")
+    return found.rig
+
+
+def examine_rig(path: Path) -> Examined:
+    """Read a rig's file as far as it goes."""
+    try:
+        original = read_toml(path)
+    except ConfigurationError as error:
+        return Examined(error=error)
+    faults: list[Fault] = []
+    table = deepcopy(original)
+    devices = {key: table.pop(key) for key in DEVICES if key in table}
+    faults += [*limit_faults(table), *table_faults(table)]
+    expand_preset(table, faults)
+    own = validate(RigTables, table, faults)
+    point_at_simulation(devices, path)
+    hardware = _read_devices(devices, faults)
+    if own is not None and hardware is not None:
+        faults += gauge_faults(own, hardware)
+    oscillator = validate(Oscillator, table.get("oscillator", {}), [])
+    channels = None if hardware is None else channels_of(hardware)
+    if faults or own is None or hardware is None:
+        return Examined(None, oscillator, channels, as_error(path, faults, original))
+    handed_on = original.get("campaign", {})
+    return Examined(_built(path, own, hardware, devices, handed_on), oscillator, channels)
+
+
+def _built(
+    path: Path,
+    own: RigTables,
+    hardware: RigConfiguration,
+    devices: Mapping[str, Any],
+    handed_on: Mapping[str, Any],
+) -> RigFile:
+    return RigFile(
+        path=path,
+        sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+        oscillator=own.oscillator,
+        hardware=hardware,
+        hardware_tables=MappingProxyType(dict(devices)),
+        name=own.name,
+        model=own.model,
+        hull=own.hull,
+        tank=own.tank,
+        limits=own.limits,
+        gauges=own.gauges or gauges_of(hardware),
+        modes=own.modes,
+        photocell_offset=own.reference,
+        recorder=own.recorder,
+        realtime=not is_simulated(hardware) if own.realtime is None else own.realtime,
+        campaign=MappingProxyType(dict(handed_on)),
+    )
+
+
+def is_simulated(hardware: RigConfiguration) -> bool:
+    """Whether the rig is simulated in this process."""
+    return hardware.bus is not None and hardware.bus.interface == SIMULATED
+
+
+def _read_devices(devices: Mapping[str, Any], faults: list[Fault]) -> RigConfiguration | None:
+    try:
+        return read_rig(devices)
+    except ConfigurationError as error:
+        faults += [Fault((), line) for line in str(error).splitlines()]
+        return None

@@ -1,0 +1,123 @@
+"""What is looked at in ``rig.toml`` beyond the types of its keys."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from hardware.rig_configuration import ROLES, RigConfiguration
+from pmm.configuration import Fault, unknown, validate
+from pmm.model_uncertainty import take_uncertainty
+from pmm.plan.rig_tables import HANDED_ON, Gauge, RigTables
+
+SIMULATED: Final = "pmm-simulated"  # the simulated rig's name among the buses
+DEVICES: Final = (*ROLES, "bus", "cycle_rate_hz")
+_OWN: Final = tuple(RigTables.__dataclass_fields__)
+_ABOVE_0: Final = (
+    "carriage_acceleration_m_s2",
+    "depth_m",
+    "flush_s",
+    "highest_speed_m_s",
+    "length_m",
+    "safe_load_n",
+    "stroke_m",
+    "velocity_m_s",
+    "acceleration_m_s2",
+    "width_m",
+)
+
+
+def table_faults(table: dict[str, Any]) -> Iterator[Fault]:
+    """Yield what is wrong with the tables beside the devices; unknown ones are taken out."""
+    yield from _more_limits(table)
+    yield from _unknown_tables(table)
+    yield from _handed_on_faults(table)
+
+
+def _unknown_tables(table: dict[str, Any]) -> Iterator[Fault]:
+    """Yield the top's unknown keys and take them out: the devices' names are known ones too."""
+    for key in [key for key in table if key not in _OWN]:
+        del table[key]
+        yield Fault((key,), unknown((key,), (*_OWN, *DEVICES)))
+
+
+def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
+    campaign = table.get("campaign")
+    if not isinstance(campaign, dict):
+        return
+    for key in campaign:
+        if key not in HANDED_ON:
+            place = ("campaign", key)
+            yield Fault(place, unknown(place, HANDED_ON))
+    own: list[Fault] = []
+    take_uncertainty(campaign, own)  # of the copy; the campaign's file gets it as it is
+    if "analysis" in campaign:
+        from analysis.resolver.analyse import Settings
+
+        inner: list[Fault] = []
+        validate(Settings, campaign["analysis"], inner)
+        own += [Fault(("analysis", *one.place), one.message) for one in inner]
+    yield from (Fault(("campaign", *one.place), one.message) for one in own)
+
+
+def _more_limits(table: Any, place: tuple[str | int, ...] = ()) -> Iterator[Fault]:
+    parts = table.items() if isinstance(table, dict) else enumerate(table)
+    for key, value in parts:
+        if key == "campaign" and not place:
+            continue
+        if isinstance(value, dict | list):
+            yield from _more_limits(value, (*place, key))
+        elif key in _ABOVE_0 and isinstance(value, int | float) and value <= 0:
+            yield Fault((*place, key), f"= {value:g} should be above 0")
+
+
+def point_at_simulation(devices: dict[str, Any], path: Path) -> None:
+    """Let the file of a simulated rig be seen from the rig's file, wherever the command is given.
+
+    Buses and ports of the simulated rig share its name, so both are resolved alike.
+    """
+    bus = devices.get("bus")
+    if not isinstance(bus, dict) or bus.get("interface") != SIMULATED:
+        return
+    channel = bus.get("channel")
+    if not isinstance(channel, str) or not channel.endswith(".toml"):
+        return
+    whole = (path.parent / channel).resolve().as_posix()
+    bus["channel"] = whole
+    for part in devices.values():
+        port = part.get("port") if isinstance(part, dict) else None
+        url = port.get("url") if isinstance(port, dict) else None
+        if isinstance(port, dict) and isinstance(url, str):
+            port["url"] = url.replace(f"sim://{channel}/", f"sim://{whole}/")
+
+
+def channels_of(hardware: RigConfiguration) -> tuple[str, ...]:
+    """Return the names of the force channels."""
+    return tuple(
+        getattr(one, "name", str(one))
+        for part in hardware.forces
+        for one in getattr(part.settings, "channels", ())
+    )
+
+
+def gauges_of(hardware: RigConfiguration) -> tuple[Gauge, ...]:
+    """Return the amplifiers' own ranges of their force channels."""
+    return tuple(
+        Gauge(one.name, one.full_scale)
+        for part in hardware.forces
+        for one in getattr(part.settings, "channels", ())
+        if getattr(one, "unit", None) == "N" and hasattr(one, "full_scale")
+    )
+
+
+def gauge_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
+    """Yield gauges that the rig does not have, and safe loads below the range."""
+    names = channels_of(hardware)
+    for number, gauge in enumerate(own.gauges):
+        if gauge.channel not in names:
+            place = ("gauges", number, "channel")
+            said = unknown((gauge.channel,), names).replace("a known key", "a force channel")
+            yield Fault(place, f"= {gauge.channel!r} {said}")
+        if gauge.safe_n < gauge.full_scale_n:
+            place = ("gauges", number, "safe_load_n")
+            yield Fault(place, f"= {gauge.safe_n:g} should not be below full_scale_n = "
+                               f"{gauge.full_scale_n:g}")  # fmt: skip
