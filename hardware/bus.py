@@ -19,6 +19,9 @@ from hardware.errors import BusOffError, BusOpenError, DeadReceiveThreadError
 # Part of the bit rate that process data may take: the rest is for SDO, EMCY and repeated frames.
 LARGEST_LOAD: Final = 0.7
 _POLL_S: Final = 0.05
+# An adapter that takes no frame for so long, or a thread that does not end, is given up.
+_SEND_TIMEOUT_S: Final = 0.1
+_JOIN_TIMEOUT_S: Final = 1.0
 
 
 @dataclass(frozen=True)
@@ -183,9 +186,9 @@ class Threaded:
             return None
 
     def close(self) -> None:
-        """Stop the thread and wait for its end."""
+        """Stop the thread and wait for its end, unless it hangs in the adapter."""
         self._stop.set()
-        self._thread.join()
+        self._thread.join(_JOIN_TIMEOUT_S)
 
     def _check(self) -> None:
         if not self._thread.is_alive():
@@ -219,12 +222,30 @@ class Sender:
         BusOffError
             If the adapter cannot send.
         """
-        frame = can.Message(
-            arbitration_id=identifier, data=data, is_extended_id=False, is_rx=False, check=False
+        return self._pass(
+            can.Message(
+                arbitration_id=identifier, data=data, is_extended_id=False, is_rx=False, check=False
+            )
         )
+
+    def request(self, identifier: int) -> can.Message:
+        """Send a remote frame, which asks for the frame of that identifier; raises as `send`."""
+        return self._pass(
+            can.Message(
+                arbitration_id=identifier,
+                is_remote_frame=True,
+                is_extended_id=False,
+                is_rx=False,
+                dlc=1,
+            )
+        )
+
+    def _pass(self, frame: can.Message) -> can.Message:
         try:
             with self._lock:
-                self._bus.send(frame)
+                self._bus.send(frame, _SEND_TIMEOUT_S)
         except (can.CanError, OSError) as error:
-            raise BusOffError("bus", f"frame 0x{identifier:03X} cannot be sent: {error}") from error
+            raise BusOffError(
+                "bus", f"frame 0x{frame.arbitration_id:03X} cannot be sent: {error}"
+            ) from error
         return frame

@@ -71,6 +71,7 @@ class Master:
         self._supervisor = Supervisor(configuration, ())
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
         self._number = 0
+        self._commanded = False  # whether any node's state was commanded
         self._operating = False
         self._missing = 0
         beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
@@ -103,6 +104,7 @@ class Master:
         SdoTimeoutError, SdoAbortError
             If a node does not answer or refuses.
         """
+        self._commanded = True
         self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
         for node in self.nodes:
             node.configure(self.configuration)
@@ -152,6 +154,20 @@ class Master:
         self._supervisor.reset()
         self.healthy = True
 
+    def send(self, identifier: int, data: bytes) -> None:
+        """Send one frame beside the cycle; for looking around on a bus.
+
+        Raises
+        ------
+        BusOffError
+            If the adapter cannot send.
+        """
+        self._send(identifier, data)
+
+    def request(self, identifier: int) -> None:
+        """Ask by remote frame for the frame of an identifier; raises as :meth:`send`."""
+        self._sender.request(identifier)
+
     def receive(self, timeout_s: float) -> can.Message | None:
         """Return the next frame, or ``None``; for SDO transfers."""
         return self._receiver.receive(timeout_s)
@@ -167,9 +183,13 @@ class Master:
             self.delivering = False
 
     def close(self) -> None:
-        """Bring the nodes to pre-operational if possible, and let go of the bus."""
+        """Bring the nodes to pre-operational if possible, and let go of the bus.
+
+        A master that has only looked, as a scan does, leaves the nodes as they were.
+        """
         try:
-            self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
+            if self._commanded:
+                self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
         except HardwareError:
             pass  # a lost bus cannot be told anything
         finally:

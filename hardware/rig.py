@@ -15,8 +15,8 @@ from hardware.interlock import guard_axis, guard_shaft
 from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
-from hardware.rig_configuration import Part, RigConfiguration, check
 from hardware.rest import come_to_rest
+from hardware.rig_configuration import Part, RigConfiguration, check
 from hardware.roles import (
     PROTOCOLS,
     Cycle,

@@ -96,6 +96,10 @@ class Sdo:
         value = self._variable(at).decode_raw(raw)
         return value if isinstance(value, int | float | str) else bytes(value).hex()
 
+    def read_raw(self, at: Entry) -> bytes:
+        """Return an object's bytes, whatever the EDS says of it; raises as :meth:`read`."""
+        return self._guarded(at, "read", lambda: bytes(self._client.upload(*at)))
+
     def write(self, at: Entry, value: Number | str) -> None:
         """Write an object's value, encoded after the EDS; raises as :meth:`read`."""
         data = self._variable(at).encode_raw(value)
