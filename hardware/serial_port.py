@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import entry_points
 from typing import Final, Protocol, TypeAlias
 
 import serial
@@ -9,6 +11,9 @@ from serial.tools import list_ports
 
 from hardware.errors import LineError, PortOpenError, UnpluggedError
 
+# A package that brings URLs of its own for pyserial has an entry point here, named by the scheme;
+# loading it makes them known.
+URL_GROUP: Final = "pmm.serial_urls"
 _CHUNK: Final = 65536
 _LONGEST_LINE: Final = 256
 _FIRST_BACK_OFF_S, _LAST_BACK_OFF_S = 0.5, 8.0
@@ -63,6 +68,45 @@ Ports: TypeAlias = Callable[[str, PortSettings], Port]
 """Opens a port from its device's name and its settings."""
 
 
+@dataclass(frozen=True)
+class PluggedPort:
+    """A port of this machine: its device, the name to put into ``url``, and what it says it is."""
+
+    device: str
+    url: str
+    description: str
+
+
+def plugged_ports() -> tuple[PluggedPort, ...]:
+    """Return the ports of this machine; those with a serial number are named by it."""
+    return tuple(
+        PluggedPort(
+            port.device,
+            f"usb:{port.serial_number}" if port.serial_number else port.device,
+            port.description or "",
+        )
+        for port in sorted(list_ports.comports(), key=lambda one: one.device)
+    )
+
+
+@cache
+def know(scheme: str) -> None:
+    """Load what the installed packages bring for the URLs of a scheme; once is enough.
+
+    Raises
+    ------
+    OSError
+        If a package cannot be loaded.
+    """
+    for one in entry_points(group=URL_GROUP, name=scheme):
+        try:
+            one.load()
+        except Exception as error:  # a foreign package may raise anything while it is imported
+            raise OSError(f"{one.value}, which {scheme}:// needs, cannot be loaded: {error}") from (
+                error
+            )
+
+
 def resolve(url: str) -> str:
     """Return the device of a ``usb:SERIAL`` name; anything else as it is.
 
@@ -112,6 +156,7 @@ class SerialPort:
         if self._port is not None:
             return
         try:
+            know(self._settings.url.partition("://")[0])
             self._port = serial.serial_for_url(
                 resolve(self._settings.url),
                 baudrate=self._settings.baud_rate,

@@ -22,6 +22,8 @@ class Wire(canopen.Network):
     ----------
     outlets
         Where frames go, one queue for each bus that is plugged in.
+    guarded
+        What tells each node's state to whoever asks for it by remote frame.
     time_s
         Simulated time, the time stamp of the frames.
     number
@@ -34,6 +36,7 @@ class Wire(canopen.Network):
         super().__init__()
         self.outlets: list[deque[can.Message]] = []
         self.rpdos: dict[int, Callable[[bytes | bytearray], None]] = {}
+        self.guarded: dict[int, Callable[[], int]] = {}
         self.on_sync: Callable[[], None] = _nothing
         self.beats: dict[int, int] = {}
         self.time_s = 0.0
@@ -42,9 +45,11 @@ class Wire(canopen.Network):
     def take(self, frame: can.Message) -> None:
         """Take a frame from a controller; what the nodes answer lies in the outlets then."""
         identifier = frame.arbitration_id
-        if frame.is_error_frame or frame.is_remote_frame or frame.is_extended_id:
+        if frame.is_error_frame or frame.is_extended_id:
             return
-        if identifier == SYNC:
+        if frame.is_remote_frame:
+            self._guard(identifier)
+        elif identifier == SYNC:
             self.on_sync()
         elif (rpdo := self.rpdos.get(identifier)) is not None:
             rpdo(frame.data)
@@ -52,6 +57,12 @@ class Wire(canopen.Network):
             self.beats[identifier & 0x7F] = self.number
         else:
             self.notify(identifier, frame.data, self.time_s)
+
+    def _guard(self, identifier: int) -> None:
+        """Answer the question for a node's state (node guarding)."""
+        answer = self.guarded.get(identifier & 0x7F) if identifier & 0x780 == HEARTBEAT else None
+        if answer is not None:
+            self.emit(identifier, bytes((answer(),)))
 
     def emit(self, identifier: int, data: bytes) -> None:
         """Send a frame of a node."""

@@ -45,6 +45,7 @@ class SimulatedNode:
         self.operational = False
         self.beating = self.talking = True
         self._state = _STATES[_PRE_OPERATIONAL]
+        self._toggle = 0x80  # the first answer has the bit at 0
         self._packed: tuple[tuple[int, Callable[..., bytes], tuple[Entry, ...]], ...] = ()
         self._beat_every = self._watched = 0
         self._patience = 0.0  # ticks that the watched heartbeat may stay away; 0: not watched
@@ -53,6 +54,7 @@ class SimulatedNode:
         self._local.add_read_callback(self._read)
         self._local.add_write_callback(self._write)
         wire.subscribe(0, self._on_nmt)
+        wire.guarded[node_id] = self._guard
 
     def tick(self) -> None:
         """Go on by one sample."""
@@ -103,6 +105,11 @@ class SimulatedNode:
             return False
         last = self.wire.beats.get(self._watched)
         return last is not None and self.wire.number - last > self._patience
+
+    def _guard(self) -> int:
+        """Return the state, with a toggle bit that changes at each question (CiA 301)."""
+        self._toggle ^= 0x80
+        return self._state | self._toggle
 
     def _on_nmt(self, _identifier: int, data: bytearray, _time: float) -> None:
         command, node_id = data[0], data[1]

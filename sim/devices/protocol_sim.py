@@ -1,4 +1,8 @@
-"""pyserial's handler of ``sim://rig/part``: what a simulated device says is there at once."""
+"""pyserial's handler of ``sim://rig/part``: what a simulated device says is there at once.
+
+On a rig with a bus, time is SYNC. Where no bus is open, the port that was opened first brings
+the time: each look whether something is there is a sample. A rig looks once a cycle.
+"""
 
 from typing import TYPE_CHECKING
 
@@ -25,9 +29,10 @@ class Serial(serial.SerialBase):
         """
         self._rig, _, part = str(self.portstr).removeprefix("sim://").rpartition("/")
         try:
-            talkers = take(self._rig).talkers
+            self._world = take(self._rig)
         except ValueError as error:
             raise serial.SerialException(str(error)) from error
+        talkers = self._world.talkers
         if part not in talkers or not talkers[part].cable.plugged:
             give_back(self._rig)
             known = ", ".join(name for name, one in talkers.items() if one.cable.plugged)
@@ -35,17 +40,22 @@ class Serial(serial.SerialBase):
                 f"{self._rig} has no serial device {part!r}; plugged in: {known or 'none'}"
             )
         self._cable: Cable = talkers[part].cable
+        self._world.lookers.append(self)
         self.is_open = True
 
     def close(self) -> None:
         """Close the port."""
         if self.is_open:
+            self._world.lookers.remove(self)
             give_back(self._rig)
         self.is_open = False
 
     @property
     def in_waiting(self) -> int:
         """Bytes that are there."""
+        world = self._world
+        if not world.wire.outlets and world.lookers[0] is self:
+            world.tick()
         self._plugged()
         return len(self._cable.waiting)
 

@@ -19,7 +19,7 @@ _ANSWERS: Final = {b"V": b"V1013\r", b"N": b"Nsim1\r", b"F": b"F00\r"}
 
 
 class SlcanAdapter:
-    """An adapter that carries standard frames with data."""
+    """An adapter that carries standard frames, with data or remote."""
 
     def __init__(self) -> None:
         self._terminal = Terminal()
@@ -58,7 +58,7 @@ class SlcanAdapter:
         if kind in _OPENING or kind in _CLOSING:
             self._open = kind in _OPENING
             return _OK
-        if kind == b"t":
+        if kind in b"tr":
             return self._take(command)
         return _OK if kind in _SETTINGS else _ANSWERS.get(kind, _REFUSED)
 
@@ -68,7 +68,16 @@ class SlcanAdapter:
             data = bytes.fromhex(command[5:].decode("ascii"))
         except ValueError:
             return _REFUSED
-        if not self._open or len(data) != length or length > 8:
+        remote = command[:1] == b"r"
+        if not self._open or len(data) != (0 if remote else length) or length > 8:
             return _REFUSED
-        self._frames.append(can.Message(arbitration_id=identifier, data=data, is_extended_id=False))
+        self._frames.append(
+            can.Message(
+                arbitration_id=identifier,
+                data=None if remote else data,
+                dlc=length,
+                is_remote_frame=remote,
+                is_extended_id=False,
+            )
+        )
         return _SENT

@@ -63,6 +63,8 @@ class World:
         Faults: so many of the next pulses stay away; so many pulses come at once.
     bus_off, deaf
         Faults: the bus's adapter cannot send, or fails in receiving.
+    lookers
+        The serial ports that are open, in the order of their opening.
 
     Raises
     ------
@@ -78,6 +80,7 @@ class World:
         self.talkers: dict[str, Talker] = {}
         self.missed = self.extra = 0
         self.bus_off = self.deaf = False
+        self.lookers: list[object] = []
         self.plant = Plant(
             scene.rig,
             scene.around,

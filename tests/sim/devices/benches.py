@@ -76,24 +76,12 @@ def in_process(
     configuration = read_rig(whole, DRIVERS)
     scene = Scene(simulated or vertical_rig(), around or Surroundings(), **start)
     world = World(configuration, scene)
-    pacer = FreeRunning() if on_bus else Stepping(world)
     with (
         running(name, world),
-        Rig(configuration, lambda: world.time_s, pacer, nobody) as rig,
+        Rig(configuration, lambda: world.time_s, FreeRunning(), nobody) as rig,
     ):
         rig.prepare()
         yield rig, world
-
-
-class Stepping:
-    """Begins a cycle by letting the world go on by a sample: for rigs without a bus."""
-
-    def __init__(self, world: World) -> None:
-        self._world = world
-
-    def wait(self) -> float:
-        self._world.tick()
-        return 0.0
 
 
 def ready(rig: Rig, within: int = 3000) -> None:

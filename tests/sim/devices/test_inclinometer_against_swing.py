@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
@@ -12,7 +13,6 @@ from sim.devices.world import Scene, World
 from sim.pendulum.benches import swing_bench
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
-from tests.sim.devices.benches import Stepping
 
 RATE_HZ, SEED, SIGNAL = 256.0, 4, "recorded_inclinometer_angle"
 
@@ -27,7 +27,7 @@ def test_the_swing_arrives_as_the_chain_recorded_it() -> None:
     world = World(configuration, Scene(vertical_rig(), angles=swing))
     with (
         running("swing", world),
-        Rig(configuration, lambda: world.time_s, Stepping(world), nobody) as rig,
+        Rig(configuration, lambda: world.time_s, FreeRunning(), nobody) as rig,
     ):
         rig.prepare()
         for _ in range(300):
