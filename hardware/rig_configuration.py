@@ -19,6 +19,7 @@ ROLES: Final = {
     "inclinometer": Role.INCLINOMETER,
     "forces": Role.FORCES,
 }
+TABLES: Final = (*ROLES, "bus", "cycle_rate_hz")  # of rig.toml; others are not the devices'
 _SYNC_BYTES, _BEAT_BYTES = 1, 1
 
 
@@ -80,9 +81,11 @@ def read_rig(
         With a line for every error of the whole configuration.
     """
     faults: list[str] = []
-    known = [*ROLES, "bus", "cycle_rate_hz"]
-    faults += [f"{key} is not a known table; known: {', '.join(known)}" for key in tables if
-               key not in known]  # fmt: skip
+    faults += [
+        f"{key} is not a known table; known: {', '.join(TABLES)}"
+        for key in tables
+        if key not in TABLES
+    ]
     found = {
         role: _parts(role, tables[role], faults, None if among is None else tuple(among))
         for role in ROLES

@@ -1,9 +1,32 @@
 """Reading ``plan.toml``: a plan with all its runs, in the order in which they are made."""
 
+import hashlib
+from collections import Counter
+from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 
+from hardware.description.errors import ConfigurationError
+from pmm.configuration import Fault, Place, as_error, read_toml, validate
+from pmm.plan.ordering import runs_of
+from pmm.plan.plan_rules import (
+    channel_faults,
+    control_faults,
+    end_faults,
+    entry_faults,
+    gate_faults,
+    rig_faults,
+)
+from pmm.plan.plan_tables import Control, Defaults, Entry, PlanTables, Zero
+from pmm.plan.plan_units import EXTRA_KEYS, expand_units
+from pmm.plan.rig_file import Examined, RigFile, examine_rig
 from pmm.plan.run_plan import RunPlan
+
+T = TypeVar("T")
+
+_NOT_IN_FILE_NAMES = set('/\\:*?"<>|\0')
 
 
 @dataclass(frozen=True)
@@ -40,4 +63,99 @@ def read_plan(path: str | Path) -> Plan:
     ConfigurationError
         With every error of both files.
     """
-    raise NotImplementedError(path)
+    return read_plan_and_rig(path)[0]
+
+
+def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
+    """Read a plan and its rig.
+
+    Raises
+    ------
+    ConfigurationError
+        If a file cannot be read, or for unknown keys (with a suggestion), wrong types, values
+        beyond their limits, keys that a kind of run needs or has no use for, motions and channels
+        that the rig does not have, and runs of the same name: all errors of both files.
+    """
+    path = Path(path)
+    original = read_toml(path)
+    table = deepcopy(original)
+    faults: list[Fault] = []
+    expand_units(table, faults)
+    tables = validate(PlanTables, table, faults, EXTRA_KEYS)
+    rig_path = _rig_path(path, table)
+    found = examine_rig(rig_path)
+    faults += _faults(table, found)
+    runs: tuple[RunPlan, ...] = ()
+    if tables is not None and not faults and found.rig is not None:
+        runs = runs_of(tables, found.rig.oscillator, found.channels or ())
+        faults += _name_faults(runs)
+    errors = [as_error(path, faults, original)] if faults else []
+    errors += [found.error] if found.error is not None else []
+    if errors or tables is None or found.rig is None:
+        raise ConfigurationError("\n".join(map(str, errors)))
+    sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
+    name = tables.name or path.resolve().parent.name
+    return Plan(name, path, rig_path, runs, tables.operator, sha256), found.rig
+
+
+def _rig_path(path: Path, table: dict[str, Any]) -> Path:
+    rig = table.get("rig")
+    return path.parent / (rig if isinstance(rig, str) else "rig.toml")
+
+
+def _faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield what is wrong with tables that are right key by key; each is looked at by itself."""
+    name = table.get("name", "")
+    if isinstance(name, str) and set(name) & _NOT_IN_FILE_NAMES:
+        yield Fault(("name",), f"= {name!r} cannot be the name of a folder")
+    runs = table.get("runs")
+    if not runs:
+        yield Fault((), "the plan has no runs; add a table [[runs]] for each motion")
+    defaults = _part(Defaults, table, "defaults") or Defaults()
+    for number, one in enumerate(runs if isinstance(runs, list) else []):
+        entry = validate(Entry, one, []) if isinstance(one, dict) else None
+        if entry is not None:
+            yield from _entry_faults(one, entry, defaults, found, ("runs", number))
+    yield from _table_faults(table, found)
+
+
+def _entry_faults(
+    table: dict[str, Any], entry: Entry, defaults: Defaults, found: Examined, place: Place
+) -> Iterator[Fault]:
+    if set(entry.name) & _NOT_IN_FILE_NAMES or entry.name.startswith("."):
+        yield Fault((*place, "name"), f"= {entry.name!r} cannot be the name of a file")
+    yield from entry_faults(table, entry, place)
+    yield from end_faults(entry, defaults, place)
+    yield from rig_faults(entry.motion, found.oscillator, place)
+    yield from channel_faults(entry, found.channels, place)
+
+
+def _table_faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield what is wrong with the tables beside the runs."""
+    defaults = _part(Defaults, table, "defaults")
+    if defaults is not None:
+        yield from gate_faults(defaults, ("defaults",))
+    zero = _part(Zero, table, "zero")
+    if zero is not None:
+        yield from gate_faults(zero, ("zero",))
+    control = _part(Control, table, "control")
+    if control is not None:
+        yield from gate_faults(control, ("control",))
+        yield from control_faults(control, ("control",))
+        yield from rig_faults(control.motion, found.oscillator, ("control",))
+
+
+def _part(kind: type[T], table: dict[str, Any], key: str) -> T | None:
+    part = table.get(key)
+    return validate(kind, part, []) if isinstance(part, dict) else None
+
+
+def _name_faults(runs: tuple[RunPlan, ...]) -> Iterator[Fault]:
+    counts = Counter(one.name.casefold() for one in runs)
+    for name, count in counts.items():
+        if count > 1:
+            yield Fault(
+                (),
+                f"{count} runs would be called {name!r}; a recording is named by its run: give the "
+                "entries names of their own, and each value of a list once",
+            )

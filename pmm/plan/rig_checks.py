@@ -4,13 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
-from hardware.rig_configuration import ROLES, RigConfiguration
+from hardware.rig_configuration import TABLES, RigConfiguration
 from pmm.configuration import Fault, unknown, validate
 from pmm.model_uncertainty import take_uncertainty
 from pmm.plan.rig_tables import HANDED_ON, Gauge, RigTables
 
 SIMULATED: Final = "pmm-simulated"  # the simulated rig's name among the buses
-DEVICES: Final = (*ROLES, "bus", "cycle_rate_hz")
 _OWN: Final = tuple(RigTables.__dataclass_fields__)
 _ABOVE_0: Final = (
     "carriage_acceleration_m_s2",
@@ -37,7 +36,7 @@ def _unknown_tables(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield the top's unknown keys and take them out: the devices' names are known ones too."""
     for key in [key for key in table if key not in _OWN]:
         del table[key]
-        yield Fault((key,), unknown((key,), (*_OWN, *DEVICES)))
+        yield Fault((key,), unknown((key,), (*_OWN, *TABLES)))
 
 
 def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
@@ -91,11 +90,12 @@ def point_at_simulation(devices: dict[str, Any], path: Path) -> None:
 
 
 def channels_of(hardware: RigConfiguration) -> tuple[str, ...]:
-    """Return the names of the force channels."""
+    """Return the names of the channels that measure forces."""
     return tuple(
         getattr(one, "name", str(one))
         for part in hardware.forces
         for one in getattr(part.settings, "channels", ())
+        if getattr(one, "unit", "N") == "N"
     )
 
 

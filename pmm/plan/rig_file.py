@@ -10,11 +10,10 @@ from typing import Any
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
-from hardware.rig_configuration import RigConfiguration, read_rig
+from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.oscillator_table import expand_preset
 from pmm.plan.rig_checks import (
-    DEVICES,
     SIMULATED,
     channels_of,
     gauge_faults,
@@ -124,7 +123,7 @@ def examine_rig(path: Path) -> Examined:
         return Examined(error=error)
     faults: list[Fault] = []
     table = deepcopy(original)
-    devices = {key: table.pop(key) for key in DEVICES if key in table}
+    devices = {key: table.pop(key) for key in TABLES if key in table}
     faults += [*limit_faults(table), *table_faults(table)]
     expand_preset(table, faults)
     own = validate(RigTables, table, faults)

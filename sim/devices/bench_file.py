@@ -10,7 +10,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from hardware.driver import GROUP, read_settings
-from hardware.rig_configuration import RigConfiguration, read_rig
+from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from sim.devices.plant import Surroundings
 from sim.devices.world import Scene, World
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
@@ -77,7 +77,8 @@ def read_bench(path: Path) -> Bench:
     tables = _load(path)
     rig = tables.pop("rig", None)
     if isinstance(rig, str):
-        rig = _load(path.parent / rig)
+        # The file says more than which devices there are; who runs the rig reads that.
+        rig = {key: one for key, one in _load(path.parent / rig).items() if key in TABLES}
     if not isinstance(rig, dict):
         raise ConfigurationError(f"{path}: rig = {rig!r} has to be a table or the path of a file")
     simulated = tables.pop("simulated", None)

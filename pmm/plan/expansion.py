@@ -1,0 +1,193 @@
+"""From the entries of a plan to runs: every combination of an entry's lists."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
+from typing import Any, TypeVar
+
+from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.plan_tables import Defaults, Entry
+from pmm.plan.run_plan import LoadDirection, LoadStep, RunPlan
+
+T = TypeVar("T")
+Lists = Sequence[Sequence[Any]]
+Combine = Callable[[Lists], Iterator[tuple[Any, ...]]]
+_PHASED = (Motion.PITCH, Motion.YAW, Motion.YAW_DRIFT)
+
+
+def strut_phase_of(
+    motion: Motion, frequency_hz: float, speed_m_s: float, half_spacing_m: float
+) -> float:
+    """Return the strut phase in radians that makes a motion by its name.
+
+    0 for heave and sway. For pitch and yaw ``tan(phi / 2) = omega l / U``, with which the angle of
+    attack stays zero (``docs/conventions.md``): pi at zero speed.
+    """
+    if motion not in _PHASED:
+        return 0.0
+    return 2.0 * math.atan2(2.0 * math.pi * frequency_hz * half_spacing_m, speed_m_s)
+
+
+def all_of(lists: Lists) -> Iterator[tuple[Any, ...]]:
+    """Yield all combinations of lists, the last fastest."""
+    return product(*lists)
+
+
+def snake(lists: Lists) -> Iterator[tuple[Any, ...]]:
+    """Yield all combinations of lists, the last fastest, each list there and back again.
+
+    From each combination to the next a single list moves on, by one step (a reflected Gray code).
+    """
+    if not lists:
+        yield ()
+        return
+    back = False
+    for head in lists[0]:
+        rest = list(snake(lists[1:]))
+        for tail in reversed(rest) if back else rest:
+            yield (head, *tail)
+        back = not back
+
+
+def expand(
+    entry: Entry,
+    defaults: Defaults,
+    oscillator: Oscillator,
+    channels: Sequence[str],
+    combine: Combine,
+) -> list[RunPlan]:
+    """Return the runs of an entry.
+
+    Parameters
+    ----------
+    channels
+        The rig's force channels, for loads on all of them.
+    combine
+        :func:`all_of` or :func:`snake`: how the lists are gone through.
+    """
+    if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
+        return _loads(entry, defaults, channels)
+    repeats = range(1, 1 + _either(entry.repeats, defaults.repeats))
+    if entry.kind is RunKind.RESTORING and not entry.frequencies_hz:
+        frequencies: tuple[float, ...] = (oscillator.frequency_hz.low,)
+    else:
+        frequencies = entry.frequencies_hz or (0.0,)
+    lists = (
+        repeats,
+        entry.speeds_m_s or (0.0,),
+        entry.drifts_rad or (0.0,),
+        entry.strut_phases_rad or (math.nan,),
+        entry.amplitudes_m or (0.0,),
+        frequencies,
+    )
+    return [_run(entry, defaults, oscillator, one) for one in combine(lists)]
+
+
+def _either(value: T | None, default: T) -> T:
+    return default if value is None else value
+
+
+def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]) -> RunPlan:
+    repeat, speed, drift, phase, amplitude, frequency = one
+    motion = entry.motion or Motion.NONE
+    if motion is not Motion.PHASE:
+        phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
+    in_air = entry.kind.in_air
+    set_point = SetPoint(
+        frequency,
+        amplitude,
+        phase,
+        # In air the speed tells the strut phase of the run in water that it belongs to.
+        0.0 if in_air else speed,
+        Medium.AIR if in_air else entry.medium or Medium.WATER,
+    )
+    return RunPlan(
+        name=_name(entry, one),
+        kind=entry.kind,
+        motion=motion,
+        set_point=set_point,
+        drift_rad=drift,
+        repeat=repeat,
+        known_mass=entry.known_mass,
+        prompts=(entry.prompt,) if entry.prompt else (),
+        entry=entry.name or _prefix(entry),
+        pause_before_s=_either(entry.pause_s, defaults.pause_s),
+        **_lengths(entry, defaults, oscillates=frequency > 0.0),
+    )
+
+
+def _lengths(entry: Entry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:
+    """Return how long a run takes: its periods, or its duration."""
+    if not oscillates:
+        return {"duration_s": _either(entry.duration_s, defaults.duration_s)}
+    periods = _either(entry.periods, defaults.periods)
+    target = _either(entry.target_relative, defaults.target_relative)
+    most = _either(entry.max_periods, defaults.max_periods)
+    return {
+        "periods": periods,
+        "settling_periods": _either(entry.settling_periods, defaults.settling_periods),
+        "target_relative": target,
+        "max_periods": periods if target is None or most is None else most,
+    }
+
+
+def _prefix(entry: Entry) -> str:
+    if entry.kind is RunKind.OSCILLATION and entry.motion is not None:
+        return str(entry.motion)
+    return f"{entry.kind}-{entry.motion}" if entry.motion else str(entry.kind)
+
+
+def _name(entry: Entry, one: tuple[Any, ...]) -> str:
+    """Return ``heave-f0.5-a20-u1.2-r2``: mm and degrees; what the entry does not vary is left out.
+
+    Frequency and amplitude always stand there.
+    """
+    repeat, speed, drift, phase, amplitude, frequency = one
+    parts = [entry.name or _prefix(entry)]
+    if frequency and entry.kind is not RunKind.CONTROL:
+        parts += [f"f{frequency:g}", f"a{1e3 * amplitude:.6g}"]
+    if len(entry.speeds_m_s) > 1:
+        parts.append(f"u{speed:g}")
+    if len(entry.drifts_rad) > 1:
+        parts.append(f"b{math.degrees(drift):.6g}")
+    if len(entry.strut_phases_rad) > 1:
+        parts.append(f"p{math.degrees(phase):.6g}")
+    if repeat > 1:
+        parts.append(f"r{repeat}")
+    return "-".join(parts)
+
+
+def _loads(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> list[RunPlan]:
+    """Return load steps up and down again, or one push, for each channel and repeat."""
+    steps = [(load, LoadDirection.UP) for load in entry.loads_n]
+    if entry.kind is RunKind.CHECK_WEIGHT:
+        steps += [(load, LoadDirection.DOWN) for load in entry.loads_n[-2::-1]]
+    runs = []
+    for repeat in range(1, 1 + _either(entry.repeats, defaults.repeats)):
+        for channel in entry.channels or channels:
+            for number, (load, direction) in enumerate(steps, 1):
+                step = LoadStep(channel, load, direction)
+                runs.append(_loaded(entry, defaults, step, repeat, number))
+    return runs
+
+
+def _loaded(entry: Entry, defaults: Defaults, step: LoadStep, repeat: int, number: int) -> RunPlan:
+    parts = [entry.name or _prefix(entry), step.channel]
+    if entry.kind is RunKind.CHECK_WEIGHT:
+        parts.append(f"{number:02d}-{step.force_n:g}n")
+    if repeat > 1:
+        parts.append(f"r{repeat}")
+    return RunPlan(
+        name="-".join(parts),
+        kind=entry.kind,
+        motion=Motion.NONE,
+        set_point=SetPoint(0.0, 0.0, medium=entry.medium or Medium.WATER),
+        duration_s=_either(entry.duration_s, defaults.duration_s),
+        pause_before_s=_either(entry.pause_s, defaults.pause_s),
+        repeat=repeat,
+        load=step,
+        prompts=(entry.prompt,) if entry.prompt else (),
+        entry=entry.name or _prefix(entry),
+    )

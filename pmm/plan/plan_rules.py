@@ -1,0 +1,188 @@
+"""What an entry of each kind needs, and what is of no use to it."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, TypeVar
+
+from hardware.description.oscillator import Oscillator, Plane
+from pmm.configuration import Fault, Place, unknown
+from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.plan_tables import Control, Defaults, Entry, Zero
+
+T = TypeVar("T")
+
+_KEYS: Final = tuple(Entry.__dataclass_fields__)
+_ALWAYS: Final = {"kind", "name", "repeats", "pause_s", "prompt"}
+_GATE: Final = {"periods", "settling_periods", "target_relative", "max_periods"}
+_MATRIX: Final = _GATE | {
+    "motion",
+    "frequencies_hz",
+    "amplitudes_m",
+    "speeds_m_s",
+    "strut_phases_rad",
+    "drifts_rad",
+}
+_REST: Final = {"duration_s", "medium"}
+_TAKES: Final[dict[RunKind, set[str]]] = {
+    RunKind.OSCILLATION: _MATRIX,
+    RunKind.DRY: _MATRIX - {"drifts_rad"},
+    RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
+    RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
+    RunKind.CHECK_WEIGHT: _REST | {"channels", "loads_n"},
+    RunKind.PUSH: _REST | {"channels", "loads_n"},
+    RunKind.PLUCK: _REST,
+    RunKind.ZERO: _REST,
+    RunKind.STATIC_DRIFT: {"duration_s", "speeds_m_s", "drifts_rad"},
+    RunKind.STRAIGHT_TOW: {"duration_s", "speeds_m_s"},
+}
+_NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
+    RunKind.OSCILLATION: ("motion", "frequencies_hz", "amplitudes_m"),
+    RunKind.DRY: ("motion", "frequencies_hz", "amplitudes_m"),
+    RunKind.KNOWN_MASS: ("motion", "frequencies_hz", "amplitudes_m", "known_mass"),
+    RunKind.RESTORING: ("motion", "amplitudes_m"),
+    RunKind.CHECK_WEIGHT: ("loads_n",),
+    RunKind.PUSH: ("loads_n",),
+    RunKind.STATIC_DRIFT: ("speeds_m_s", "drifts_rad"),
+    RunKind.STRAIGHT_TOW: ("speeds_m_s",),
+}
+_SHOWN: Final = {
+    "amplitudes_m": "amplitudes_mm",
+    "drifts_rad": "drifts_deg",
+    "strut_phases_rad": "strut_phases_deg",
+}
+_SINGLE: Final = {"strut_phases_deg": "strut_phase_deg", "drifts_deg": "drift_deg"}
+_ABOVE_0: Final = ("frequencies_hz", "amplitudes_m")
+_NOT_BELOW_0: Final = ("speeds_m_s", "loads_n")
+_PLANES: Final = {
+    Motion.HEAVE: Plane.VERTICAL,
+    Motion.PITCH: Plane.VERTICAL,
+    Motion.SWAY: Plane.HORIZONTAL,
+    Motion.YAW: Plane.HORIZONTAL,
+    Motion.YAW_DRIFT: Plane.HORIZONTAL,
+}
+
+
+def entry_faults(table: dict[str, Any], entry: Entry, place: Place) -> Iterator[Fault]:
+    """Yield what is wrong with an entry that is right key by key.
+
+    Parameters
+    ----------
+    table
+        The entry as written, in SI.
+    """
+    kind = entry.kind
+    if kind is RunKind.CONTROL:
+        yield Fault((*place, "kind"), '= "control" belongs into the table [control]')
+        return
+    for key in table:
+        if key in _KEYS and key not in _ALWAYS | _TAKES[kind]:
+            yield Fault((*place, _SHOWN.get(key, key)), f"is of no use to a run of kind {kind}")
+    for key in _NEEDS.get(kind, ()):
+        if not table.get(key) and table.get(key) != 0:
+            yield Fault(place, f"needs {_SHOWN.get(key, key)} for a run of kind {kind}")
+    yield from _number_faults(entry, place)
+    yield from _motion_faults(entry, place)
+
+
+def _number_faults(entry: Entry, place: Place) -> Iterator[Fault]:
+    for key in (*_ABOVE_0, *_NOT_BELOW_0):
+        strict = key in _ABOVE_0
+        for value in getattr(entry, key):
+            if value < 0.0 or (strict and value == 0.0):
+                asked = "above 0" if strict else "0 or more"
+                if key == "loads_n":
+                    asked += "; the sign of a load is that of its channel"
+                yield Fault((*place, key), f"has {value:g}, which should be {asked}")
+    if entry.kind is RunKind.PUSH and len(entry.loads_n) > 1:
+        yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
+    if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:
+        yield Fault((*place, "speeds_m_s"), "has 0; a tow needs a speed above 0")
+    yield from gate_faults(entry, place)
+
+
+def gate_faults(one: Entry | Defaults | Control | Zero, place: Place) -> Iterator[Fault]:
+    """Yield counts and times that cannot be."""
+    for key in ("repeats", "periods", "max_periods", "every", "duration_s"):
+        value = getattr(one, key, None)
+        if value is not None and value <= 0:
+            yield Fault((*place, key), f"= {value:g} should be above 0")
+    for key in ("settling_periods", "pause_s"):
+        value = getattr(one, key, None)
+        if value is not None and value < 0:
+            yield Fault((*place, key), f"= {value:g} should be 0 or more")
+    target = getattr(one, "target_relative", None)
+    if target is not None and not 0.0 < target < 1.0:
+        yield Fault((*place, "target_relative"), f"= {target:g} should be between 0 and 1")
+
+
+def control_faults(control: Control, place: Place) -> Iterator[Fault]:
+    """Yield what is wrong with the control condition."""
+    for key in ("frequency_hz", "amplitude_m"):
+        if getattr(control, key) <= 0.0:
+            yield Fault((*place, key), f"= {getattr(control, key):g} should be above 0")
+    if control.speed_m_s < 0.0:
+        yield Fault((*place, "speed_m_s"), f"= {control.speed_m_s:g} should be 0 or more")
+    for fault in _motion_faults(control.entry(), place):
+        message = fault.message
+        for many, single in _SINGLE.items():
+            message = message.replace(many, single)
+        yield Fault(tuple(_SINGLE.get(str(key), key) for key in fault.place), message)
+
+
+def end_faults(entry: Entry, defaults: Defaults, place: Place) -> Iterator[Fault]:
+    """Yield what is wrong with an end by target, defaults included."""
+    if entry.motion is None:
+        return
+    target = _first(entry.target_relative, defaults.target_relative)
+    fewest = entry.periods or defaults.periods
+    most = _first(entry.max_periods, defaults.max_periods)
+    if target is not None and most is None:
+        yield Fault(place, "has a target_relative and needs max_periods, where it ends at last")
+    elif target is None and most is not None:
+        yield Fault(place, "has max_periods and needs target_relative, or periods alone")
+    elif most is not None and most < fewest:
+        yield Fault(place, f"has max_periods = {most}, which is below periods = {fewest}")
+
+
+def _first(value: T | None, default: T | None) -> T | None:
+    return default if value is None else value
+
+
+def _motion_faults(entry: Entry, place: Place) -> Iterator[Fault]:
+    motion = entry.motion
+    if motion is Motion.NONE:
+        yield Fault((*place, "motion"), '= "none" is for runs at rest, which need no motion')
+    phases = bool(entry.strut_phases_rad)
+    if motion is Motion.PHASE and not phases:
+        yield Fault(place, 'needs strut_phases_deg for the motion "phase"')
+    elif phases and motion is not Motion.PHASE:
+        what = "follows from the motion" if motion else "goes with a motion"
+        yield Fault((*place, "strut_phases_deg"), f'{what}; give it with motion = "phase"')
+    drifts = bool(entry.drifts_rad)
+    if motion is Motion.YAW_DRIFT and not drifts:
+        yield Fault(place, 'needs drifts_deg for the motion "yaw-drift"')
+    elif motion in (Motion.HEAVE, Motion.PITCH, Motion.YAW) and drifts:
+        yield Fault((*place, "drifts_deg"), f"is of no use to {motion}; yaw-drift has a drift")
+
+
+def rig_faults(
+    motion: Motion | None, oscillator: Oscillator | None, place: Place
+) -> Iterator[Fault]:
+    """Yield a motion that the rig's plane does not have."""
+    plane = _PLANES.get(motion) if motion is not None else None
+    if oscillator is not None and plane is not None and plane is not oscillator.plane:
+        own = ", ".join(one for one, its in _PLANES.items() if its is oscillator.plane)
+        yield Fault(
+            (*place, "motion"),
+            f'= "{motion}" is a motion of the {plane} oscillator; the rig\'s is '
+            f"{oscillator.plane}: {own}, phase",
+        )
+
+
+def channel_faults(entry: Entry, channels: Sequence[str] | None, place: Place) -> Iterator[Fault]:
+    """Yield channels that the rig does not have."""
+    if channels is None:
+        return
+    for name in entry.channels:
+        if name not in channels:
+            said = unknown((name,), channels).replace("a known key", "a force channel of the rig")
+            yield Fault((*place, "channels"), f"has {name!r}, which {said}")

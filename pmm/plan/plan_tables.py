@@ -1,0 +1,169 @@
+"""The tables of ``plan.toml``."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import ClassVar
+
+from hardware.description.setpoint import Medium
+from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.run_plan import KnownMass
+
+
+class Scheme(StrEnum):
+    """In which order the runs of a matrix are made."""
+
+    AS_WRITTEN = "as-written"
+    RANDOM = "random"
+    SNAKE = "snake"  # back and forth: from run to run one setting changes, by one step
+
+
+@dataclass(frozen=True)
+class Order:
+    """The order of oscillations, drifts and tows that follow each other in the file.
+
+    Attributes
+    ----------
+    seed
+        Of the random order.
+    across_entries
+        Whether a random order mixes neighbouring entries, or keeps each together.
+    """
+
+    scheme: Scheme = Scheme.AS_WRITTEN
+    seed: int = 1
+    across_entries: bool = False
+
+
+@dataclass(frozen=True)
+class Zero:
+    """Records at rest before, between and after the runs that need the gauges' zero.
+
+    Attributes
+    ----------
+    every
+        So many runs share the zero between two zero runs; 1 has one before and after each run.
+    """
+
+    duration_s: float = 20.0
+    every: int = 1
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What holds for every entry that does not say otherwise."""
+
+    periods: int = 10
+    settling_periods: int = 3
+    repeats: int = 1
+    pause_s: float = 0.0
+    duration_s: float = 20.0
+    target_relative: float | None = None
+    max_periods: int | None = None
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A matrix of runs: every combination of its lists.
+
+    Attributes
+    ----------
+    name
+        What its runs' names begin with; the motion or the kind by default.
+    amplitudes_m
+        **Amplitudes** of each strut, half the stroke.
+    strut_phases_rad
+        For the motion ``"phase"``.
+    drifts_rad
+        Steady drift angles, positive for the bow to starboard.
+    channels, loads_n
+        Gauges and their loads, of check weights and pushes.
+    medium
+        Of runs that may be made in either.
+    prompt
+        What the operator is asked to do before each of its runs.
+    """
+
+    kind: RunKind = RunKind.OSCILLATION
+    motion: Motion | None = None
+    name: str = ""
+    frequencies_hz: tuple[float, ...] = ()
+    amplitudes_m: tuple[float, ...] = ()
+    speeds_m_s: tuple[float, ...] = ()
+    strut_phases_rad: tuple[float, ...] = ()
+    drifts_rad: tuple[float, ...] = ()
+    periods: int | None = None
+    settling_periods: int | None = None
+    repeats: int | None = None
+    pause_s: float | None = None
+    duration_s: float | None = None
+    target_relative: float | None = None
+    max_periods: int | None = None
+    channels: tuple[str, ...] = ()
+    loads_n: tuple[float, ...] = ()
+    known_mass: KnownMass | None = None
+    medium: Medium | None = None
+    prompt: str = ""
+
+
+@dataclass(frozen=True)
+class Control:
+    """The condition that is repeated: before, between and after the oscillations in water.
+
+    Attributes
+    ----------
+    every
+        After how many oscillations it is repeated.
+    amplitude_m
+        **Amplitude** of each strut.
+    """
+
+    motion: Motion
+    frequency_hz: float
+    amplitude_m: float
+    every: int
+    speed_m_s: float = 0.0
+    strut_phase_rad: float | None = None
+    drift_rad: float = 0.0
+    periods: int | None = None
+    settling_periods: int | None = None
+    pause_s: float | None = None
+
+    def entry(self) -> Entry:
+        """Return it as an entry of one run."""
+        return Entry(
+            kind=RunKind.CONTROL,
+            motion=self.motion,
+            name="control",
+            frequencies_hz=(self.frequency_hz,),
+            amplitudes_m=(self.amplitude_m,),
+            speeds_m_s=(self.speed_m_s,),
+            strut_phases_rad=() if self.strut_phase_rad is None else (self.strut_phase_rad,),
+            drifts_rad=(self.drift_rad,) if self.drift_rad else (),
+            periods=self.periods,
+            settling_periods=self.settling_periods,
+            repeats=1,
+            pause_s=self.pause_s,
+        )
+
+
+@dataclass(frozen=True)
+class PlanTables:
+    """The whole file.
+
+    Attributes
+    ----------
+    rig
+        The rig's file, its path from this one.
+    """
+
+    name: str = ""
+    rig: str = "rig.toml"
+    operator: str = ""
+    defaults: Defaults = field(default_factory=Defaults)
+    order: Order = field(default_factory=Order)
+    zero: Zero | None = None
+    control: Control | None = None
+    runs: tuple[Entry, ...] = ()
+
+    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
