@@ -1,0 +1,241 @@
+"""Records a run into a folder of its own, so that a crash at any moment costs a second at most.
+
+The loop hands everything in and calls :meth:`RunRecorder.tick` once a cycle; nothing of it waits for
+the disk. ``docs/recording-safety.md`` describes the folder.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag
+from hardware.raw_log import Frame, FramePacker, container, file_header
+from hardware.roles import Pulse
+from pmm.recorder.disk import DiskWatch
+from pmm.recorder.files import (
+    BUS,
+    CYCLES,
+    EVENTS,
+    HARMONICS,
+    HEADER,
+    LINES,
+    MARKER,
+    PULSES,
+    SAMPLES,
+    check_empty,
+    write_whole,
+)
+from pmm.recorder.header import RunHeader
+from pmm.recorder.journal import Journal, Piece
+from pmm.recorder.lateness import CycleStatistics, Lateness
+from pmm.recorder.recording import convert, marker_text, read_run
+from pmm.recorder.samples import Piece as SamplePiece
+from pmm.recorder.samples import SampleWriter
+from pmm.recorder.texts import as_line
+
+_SHARE: Final = 0.5  # of flush_s: what is left of it is for the disk
+_MOST_BEHIND: Final = 20  # hand-overs that may wait for a disk that has stopped answering
+
+
+class RecordingStalledError(DataError):
+    """The disk takes nothing any more: what is recorded now would be lost."""
+
+
+class Outcome(StrEnum):
+    """How a run ended."""
+
+    COMPLETE = "complete"
+    STOPPED = "stopped"  # by the operator
+    FAULT = "fault"
+
+
+class RunRecorder:
+    """Records one run; use it in a ``with`` block.
+
+    Left without :meth:`close`, the journals stay as they are, without a completion marker: what a
+    crash leaves, and ``pmm recover`` makes a recording of.
+
+    Parameters
+    ----------
+    folder
+        Made if it is not there; it must not hold a run.
+    flush_s
+        After so long at the latest everything is on the disk.
+    disk
+        Watches the room on the disk.
+
+    Raises
+    ------
+    RunExistsError
+        If the folder holds a run.
+    DiskFullError, DataError
+        If the files cannot be made.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        header: RunHeader,
+        *,
+        flush_s: float = 1.0,
+        disk: DiskWatch | None = None,
+    ) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        check_empty(folder)
+        self.folder = folder
+        self.header = header
+        self._disk = disk
+        self._every_s = _SHARE * flush_s
+        self._due_s: float | None = None
+        self._writer = SampleWriter(header)
+        self._frames = FramePacker()
+        self._samples: list[SamplePiece] = []
+        self._texts: dict[str, list[bytes]] = {}
+        self._next_sync = 0
+        self._late = Lateness(1.0 / header.sample_rate_hz)
+        self._closed = False
+        write_whole(folder / HEADER, header.to_json())
+        self._journal = Journal(folder, {SAMPLES: self._writer.head(), BUS: file_header()})
+        self.frame: Callable[[Frame], None] = self._frames.take
+        self.cycle_statistics: Callable[[float], None] = self._late.add
+
+    def __enter__(self) -> "RunRecorder":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            self._hand_over()
+        except (DataError, OSError):
+            pass  # the journal knows, and nothing is to hide what ended the block
+        finally:
+            self._journal.close()
+
+    def samples(self, first_sync: int, values: NDArray[np.float64]) -> None:
+        """Take samples of consecutive SYNCs; shape ``(channels, n)``, NaN where there is none.
+
+        Raises
+        ------
+        DataError
+            If the number of channels is wrong or a SYNC comes twice; a gap is kept as one.
+        """
+        if values.ndim != 2 or values.shape[0] != len(self.header.channels):
+            raise DataError(
+                f"samples of shape {values.shape} do not fit {len(self.header.channels)} channels"
+            )
+        if first_sync < self._next_sync:
+            raise DataError(
+                f"the sample of SYNC {first_sync} comes again; the next one is {self._next_sync}"
+            )
+        if values.shape[1]:
+            self._next_sync = first_sync + values.shape[1]
+            self._samples.append((first_sync, values))
+
+    def pulse(self, pulse: Pulse) -> None:
+        """Take a pulse of the photocell."""
+        angle = pulse.shaft_angle_rad
+        known = None if np.isnan(angle) else angle
+        self._say(PULSES, [pulse.number, pulse.time_s, known])
+
+    def event(self, cycle: int, time_s: float, kind: str, text: str) -> None:
+        """Take an event: a change of state, an alarm, what the operator answered."""
+        self._say(EVENTS, {"cycle": cycle, "time_s": time_s, "kind": kind, "text": text})
+
+    def harmonic(self, reading: Mapping[str, Any]) -> None:
+        """Take a final reading of the live resolver (see :func:`pmm.recorder.live_path.as_record`)."""
+        self._say(HARMONICS, dict(reading))
+
+    def line(self, cycle: int, device: str, data: bytes) -> None:
+        """Take a line of a serial device."""
+        self._say(LINES, [cycle, device, data.decode("latin-1")])
+
+    def statistics(self) -> CycleStatistics:
+        """Return how late the cycles were so far."""
+        return self._late.statistics()
+
+    def tick(self, now_s: float) -> None:
+        """Hand everything to the disk when it is time.
+
+        Parameters
+        ----------
+        now_s
+            Seconds of a monotonic clock: the wall's, because that is what the promise is about.
+
+        Raises
+        ------
+        DiskFullError
+            If there is no room left; the run has to stop, what is written stays.
+        RecordingStalledError
+            If the disk has stopped answering.
+        """
+        if self._due_s is None:
+            self._due_s = now_s + self._every_s
+        if now_s < self._due_s:
+            return
+        self._due_s = now_s + self._every_s
+        self._hand_over()
+        if self._journal.behind > _MOST_BEHIND:
+            behind_s = self._journal.behind * self._every_s
+            raise RecordingStalledError(
+                f"{self.folder}: the disk is {behind_s:.0f} s behind; stop and look at it"
+            )
+        if self._disk is not None:
+            self._disk.check_during(self._journal.size)
+
+    def close(self, outcome: Outcome, flags: Sequence[Flag] = ()) -> Path:
+        """Write the completion marker and the recording as NetCDF; return its path.
+
+        Raises
+        ------
+        DiskFullError
+            If there was or is no room; the journals stay, and so does what they hold.
+        DataError
+            If there is nothing to make a recording of.
+        """
+        try:
+            return self._close(outcome, flags)
+        finally:
+            self._closed = True
+            self._journal.close()
+
+    def _close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+        self._hand_over()
+        self._journal.finish()
+        self._journal.check()
+        frames, unpacked = self._frames.frames, self._frames.unpacked_bytes
+        size = (self.folder / BUS).stat().st_size
+        self._journal.replace_head(BUS, file_header(size, unpacked, frames))
+        run = read_run(self.folder)
+        text = marker_text(run, outcome, flags, self._journal.contents(), frames)
+        write_whole(self.folder / MARKER, text)
+        return convert(replace(run, marker=json.loads(text)))
+
+    def _say(self, name: str, value: object) -> None:
+        self._texts.setdefault(name, []).append(as_line(value))
+
+    def _hand_over(self) -> None:
+        """Give what has come to the journal's thread."""
+        pieces: list[tuple[str, Piece]] = []
+        if self._samples:
+            taken, self._samples = self._samples, []
+            pieces.append((SAMPLES, partial(self._writer.batch, taken)))
+        for objects in self._frames.drain():
+            pieces.append((BUS, partial(container, objects)))
+        texts, self._texts = self._texts, {}
+        for name, lines in texts.items():
+            pieces.append((name, partial(b"".join, lines)))
+        found = self._late.statistics()
+        if found.cycles:
+            line = as_line([found.cycles, found.p50_s, found.p99_s, found.worst_s, found.late])
+            pieces.append((CYCLES, lambda: line))
+        self._journal.hand_over(pieces)
