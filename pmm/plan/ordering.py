@@ -1,18 +1,17 @@
 """The order of runs, and what comes between them: control conditions, zero runs, prompts."""
 
-import math
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
 from hardware.description.oscillator import Oscillator
-from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.setpoint import SetPoint
 from pmm.plan.expansion import all_of, expand, snake
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan_tables import Entry, Order, PlanTables, Scheme, Zero
-from pmm.plan.run_plan import LoadDirection, RunPlan
+from pmm.plan.run_plan import RunPlan
 
 _ORDERED = (RunKind.OSCILLATION, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 
@@ -33,7 +32,7 @@ def runs_of(
         runs = with_control(runs, control, tables.control.every)
     if tables.zero is not None:
         runs = with_zeros(runs, tables.zero)
-    return tuple(with_prompts(runs))
+    return tuple(with_prompts(one) for one in runs)
 
 
 def in_order(entries: Sequence[Sequence[RunPlan]], order: Order) -> list[RunPlan]:
@@ -127,60 +126,19 @@ def _zero_run(name: str, like: RunPlan, zero: Zero, prompts: tuple[str, ...]) ->
     )
 
 
-def with_prompts(runs: Sequence[RunPlan]) -> Iterator[RunPlan]:
-    """Tell the operator before each run what has changed since the one before.
+def with_prompts(run: RunPlan) -> RunPlan:
+    """Tell the operator what to do by hand while a push or a pluck is recorded.
 
-    A campaign begins with the model in water, without drift, load or added mass.
+    What the settings of a run say by themselves (medium, drift, loads, masses, speed) is asked for
+    where the run is made.
     """
-    before: RunPlan | None = None
-    for one in runs:
-        yield replace(one, prompts=(*_changes(before, one), *one.prompts))
-        before = one
-
-
-def _changes(before: RunPlan | None, run: RunPlan) -> Iterator[str]:
-    medium = Medium.WATER if before is None else before.set_point.medium
-    if run.set_point.medium is not medium:
-        in_air = run.set_point.medium is Medium.AIR
-        yield "hang the model in air" if in_air else "put the model into the water, at its draught"
-    mass = None if before is None else before.known_mass
-    if run.known_mass != mass:
-        yield _mass_prompt(run)
-    drift = 0.0 if before is None else before.drift_rad
-    if run.drift_rad != drift:
-        angle = math.degrees(run.drift_rad)
-        yield f"turn the model to a drift of {angle:g} degrees, bow to starboard positive"
-    yield from _unload_prompt(before, run)
-    yield from _load_prompt(run)
-
-
-def _mass_prompt(run: RunPlan) -> str:
-    mass = run.known_mass
-    if mass is None:
-        return "take the known mass off the model"
-    return f"fix {mass.mass_kg:g} kg to the model, {mass.x_m:g} m ahead of the midpoint"
-
-
-def _unload_prompt(before: RunPlan | None, run: RunPlan) -> Iterator[str]:
-    """Weights that hang on another gauge, or hang still when none are wanted, go first."""
-    if before is None or before.kind is not RunKind.CHECK_WEIGHT or before.load is None:
-        return
-    same = run.load is not None and run.load.channel == before.load.channel
-    if before.load.force_n and not (same and run.kind is RunKind.CHECK_WEIGHT):
-        yield f"take all weights off {before.load.channel}"
-
-
-def _load_prompt(run: RunPlan) -> Iterator[str]:
-    load = run.load
     if run.kind is RunKind.PLUCK:
-        yield "when the record runs, pluck the model once and let it ring down"
-    elif run.kind is RunKind.PUSH and load is not None:
-        yield (
-            f"when the record runs, push at the strut of {load.channel} along its positive "
-            f"direction with about {load.force_n:g} N, and let go"
+        text = "when the record runs, pluck the model once and let it ring down"
+    elif run.kind is RunKind.PUSH and run.load is not None:
+        text = (
+            f"when the record runs, push at the strut of {run.load.channel} along its positive "
+            f"direction with about {run.load.force_n:g} N, and let go"
         )
-    elif load is not None and load.force_n == 0.0:
-        yield f"let {load.channel} hang without weights"
-    elif load is not None:
-        way = "" if load.direction is LoadDirection.UP else ", taking weights off"
-        yield f"load {load.channel} with {load.force_n:g} N{way}; wait until it hangs still"
+    else:
+        return run
+    return replace(run, prompts=(text, *run.prompts))

@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -25,6 +25,7 @@ from pmm.plan.rig_tables import (
     Gauge,
     HullEstimate,
     Limits,
+    ModesFile,
     PhotocellOffset,
     RecorderSettings,
     RigTables,
@@ -131,12 +132,38 @@ def examine_rig(path: Path) -> Examined:
     hardware = _read_devices(devices, faults)
     if own is not None and hardware is not None:
         faults += gauge_faults(own, hardware)
+    modes = _more_modes(own, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return Examined(None, oscillator, channels, as_error(path, faults, original))
-    handed_on = original.get("campaign", {})
-    return Examined(_built(path, own, hardware, devices, handed_on), oscillator, channels)
+    rig = _built(path, replace(own, modes=own.modes + modes), hardware, devices)
+    # As written: a table that is read again elsewhere is handed on untouched.
+    rig = replace(rig, campaign=MappingProxyType(dict(original.get("campaign", {}))))
+    return Examined(rig, oscillator, channels)
+
+
+def _more_modes(
+    own: RigTables | None, path: Path, faults: list[Fault]
+) -> tuple[StructuralMode, ...]:
+    """Read the pluck test's file, if one is named."""
+    if own is None or own.modes_file is None:
+        return ()
+    file = path.parent / own.modes_file
+    inner: list[Fault] = []
+    try:
+        table = read_toml(file)
+    except ConfigurationError as error:
+        faults.append(Fault(("modes_file",), f"= {own.modes_file!r}: {error}"))
+        return ()
+    found = validate(ModesFile, table, inner)
+    inner += limit_faults(table)
+    if found is None or inner:
+        faults.append(
+            Fault(("modes_file",), f"= {own.modes_file!r}: {as_error(file, inner, table)}")
+        )
+        return ()
+    return found.modes
 
 
 def _built(
@@ -144,7 +171,6 @@ def _built(
     own: RigTables,
     hardware: RigConfiguration,
     devices: Mapping[str, Any],
-    handed_on: Mapping[str, Any],
 ) -> RigFile:
     return RigFile(
         path=path,
@@ -162,7 +188,6 @@ def _built(
         photocell_offset=own.reference,
         recorder=own.recorder,
         realtime=not is_simulated(hardware) if own.realtime is None else own.realtime,
-        campaign=MappingProxyType(dict(handed_on)),
     )
 
 

@@ -135,6 +135,8 @@ class RigTables:
     ----------
     realtime
         Whether cycles keep to the clock; by default all rigs do but simulated ones.
+    modes_file
+        A file with more ``[[modes]]``, as the pluck test writes it; its path from this one.
     reference
         The photocell's calibration.
     campaign
@@ -150,11 +152,21 @@ class RigTables:
     limits: Limits = field(default_factory=Limits)
     gauges: tuple[Gauge, ...] = ()
     modes: tuple[StructuralMode, ...] = ()
+    modes_file: str | None = None
     reference: PhotocellOffset = field(default_factory=PhotocellOffset)
     recorder: RecorderSettings = field(default_factory=RecorderSettings)
     campaign: Mapping[str, Any] = field(default_factory=dict)
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+
+@dataclass(frozen=True)
+class ModesFile:
+    """The file that a pluck test writes."""
+
+    modes: tuple[StructuralMode, ...] = ()
+
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
 

@@ -86,7 +86,8 @@ class RunPlan:
     load, known_mass
         Of check weights and pushes, and of the run with a known mass.
     prompts
-        What the operator is to do and confirm before the run, one after the other.
+        What the operator is told and confirms before the run, besides what the settings say by
+        themselves (medium, drift, load, mass).
     zero_before, zero_after
         Names of the runs that tell the gauges' zero before and after; empty where there is none.
     entry
