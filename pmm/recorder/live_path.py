@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -97,7 +98,7 @@ class Assembler:
         self._next = ready[-1] + 1
         cuts = [0, *(i for i in range(1, len(ready)) if ready[i] != ready[i - 1] + 1), len(ready)]
         pieces = []
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+        for a, b in pairwise(cuts):
             rows = [self._rows.pop(number) for number in ready[a:b]]
             pieces.append((ready[a], np.array(rows).T))
         for number in ready:

@@ -57,8 +57,7 @@ class RunData:
     @property
     def pulses_s(self) -> FloatArray:
         """Times of the photocell's pulses, in order."""
-        times = np.array([one[1] for one in self.texts[PULSES]], dtype=np.float64)
-        return times
+        return np.array([one[1] for one in self.texts[PULSES]], dtype=np.float64)
 
     @property
     def cycles(self) -> CycleStatistics | None:

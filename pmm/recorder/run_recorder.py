@@ -1,7 +1,7 @@
 """Records a run into a folder of its own, so that a crash at any moment costs a second at most.
 
-The loop hands everything in and calls :meth:`RunRecorder.tick` once a cycle; nothing of it waits for
-the disk. ``docs/recording-safety.md`` describes the folder.
+The loop hands everything in and calls :meth:`RunRecorder.tick` once a cycle; nothing of it waits
+for the disk. ``docs/recording-safety.md`` describes the folder.
 """
 
 import json
@@ -152,7 +152,7 @@ class RunRecorder:
         self._say(EVENTS, {"cycle": cycle, "time_s": time_s, "kind": kind, "text": text})
 
     def harmonic(self, reading: Mapping[str, Any]) -> None:
-        """Take a final reading of the live resolver (see :func:`pmm.recorder.live_path.as_record`)."""
+        """Take a final reading, as :func:`pmm.recorder.live_path.as_record` makes it."""
         self._say(HARMONICS, dict(reading))
 
     def line(self, cycle: int, device: str, data: bytes) -> None:
@@ -229,8 +229,7 @@ class RunRecorder:
         if self._samples:
             taken, self._samples = self._samples, []
             pieces.append((SAMPLES, partial(self._writer.batch, taken)))
-        for objects in self._frames.drain():
-            pieces.append((BUS, partial(container, objects)))
+        pieces += [(BUS, partial(container, objects)) for objects in self._frames.drain()]
         texts, self._texts = self._texts, {}
         for name, lines in texts.items():
             pieces.append((name, partial(b"".join, lines)))

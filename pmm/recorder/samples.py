@@ -1,6 +1,6 @@
 """The journal of samples: an Arrow IPC stream, a batch per flush, and out of it what is whole.
 
-Its columns are ``sync``, the number of the SYNC, and the channels. What each batch holds is readable
+Its columns are ``sync``, the number of the SYNC, and the channels. What a batch holds is readable
 as soon as it is written; a stream that was cut is readable up to its last whole batch.
 """
 
@@ -113,7 +113,9 @@ def read_samples(path: Path) -> JournalSamples | None:
     if opened is None:
         return None
     header, stream, source = opened
-    batches, syncs, whole = [], [], source.tell()
+    batches: list[Any] = []
+    syncs: list[NDArray[np.int64]] = []
+    whole = source.tell()
     while (batch := _next(stream)) is not None:
         sync = batch.column(0).to_numpy()
         last = int(syncs[-1][-1]) if syncs else 0
@@ -161,9 +163,8 @@ def _gaps(syncs: Sequence[NDArray[np.int64]]) -> tuple[tuple[int, int], ...]:
     before = int(syncs[0][0]) - 1
     for sync in syncs:
         steps = np.diff(sync, prepend=before)
-        found += [
-            (int(sync[i] - steps[i] + 1), int(steps[i] - 1)) for i in np.flatnonzero(steps > 1)
-        ]
+        at = np.flatnonzero(steps > 1)
+        found += [(int(sync[i] - steps[i] + 1), int(steps[i] - 1)) for i in at]
         before = int(sync[-1])
     return tuple(found)
 
