@@ -37,7 +37,7 @@ class Gate:
         """Forget what was measured."""
         self.state = GateState.CLOSED
         self.periods = 0
-        self.opened_s = self.closed_s = math.nan
+        self.opened_s = self.closed_s = self.last_s = math.nan
         self._closing = False
 
     def arm(self) -> None:
@@ -49,8 +49,13 @@ class Gate:
         """Close at the next pulse, however many periods there are."""
         self._closing = True
 
+    def hold_at_last(self) -> None:
+        """Close at the last pulse: what came after it does not count."""
+        self.state, self.closed_s = GateState.HELD, self.last_s
+
     def pulse(self, time_s: float) -> None:
         """Take a pulse."""
+        self.last_s = time_s
         if self.state is GateState.ARMED:
             self.state, self.opened_s = GateState.OPEN, time_s
         elif self.state is GateState.OPEN:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.channels import Channel
+from hardware.description.channels import Channel  # noqa: TC001
 from hardware.roles import Block, Sampled
 
 FloatArray = NDArray[np.float64]

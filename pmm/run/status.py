@@ -1,9 +1,10 @@
 """What there is to see of a run: a frozen picture of one moment, for a terminal or a console."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from hardware.description.flags import Flag
+from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
 
@@ -34,23 +35,6 @@ class HarmonicRow:
     def amplitude(self) -> float:
         """Of the first harmonic."""
         return math.hypot(self.in_phase, self.quadrature)
-
-
-@dataclass(frozen=True)
-class CycleStatistics:
-    """How late the cycles of a run began, in seconds.
-
-    Attributes
-    ----------
-    late
-        Cycles that began more than half a period late.
-    """
-
-    cycles: int = 0
-    p50_s: float = 0.0
-    p99_s: float = 0.0
-    worst_s: float = 0.0
-    late: int = 0
 
 
 @dataclass(frozen=True)
@@ -87,7 +71,7 @@ class Status:
     harmonics: tuple[HarmonicRow, ...] = ()
     question: str = ""
     alarms: tuple[str, ...] = ()
-    statistics: CycleStatistics = field(default_factory=CycleStatistics)
+    statistics: CycleStatistics | None = None
     free_bytes: int | None = None
 
 
@@ -110,5 +94,5 @@ class RunOutcome:
     periods: int
     harmonics: tuple[HarmonicRow, ...]
     flags: tuple[Flag, ...]
-    statistics: CycleStatistics
+    statistics: CycleStatistics | None
     reason: str = ""

@@ -1,4 +1,4 @@
-"""What only people can change: carriage, medium, loads, added mass. Asked for one thing at a time."""
+"""What only people can change, asked for one by one: carriage, medium, loads, added mass."""
 
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -62,7 +62,9 @@ class Surroundings:
         (before, held), (channel, force_n) = self.load, load
         self.load = load
         if before and before != channel and held:
-            yield Demand(f"load: take everything off {before}; press Enter", "load", 0.0, 1.0, before)
+            yield Demand(
+                f"load: take everything off {before}; press Enter", "load", 0.0, 1.0, before
+            )
         if channel and (before != channel or held != force_n):
             how = ("push" if force_n else "let go of") if by_hand else "load"
             text = f"load: {how} {channel} with {force_n:g} N; press Enter when it is so"
@@ -78,7 +80,9 @@ class Surroundings:
         if mass_kg == self.mass_kg:
             return
         self.mass_kg = mass_kg
-        what = f"add {mass_kg:g} kg at x = {run.known_mass.x_m:g} m" if run.known_mass else "take off"
+        what = (
+            f"add {mass_kg:g} kg at x = {run.known_mass.x_m:g} m" if run.known_mass else "take off"
+        )
         yield Demand(f"mass: {what} (the known mass); press Enter", "mass", mass_kg)
 
     def _change_drift(self, drift_rad: float) -> Iterator[Demand]:

@@ -1,0 +1,96 @@
+"""What the phases of a run act on: the rig, the present run, and what it takes to carry it out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from hardware.demand import Demand
+from hardware.rig import Rig
+from hardware.roles import PositionAxis
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+from pmm.run.measurement import Measurement
+from pmm.run.surroundings import Questions, Surroundings
+
+Begin = Callable[[RunPlan], Measurement]
+
+
+@dataclass
+class Conduct:
+    """The run that is being carried out.
+
+    Attributes
+    ----------
+    begin
+        Opens the recorder of a run.
+    since
+        Cycle in which the present state was entered.
+    rested_since
+        Cycle since which the shaft has been at rest: calm water is counted from there.
+    told
+        Whether the present state has given its command.
+    placed
+        Where each axis was last sent.
+    pushed
+        How far a push test has come: 0 nobody pushes, 1 pushed, 2 let go.
+    """
+
+    rig: Rig
+    rig_file: RigFile
+    begin: Begin
+    run: RunPlan | None = None
+    measurement: Measurement | None = None
+    surroundings: Surroundings = field(default_factory=Surroundings)
+    since: int = 0
+    rested_since: int | None = None
+    told: bool = False
+    pushed: int = 0
+    placed: dict[str, float] = field(default_factory=dict)
+    questions: Questions = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.questions = Questions(self.rig.prompt, self._answered)
+
+    @property
+    def present(self) -> RunPlan:
+        """The run that is being carried out."""
+        if self.run is None:
+            raise AssertionError("a phase of a run without a run")
+        return self.run
+
+    @property
+    def recording(self) -> Measurement:
+        """The measurement that is under way."""
+        if self.measurement is None:
+            raise AssertionError("a phase that records without a recording")
+        return self.measurement
+
+    @property
+    def rate_hz(self) -> float:
+        """Cycles per second."""
+        return self.rig.configuration.sample_rate_hz
+
+    @property
+    def elapsed_s(self) -> float:
+        """Time in the present state, counted in cycles."""
+        return (self.rig.number - self.since) / self.rate_hz
+
+    @property
+    def moving(self) -> bool:
+        """Whether any axis moves."""
+        return any(one.moving for one in self.rig.powered())
+
+    def axes(self) -> tuple[tuple[PositionAxis, float], ...]:
+        """Return the axes with where the run wants them; at rest the phase does not matter."""
+        point = self.present.set_point
+        if not self.present.oscillates:
+            axis = self.rig.eccentricity
+            return () if axis is None else ((axis, point.eccentricity_m),)
+        pairs = (
+            (self.rig.eccentricity, point.eccentricity_m),
+            (self.rig.phase, point.strut_phase_rad),
+        )
+        return tuple((axis, wanted) for axis, wanted in pairs if axis is not None)
+
+    def _answered(self, demand: Demand, answer: str) -> None:
+        if self.measurement is not None:
+            self.measurement.event("operator", f"{demand} -> {answer or 'done'}")

@@ -1,0 +1,86 @@
+"""What run control wants of a recorder, and the tap that hands it the frames of the bus."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.errors import PmmError
+from hardware.description.flags import Flag
+from hardware.errors import HardwareError
+from hardware.roles import Pulse
+from pmm.recorder.lateness import CycleStatistics
+from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.run.errors import RecordingError
+
+if TYPE_CHECKING:
+    import can
+
+FloatArray = NDArray[np.float64]
+
+
+class Journal(Protocol):
+    """Keeps a run; :class:`pmm.recorder.run_recorder.RunRecorder` does it on disk."""
+
+    def samples(self, first_sync: int, values: FloatArray) -> None:
+        """Keep consecutive samples, shape ``(channels, n)``."""
+        ...
+
+    def pulse(self, pulse: Pulse) -> None:
+        """Keep a pulse of the photocell."""
+        ...
+
+    def event(self, cycle: int, time_s: float, kind: str, text: str) -> None:
+        """Keep what happened."""
+        ...
+
+    def harmonic(self, reading: Mapping[str, Any]) -> None:
+        """Keep a final reading of the live resolver."""
+        ...
+
+    def cycle_statistics(self, lateness_s: float) -> None:
+        """Keep how late a cycle began."""
+        ...
+
+    def statistics(self) -> CycleStatistics:
+        """Return how late the cycles were so far."""
+        ...
+
+    def tick(self, now_s: float) -> None:
+        """Flush what is due by the monotonic clock."""
+        ...
+
+    def close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+        """Complete the run; return its recording."""
+        ...
+
+
+class Taps:
+    """Observers of bus and serial lines that hand on to the present recorder, if there is one."""
+
+    def __init__(self) -> None:
+        self.recorder: RunRecorder | None = None
+
+    def frame(self, frame: "can.Message") -> None:
+        """Take a frame of the bus."""
+        if self.recorder is not None:
+            self.recorder.frame(frame)
+
+    def line(self, cycle: int, device: str, data: bytes) -> None:
+        """Take a line of a serial device."""
+        if self.recorder is not None:
+            self.recorder.line(cycle, device, data)
+
+
+@contextmanager
+def kept(run: str) -> Iterator[None]:
+    """Turn what a recorder raises into a fault of the run, which stops it along the profile."""
+    try:
+        yield
+    except HardwareError:
+        raise  # the recorder's own, with its reaction
+    except (PmmError, OSError) as error:
+        raise RecordingError(f"recorder of {run}", str(error)) from error

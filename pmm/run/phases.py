@@ -1,0 +1,210 @@
+"""What happens in each state: a function on entering it, and one that says when it is over.
+
+All of them return at once; the loop, and with it the heartbeat, never waits.
+"""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from analysis.resolver.weights import REACH
+from pmm.plan.kinds import RunKind
+from pmm.run.conduct import Conduct
+from pmm.run.errors import PulseOverdueError
+from pmm.run.gate import GateState
+from pmm.run.sampler import PATIENCE_CYCLES
+from pmm.run.states import State
+
+_OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers
+_HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4  # for the samples beyond the gate's edge
+
+
+def _enter_homing(c: Conduct) -> None:
+    for one in c.rig.powered():
+        one.enable()
+
+
+def _homing(c: Conduct) -> State | None:
+    """Home the axes that are not, one after the other as the operator or the drive goes."""
+    if not all(one.enabled for one in c.rig.powered()):
+        return None
+    axes = [one for one in (c.rig.eccentricity, c.rig.phase) if one is not None]
+    if not c.told:
+        c.told = True
+        for one in axes:
+            if not one.homed:
+                one.home()
+    ready = all(one.homed and not one.moving for one in axes)
+    return State.SETTING if ready else None
+
+
+def _enter_setting(c: Conduct) -> None:
+    c.questions.ask(c.surroundings.before(c.present))
+    for one in c.rig.powered():
+        if not one.enabled:
+            one.enable()
+
+
+def _setting(c: Conduct) -> State | None:
+    """Set eccentricity and phase, after the operator has done what is asked."""
+    if not c.questions.done() or not all(one.enabled for one in c.rig.powered()):
+        return None
+    if not c.told:
+        c.told = True
+        for axis, wanted in c.axes():
+            if c.placed.get(axis.name) != wanted:
+                axis.move_to(wanted)
+                c.placed[axis.name] = wanted
+    ready = all(axis.settled and not axis.moving for axis, _ in c.axes())
+    return State.PAUSING if ready else None
+
+
+def _pausing(c: Conduct) -> State | None:
+    """Wait for calm water, from the moment in which the shaft came to rest."""
+    if c.rested_since is None:
+        return State.STARTING
+    rested_s = (c.rig.number - c.rested_since) / c.rate_hz
+    return State.STARTING if rested_s >= c.present.pause_before_s else None
+
+
+def _enter_starting(c: Conduct) -> None:
+    c.measurement = c.begin(c.present)
+    c.questions.ask(c.surroundings.tow(c.present.set_point.carriage_speed_m_s))
+
+
+def _starting(c: Conduct) -> State | None:
+    """Bring carriage and shaft to speed."""
+    if not c.questions.done():
+        return None
+    shaft = c.rig.shaft
+    if not c.present.oscillates or shaft is None:
+        return State.SETTLING
+    if not c.told:
+        c.told = True
+        c.rested_since = None
+        shaft.turn(c.present.set_point.frequency_hz)
+    if not shaft.at_speed:
+        return None
+    if c.rig.photocell is not None:
+        c.rig.photocell.expect(c.present.set_point.frequency_hz)
+    return State.SETTLING
+
+
+def _settling(c: Conduct) -> State | None:
+    """Let the transient die out."""
+    run = c.present
+    wait_s = run.settling_periods / run.set_point.frequency_hz if run.oscillates else 0.0
+    return State.ARMED if c.elapsed_s >= wait_s else None
+
+
+def _enter_armed(c: Conduct) -> None:
+    if _by_pulses(c):
+        c.recording.arm()
+    else:
+        c.recording.open_by_time()
+
+
+def _armed(c: Conduct) -> State | None:
+    """Wait for the pulse that opens the gate."""
+    _check_overdue(c, "open")
+    return State.GATE_OPEN if c.recording.gate.state is not GateState.ARMED else None
+
+
+def _gate_open(c: Conduct) -> State | None:
+    """Measure until the gate closes by itself, is closed, or is void."""
+    gate = c.recording.gate
+    if not _by_pulses(c):
+        _push(c)
+        if c.elapsed_s >= c.present.measured_s and not c.questions.present:
+            c.recording.close_by_time()
+    else:
+        _check_overdue(c, "close")
+    if gate.state is GateState.ARMED:
+        return State.ARMED
+    return State.HOLD if gate.state is GateState.HELD else None
+
+
+def _hold(c: Conduct) -> State | None:
+    """Wait for the last samples, then make the final reading."""
+    if c.rig.number - c.since < _HOLD_CYCLES:
+        return None
+    c.recording.finish()
+    return State.STOPPING
+
+
+def enter_stopping(c: Conduct) -> None:
+    """Stop along the profile, and tell the photocell that no pulses are due."""
+    c.rig.stop()
+    c.questions.withdraw()
+    if c.rig.photocell is not None:
+        c.rig.photocell.expect(None)
+    c.questions.ask(c.surroundings.tow(0.0))
+
+
+def at_rest(c: Conduct) -> bool:
+    """Wait until nothing moves; take the power off the shaft then."""
+    if c.moving:
+        return False
+    if not c.told:
+        c.told = True
+        c.rested_since = c.rig.number if c.rested_since is None else c.rested_since
+        if c.rig.shaft is not None:
+            c.rig.shaft.disable()
+    return c.questions.done()
+
+
+def _push(c: Conduct) -> None:
+    """Have a gauge pushed in the middle third of a push test."""
+    run = c.present
+    if run.kind is not RunKind.PUSH or run.load is None:
+        return
+    third_s = run.measured_s / 3.0
+    if c.pushed == 0 and c.elapsed_s >= third_s:
+        c.pushed = 1
+        c.questions.ask(c.surroundings.push(run.load.channel, run.load.force_n))
+    elif c.pushed == 1 and c.elapsed_s >= 2.0 * third_s and not c.questions.present:
+        c.pushed = 2
+        c.questions.ask(c.surroundings.push(run.load.channel, 0.0))
+    c.questions.done()
+
+
+def _by_pulses(c: Conduct) -> bool:
+    return c.present.oscillates and c.rig.photocell is not None
+
+
+def _check_overdue(c: Conduct, what: str) -> None:
+    """End a run whose pulses have stopped; the resolver would keep all samples for ever."""
+    if not _by_pulses(c):
+        return
+    gate, frequency_hz = c.recording.gate, c.present.set_point.frequency_hz
+    last_s = gate.last_s if gate.state is GateState.OPEN else c.since / c.rate_hz
+    waited_s = c.rig.number / c.rate_hz - last_s
+    if waited_s * frequency_hz > _OVERDUE_TURNS:
+        raise PulseOverdueError(
+            "photocell",
+            f"no pulse to {what} the gate for {waited_s * frequency_hz:.2f} periods "
+            f"(limit {_OVERDUE_TURNS}); check lamp, slot and cable",
+        )
+
+
+ENTER: Final[Mapping[State, Callable[[Conduct], None]]] = MappingProxyType(
+    {
+        State.HOMING: _enter_homing,
+        State.SETTING: _enter_setting,
+        State.STARTING: _enter_starting,
+        State.ARMED: _enter_armed,
+        State.STOPPING: enter_stopping,
+    }
+)
+NEXT: Final[Mapping[State, Callable[[Conduct], State | None]]] = MappingProxyType(
+    {
+        State.HOMING: _homing,
+        State.SETTING: _setting,
+        State.PAUSING: _pausing,
+        State.STARTING: _starting,
+        State.SETTLING: _settling,
+        State.ARMED: _armed,
+        State.GATE_OPEN: _gate_open,
+        State.HOLD: _hold,
+    }
+)

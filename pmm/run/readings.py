@@ -1,0 +1,97 @@
+"""Readings of the live resolver, for people and for the recorder."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.resolver.harmonics import Harmonics
+from analysis.resolver.live import Provisional
+from hardware.description.channels import Channel
+from pmm.run.status import HarmonicRow
+
+FloatArray = NDArray[np.float64]
+
+
+def rows_of(reading: Harmonics) -> tuple[HarmonicRow, ...]:
+    """Return mean and first harmonic of each channel with the larger 95 % half-width."""
+    widths = half_widths(reading)
+    return tuple(
+        HarmonicRow(
+            name,
+            unit,
+            float(row[0]),
+            float(row[1]),
+            float(row[2]),
+            float(width),
+            final=True,
+        )
+        for name, unit, row, width in zip(
+            reading.channel_names, reading.units, reading.coefficients, widths, strict=True
+        )
+    )
+
+
+def needles(
+    channels: Sequence[Channel], now: Provisional | None, last: Harmonics | None
+) -> tuple[HarmonicRow, ...]:
+    """Return the provisional readings, with the interval of the last final one."""
+    if now is None:
+        return ()
+    widths = half_widths(last) if last is not None else np.full(len(channels), math.nan)
+    return tuple(
+        HarmonicRow(one.name, one.unit, float(row[0]), float(row[1]), float(row[2]), float(width))
+        for one, row, width in zip(channels, now.coefficients, widths, strict=True)
+    )
+
+
+def rows_at_rest(
+    channels: Sequence[Channel], total: FloatArray, square: FloatArray, count: int
+) -> tuple[HarmonicRow, ...]:
+    """Return the means of a record at rest; the half-width is that of white noise."""
+    if not count:
+        return ()
+    means = total / count
+    spread = np.sqrt(np.maximum(square / count - means**2, 0.0))
+    return tuple(
+        HarmonicRow(
+            one.name, one.unit, float(mean), 0.0, 0.0, 1.96 * float(s) / math.sqrt(count), True
+        )
+        for one, mean, s in zip(channels, means, spread, strict=True)
+    )
+
+
+def half_widths(reading: Harmonics) -> FloatArray:
+    """Return the larger 95 % half-width of the first harmonic's parts, shape ``(channels,)``."""
+    if not np.isfinite(reading.covariance).any():
+        return np.full(len(reading.channel_names), math.nan)
+    return np.asarray(reading.half_width()[:, 1:3].max(axis=1))
+
+
+def worst_relative(reading: Harmonics, rows: Sequence[int]) -> float:
+    """Return the largest half-width of the first harmonic over its size, of some channels.
+
+    Infinite where there is no interval yet, or no such channel.
+    """
+    if not rows:
+        return math.inf
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = half_widths(reading)[list(rows)] / reading.amplitude[list(rows), 0]
+    return float(shares.max()) if np.isfinite(shares).all() else math.inf
+
+
+def as_document(reading: Harmonics) -> dict[str, Any]:
+    """Return a reading as plain numbers: coefficients are ``[A0, S1, C1, S2, ...]`` a channel."""
+    widths = half_widths(reading)
+    return {
+        "opened_s": reading.opened_s,
+        "closed_s": reading.closed_s,
+        "periods": reading.periods,
+        "frequency_hz": reading.frequency_hz,
+        "channels": list(reading.channel_names),
+        "units": list(reading.units),
+        "coefficients": reading.coefficients.tolist(),
+        "half_width_first": [None if math.isnan(one) else one for one in widths.tolist()],
+    }
