@@ -1,0 +1,63 @@
+"""All checks of a plan against its rig."""
+
+import math
+from collections.abc import Iterator
+
+from pmm.plan.field_checks import field_findings
+from pmm.plan.findings import Finding, PlanRefusedError, Verdict
+from pmm.plan.limits import bus_finding, limit_findings
+from pmm.plan.plan import Plan
+from pmm.plan.rig_file import RigFile
+
+__all__ = ["Finding", "PlanRefusedError", "Verdict", "check_plan", "require_possible"]
+
+
+def check_plan(plan: Plan, rig: RigFile) -> tuple[Finding, ...]:
+    """Return what the rig cannot do, and what the field advises against.
+
+    In the order of the runs, the whole plan first; a refusal stands before advice.
+    """
+    found = [*bus_finding(rig), *_not_checked(plan, rig)]
+    for run in plan.runs:
+        found += [*limit_findings(run, rig), *field_findings(run, rig)]
+    ranks = list(Verdict)
+    return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
+
+
+def require_possible(plan: Plan, rig: RigFile) -> tuple[Finding, ...]:
+    """Return the findings of a plan that the rig can run.
+
+    Raises
+    ------
+    PlanRefusedError
+        If it cannot; the message gives every run with its value and its limit.
+    """
+    found = check_plan(plan, rig)
+    refused = [one for one in found if one.verdict is Verdict.REFUSE]
+    if refused:
+        lines = "\n  ".join(f"{one.run or 'plan'}: {one.message}" for one in refused)
+        raise PlanRefusedError(f"{plan.path}: the rig cannot run this plan\n  {lines}")
+    return found
+
+
+def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:
+    """Yield what the rig's file does not say, and which checks are missing for it."""
+    towed = any(one.set_point.carriage_speed_m_s for one in plan.runs)
+    turning = any(one.oscillates for one in plan.runs)
+    for absent, table, what in (
+        (turning and rig.model is None, "[model]", "forces are"),
+        (rig.model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
+        (
+            towed and (rig.model is None or rig.model.length_m is None),
+            "model.length_m",
+            "w' = w L / U is",
+        ),
+        (rig.tank is None, "[tank]", "tank length, speed and tank modes are"),
+        (turning and not rig.modes, "[[modes]] (pluck test)", "structural modes are"),
+        (not rig.gauges, "[[gauges]]", "the gauges' range is"),
+        (rig.limits.velocity_m_s is None, "limits.velocity_m_s", "strut velocity is"),
+        (rig.limits.acceleration_m_s2 is None, "limits.acceleration_m_s2", "acceleration is"),
+    ):
+        if absent:
+            message = f"{rig.path.name} has no {table}: {what} not checked"
+            yield Finding(Verdict.NOTE, "not checked", math.nan, math.nan, "", message)

@@ -1,0 +1,82 @@
+"""How long a plan takes, and how much of the tank each run needs."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from hardware.rig_configuration import Part
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+
+
+def shaft_ramp_s(run: RunPlan, rig: RigFile) -> float:
+    """Return how long the shaft takes to come to speed, or to stop; 0 where nobody knows."""
+    acceleration = _setting(rig.hardware.shaft, "acceleration_hz_per_s")
+    return run.set_point.frequency_hz / acceleration if acceleration else 0.0
+
+
+def carriage_ramp_s(run: RunPlan, rig: RigFile) -> float:
+    """Return how long the carriage takes to come to speed, or to stop."""
+    if rig.tank is None:
+        return 0.0
+    return run.set_point.carriage_speed_m_s / rig.tank.carriage_acceleration_m_s2
+
+
+def tank_length_m(run: RunPlan, rig: RigFile) -> float:
+    """Return the way of the carriage from rest to rest: ``U (t + U / a)``.
+
+    In ``t`` the shaft comes to speed, settles, waits at most a period for its pulse, and turns for
+    all periods asked.
+    """
+    at_speed_s = run.moving_s + shaft_ramp_s(run, rig)
+    return run.set_point.carriage_speed_m_s * (at_speed_s + carriage_ramp_s(run, rig))
+
+
+def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
+    """Return how long a run takes at most, with pause, setting, ramps and the carriage's return.
+
+    The carriage comes back at the speed of the run, or at 1 m/s where that is less. What the
+    operator does by hand is not counted.
+    """
+    parked = _setting_s(run, before, rig) + run.pause_before_s
+    moving = run.moving_s + 2.0 * (shaft_ramp_s(run, rig) + carriage_ramp_s(run, rig))
+    speed = run.set_point.carriage_speed_m_s
+    back = tank_length_m(run, rig) / max(speed, 1.0) if speed else 0.0
+    return parked + moving + back
+
+
+def total_s(runs: Sequence[RunPlan], rig: RigFile) -> float:
+    """Return how long all runs take at most, in this order."""
+    return sum(run_s(one, before, rig) for before, one in _with_before(runs))
+
+
+def _with_before(runs: Sequence[RunPlan]) -> Iterator[tuple[RunPlan | None, RunPlan]]:
+    before: RunPlan | None = None
+    for one in runs:
+        yield before, one
+        before = one
+
+
+def _setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
+    """Return the longer of the two axes' moves from the settings of the run before."""
+    was = None if before is None else before.set_point
+    ways = (
+        (rig.hardware.eccentricity, run.set_point.eccentricity_m, was and was.eccentricity_m),
+        (rig.hardware.phase, run.set_point.strut_phase_rad, was and was.strut_phase_rad),
+    )
+    return max(_move_s(part, abs(to - (start or 0.0))) for part, to, start in ways)
+
+
+def _move_s(part: Part | None, way: float) -> float:
+    """Return the time of a move on a trapezoid; 0 for an axis that is set by hand."""
+    speed, acceleration = _setting(part, "speed"), _setting(part, "acceleration")
+    if not (speed and acceleration and way):
+        return 0.0
+    if way < speed**2 / acceleration:
+        return 2.0 * math.sqrt(way / acceleration)
+    return way / speed + speed / acceleration
+
+
+def _setting(part: Part | None, key: str) -> float | None:
+    """Return a number of a device's settings; a lab's own driver may not have it."""
+    value = None if part is None else getattr(part.settings, key, None)
+    return float(value) if isinstance(value, int | float) else None

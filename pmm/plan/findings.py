@@ -1,0 +1,44 @@
+"""What a check of a plan finds, and what refuses a plan."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hardware.description.errors import PmmError
+
+
+class Verdict(StrEnum):
+    """What a finding means for the plan."""
+
+    REFUSE = "refuse"  # the rig cannot, or must not, do it
+    WARN = "warn"  # it can be run; the result will suffer
+    NOTE = "note"  # to be known
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding.
+
+    Attributes
+    ----------
+    quantity
+        What was looked at, with its unit: ``"strut velocity [m/s]"``.
+    value
+        What the run would have; NaN where nothing could be looked at.
+    limit
+        What is allowed or advised; NaN where there is no such number.
+    run
+        Name of the run; empty where it is the whole plan.
+    message
+        Value, limit and what to do, in words.
+    """
+
+    verdict: Verdict
+    quantity: str
+    value: float
+    limit: float
+    run: str
+    message: str
+
+
+class PlanRefusedError(PmmError):
+    """A plan that the rig cannot run: stroke, speed, force, tank length, bus load ..."""
