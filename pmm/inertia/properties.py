@@ -113,8 +113,13 @@ def correlation(first: Budget, second: Budget, first_u: float, second_u: float) 
     """
     if not (first_u > 0.0 and second_u > 0.0):
         return 0.0
-    other = {line.name: line.contribution for line in second.shares}
-    covariance = sum(line.contribution * other.get(line.name, 0.0) for line in first.shares)
+    own, other = (
+        {line.name: line.contribution for line in budget.shares} for budget in (first, second)
+    )
+    covariance = sum(value * other.get(name, 0.0) for name, value in own.items())
+    for (a, b), r in {**first.correlations, **second.correlations}.items():
+        covariance += r * own.get(a, 0.0) * other.get(b, 0.0)
+        covariance += r * own.get(b, 0.0) * other.get(a, 0.0)
     return min(max(covariance / (first_u * second_u), -1.0), 1.0)
 
 

@@ -3,7 +3,6 @@
 Static fits give first moments, records give periods; :mod:`analysis.inertia.swing` does the rest.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -19,10 +18,9 @@ from analysis.inertia.swing import (
     model_on_swing,
     swing_inertia,
 )
-from analysis.inertia.swing_static import StaticResult, distance, fit_static
+from analysis.inertia.swing_static import distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
-from analysis.inertia.workflow import Reading, Step, assess_workflow, next_step
-from hardware.description.errors import ConfigurationError
+from analysis.inertia.workflow import Step
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
@@ -30,7 +28,9 @@ from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare,
 from pmm.inertia.properties import correlation, properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.swing_moment import Moment, first_moment
 from pmm.inertia.swing_tables import StateTable, SwingTable
+from pmm.inertia.workflow import guide
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ class _Measured:
     runs: PeriodRuns
     inertia: SwingInertia
     cg: Estimate
+    moment: Moment
     flags: tuple[Flag, ...]
     static: StaticTest | None = None
 
@@ -105,38 +106,17 @@ def _measure(job: Job[SwingTable], key: str) -> _Measured:
     table: StateTable = getattr(job.table, key)
     runs = read_period(job, table.period, f"{key}.period", pendulum=True)
     mass, gravity = given(table, "mass_kg"), gravity_of(job.table)
-    moment, static = _moment(table)
-    state = SwingState(runs.period, mass, moment, gravity)
+    moment = first_moment(table)
+    state = SwingState(runs.period, mass, moment.estimate, gravity)
     inertia = swing_inertia(
-        state, correlations=_tied(table, moment, mass), seed=job.table.monte_carlo_seed
+        state, correlations=_tied(table, moment.estimate, mass), seed=job.table.monte_carlo_seed
     )
+    static = moment.static
     flags = (*runs.flags, *(static.flags if static else ()))
-    cg = given_or_none(table, "cg_below_pivot_m") or distance(moment, mass)
+    cg = given_or_none(table, "cg_below_pivot_m") or distance(moment.estimate, mass)
     series = tuple(one.series() for one in table.levers)
     test = StaticTest(f"{key}.levers", series, static) if static is not None else None
-    return _Measured(key, state, runs, inertia, cg, flags, test)
-
-
-def _moment(table: StateTable) -> tuple[Estimate, StaticResult | None]:
-    """Return the first moment; the levers' and the inclinometer's errors are common to a series."""
-    if table.levers:
-        static = fit_static(
-            [one.series() for one in table.levers], with_offset=table.static_fit == "F2"
-        )
-        own = static.pooled.moment
-        lever = float(np.mean([one.u_lever_m / one.lever_m for one in table.levers]))
-        spread = float(
-            np.hypot(own.uncertainty, own.value * np.hypot(lever, table.u_tilt_relative))
-        )
-        # Welch and Satterthwaite: only the fit's own part has finite degrees of freedom
-        part = own.uncertainty / spread if spread > 0.0 else 1.0
-        freedom = own.degrees_of_freedom / part**4 if part > 0.0 else math.inf
-        return replace(own, uncertainty=spread, degrees_of_freedom=freedom), static
-    if table.moment_kg_m is not None:
-        return given(table, "moment_kg_m"), None
-    cg, mass = given(table, "cg_below_pivot_m"), given(table, "mass_kg")
-    value = cg.value * mass.value
-    return Estimate(value, value * float(np.hypot(cg.relative, mass.relative)), "kg m"), None
+    return _Measured(key, state, runs, inertia, cg, moment, flags, test)
 
 
 def _tied(table: StateTable, moment: Estimate, mass: Estimate) -> dict[tuple[str, str], float]:
@@ -200,8 +180,13 @@ def _model(
         return None, ("a table [loaded]",)
     model, loaded = table.model, states["loaded"]
     mass = given(model, "mass_kg")
+    common = states["tare"].moment.correlation(loaded.moment)
     found = model_on_swing(
-        states["tare"].state, loaded.state, mass, seed=table.monte_carlo_seed + 10
+        states["tare"].state,
+        loaded.state,
+        mass,
+        correlations={("tare_moment_kg_m", "total_moment_kg_m"): common} if common else {},
+        seed=table.monte_carlo_seed + 10,
     )
     axis = model.axis
     flags += found.flags
@@ -261,28 +246,10 @@ def _workflow(
     flags: list[Flag],
 ) -> str | None:
     """Say which step is next, or bring all four together."""
-    readings = tuple(
-        Reading(step, states[key].inertia.about_pivot.result)
+    measured = {
+        step: states[key].inertia.about_pivot.result
         for step, key in _STEPS.items()
         if key in states
-    )
-    following = next_step(readings)
-    if following is not None:
-        step, what = following
-        return f"{len(readings) + 1} of {len(_STEPS)}, [{_STEPS[step]}]: {what}"
-    if table.check is None:
-        raise ConfigurationError("the workflow has no known-weight check; add [check]")
-    found = assess_workflow(readings, given(table.check, "known_inertia_kg_m2"))
-    flags += found.flags
-    findings += [
-        Finding("workflow_tare_kg_m2", "both tares: inertia about the pivot", found.tare),
-        Finding("workflow_drift_kg_m2", "second less first tare", found.tare_drift),
-        Finding("workflow_model_kg_m2", "test less tare, about the pivot", found.test_less_tare),
-        Finding("workflow_check_kg_m2", "known body, about the pivot", found.check_less_tare),
-        Finding(
-            "workflow_normalised_error",
-            "known body's error over its interval",
-            Estimate(found.normalised_error, 0.0),
-        ),
-    ]
-    return None
+    }
+    known = None if table.check is None else given(table.check, "known_inertia_kg_m2")
+    return guide(measured, _STEPS, known, "the pivot", findings, flags)

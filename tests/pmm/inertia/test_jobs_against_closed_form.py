@@ -157,6 +157,42 @@ k_pitch_m = 0.2
     assert abs(loose.uncertainty / whole.uncertainty - 1.0) > 0.2
 
 
+def test_what_lever_and_inclinometer_add_is_common_to_both_states(tmp_path: Path) -> None:
+    mass, tare, total, lever, tilt = 30.0, 3.0, 27.0, 0.002, 0.003
+    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
+
+    def state(moment: float, kilograms: float, period_s: float, most_kg: float) -> str:
+        weights = [most_kg * k / 5.0 for k in range(6)]
+        tilts = [math.atan(0.2 * one / moment) for one in weights]
+        return (
+            f"mass_kg = {kilograms}\nu_tilt_relative = {tilt}\nperiod = {timed(period_s)}\n"
+            f'levers = [{{ name = "C", lever_m = 0.2, u_lever_m = {0.2 * lever}, '
+            f"weight_kg = {weights}, tilt_rad = {tilts} }}]\n"
+        )
+
+    text = (
+        f"[tare]\n{state(tare, 42.0, tare_s, 0.5)}[loaded]\n{state(total, 72.0, loaded_s, 5.0)}"
+        f"[model]\nmass_kg = {mass}\ncg_x_m = 0.0\npivot_above_midpoint_m = 0.3\n"
+    )
+    outcome = swing.run(write(tmp_path, text))
+
+    def own(scale: float) -> tuple[float, float]:
+        moment = scale * (total - tare)
+        about_pivot = scale * (G / (4.0 * math.pi**2)) * (loaded_s**2 * total - tare_s**2 * tare)
+        return about_pivot - moment**2 / mass, about_pivot - 0.6 * moment
+
+    scale = {"scale": Estimate(1.0, math.hypot(lever, tilt))}
+    inertia, midpoint = (
+        linear_budget("I", lambda scale, k=k: own(scale)[k], scale).result for k in (0, 1)
+    )
+    found = next(one.estimate for one in outcome.findings if one.name == "i_pitch_kg_m2")
+    assert found.value == pytest.approx(inertia.value, rel=1e-4)
+    assert found.uncertainty == pytest.approx(inertia.uncertainty, rel=0.01)
+    assert outcome.body is not None
+    about = outcome.body.about_midpoint(Plane.VERTICAL)
+    assert about.uncertainty == pytest.approx(midpoint.uncertainty, rel=0.02)
+
+
 def _workflow(known: float, tare_again_s: float, tare_s: float, check_s: float) -> str:
     state = "mass_kg = 42.0\nu_mass_kg = 0.01\nmoment_kg_m = {}\nu_moment_kg_m = 1e-3\n"
     return f"""
