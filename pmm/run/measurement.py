@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +16,11 @@ from hardware.description.flags import Flag, Severity
 from hardware.rig import Rig
 from hardware.roles import Pulse, Sampled
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.live_path import as_record
 from pmm.run.errors import GateVoidError, OverloadError
 from pmm.run.gate import Gate, GateState
 from pmm.run.journal import Journal, kept
-from pmm.run.readings import as_document, needles, rows_at_rest, rows_of, worst_relative
+from pmm.run.readings import needles, rows_at_rest, rows_of, worst_relative
 from pmm.run.sampler import Sampler
 from pmm.run.status import HarmonicRow
 
@@ -234,9 +234,8 @@ class Measurement:
             self._keep(one)
 
     def _keep(self, reading: Harmonics) -> None:
-        document: dict[str, Any] = as_document(reading)
         with kept(self.run.name):
-            self.journal.harmonic(document)
+            self.journal.harmonic(as_record(reading))
 
     def _judge(self) -> None:
         """Close a gate whose uncertainty is small enough, at the end of its last period."""
@@ -281,8 +280,3 @@ def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
 def header_channels(rig: Rig) -> tuple[Channel, ...]:
     """Return the channels of a run in the order of its samples."""
     return tuple(c for one in sampled_devices(rig) for c in one.channels)
-
-
-def flags_as_documents(flags: Sequence[Flag]) -> list[dict[str, Any]]:
-    """Return flags for programs."""
-    return [asdict(one) for one in flags]

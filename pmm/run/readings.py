@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,18 +79,3 @@ def worst_relative(reading: Harmonics, rows: Sequence[int]) -> float:
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = half_widths(reading)[list(rows)] / reading.amplitude[list(rows), 0]
     return float(shares.max()) if np.isfinite(shares).all() else math.inf
-
-
-def as_document(reading: Harmonics) -> dict[str, Any]:
-    """Return a reading as plain numbers: coefficients are ``[A0, S1, C1, S2, ...]`` a channel."""
-    widths = half_widths(reading)
-    return {
-        "opened_s": reading.opened_s,
-        "closed_s": reading.closed_s,
-        "periods": reading.periods,
-        "frequency_hz": reading.frequency_hz,
-        "channels": list(reading.channel_names),
-        "units": list(reading.units),
-        "coefficients": reading.coefficients.tolist(),
-        "half_width_first": [None if math.isnan(one) else one for one in widths.tolist()],
-    }

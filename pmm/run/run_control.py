@@ -61,6 +61,8 @@ class RunControl:
         Of the runs that ended.
     fault
         What is latched; ``None`` if nothing is.
+    alarm_count
+        How many alarms there were so far.
     """
 
     def __init__(
@@ -81,9 +83,10 @@ class RunControl:
         self._machine = Machine()
         self._conduct = Conduct(rig, rig_file, begin)
         self._ending = Outcome.COMPLETE
-        self._skipping = self._winding_down = False
+        self._halting = self._winding_down = False
         self._closing: Closing | None = None
         self._executor = executor
+        self.alarm_count = 0
         self._alarms: deque[str] = deque(maxlen=_ALARMS)
         self._highest_hz = _OVERSPEED * rig_file.oscillator.frequency_hz.high
 
@@ -91,6 +94,11 @@ class RunControl:
     def state(self) -> State:
         """Where run control stands."""
         return self._machine.state
+
+    @property
+    def question(self) -> str:
+        """What the operator is asked by run control itself; empty if nothing."""
+        return self._conduct.questions.present
 
     @property
     def finished(self) -> bool:
@@ -191,7 +199,7 @@ class RunControl:
         following = self._next()
         if following is not None:
             self._conduct.run, self._conduct.pushed = following, 0
-            self._ending, self._skipping = Outcome.COMPLETE, False
+            self._ending, self._halting = Outcome.COMPLETE, False
             self._go(State.SETTING)
 
     def _next(self) -> RunPlan | None:
@@ -204,11 +212,10 @@ class RunControl:
             self._check_rest(_REST_S + self._ramp_s())
             return
         self._close(self._ending)
-        stopped = self._ending is Outcome.STOPPED and not self._skipping
-        if stopped:
+        if self._halting or self._next() is None:
             for one in self.rig.powered():
                 one.disable()
-        self._go(State.STOPPED if stopped else State.DONE)
+        self._go(State.STOPPED if self._halting else State.DONE)
 
     def _wind_down(self) -> None:
         """In a fault: wait until the axes rest, take their power off, close the recording."""
@@ -317,11 +324,11 @@ class RunControl:
         if following is None:
             raise RunStateError("all runs are done; nothing to start")
         self._conduct.run, self._conduct.pushed = following, 0
-        self._ending, self._skipping = Outcome.COMPLETE, False
+        self._ending, self._halting = Outcome.COMPLETE, False
         self._go(State.HOMING)
 
     def _skip(self) -> None:
-        self._ending, self._skipping = Outcome.STOPPED, True
+        self._ending = Outcome.STOPPED
         self._go(State.STOPPING)
 
     def _hold(self) -> None:
@@ -339,18 +346,19 @@ class RunControl:
         self._go(State.IDLE)
 
     def _stop(self) -> None:
-        self._ending, self._skipping = Outcome.STOPPED, False
+        """Stop along the profile; a run whose gate has closed already counts as complete."""
+        self._halting = True
         if self.state is State.DONE:
             self._machine.go(State.STOPPED, self.rig.number)
         elif self.state is not State.STOPPING:
+            self._ending = Outcome.STOPPED
             self._go(State.STOPPING)
 
     def _quick_stop(self) -> None:
-        self.rig.quick_stop()
         if self.state in NEXT:
             self._stop()
-        elif self.state is State.STOPPING:
-            self._ending, self._skipping = Outcome.STOPPED, False
+        self._halting = True
+        self.rig.quick_stop()
         self._conduct.questions.withdraw()
 
     def _note_command(self, command: Command) -> None:
@@ -358,6 +366,7 @@ class RunControl:
             self._conduct.measurement.event("command", str(command))
 
     def _alarm(self, text: str) -> None:
+        self.alarm_count += 1
         self._alarms.append(text)
 
 

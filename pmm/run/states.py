@@ -54,7 +54,7 @@ TRANSITIONS: Final[Mapping[State, frozenset[State]]] = MappingProxyType(
         State.GATE_OPEN: _ACTIVE | {State.HOLD, State.ARMED},
         State.HOLD: _ACTIVE | {State.ARMED},
         State.STOPPING: frozenset({State.DONE, State.STOPPED, State.FAULT}),
-        State.DONE: frozenset({State.SETTING, State.FAULT}),
+        State.DONE: frozenset({State.SETTING, State.STOPPED, State.FAULT}),
         State.STOPPED: frozenset({State.HOMING, State.FAULT}),
         State.FAULT: frozenset({State.IDLE}),
     }

@@ -1,0 +1,82 @@
+"""The operator's side of ``pmm run``: answers from standard input, Ctrl-C once and twice."""
+
+import queue
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Final, TextIO
+
+_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+
+
+class Answers:
+    """Answers to questions, line by line, without ever waiting for one.
+
+    The lines are read in a thread of their own, from the first question on.
+
+    Attributes
+    ----------
+    absent
+        Whether no answer can come any more: the input has ended.
+    question
+        What was asked last and is not answered; empty if nothing.
+    """
+
+    def __init__(self, source: TextIO) -> None:
+        self._source = source
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._reader: threading.Thread | None = None
+        self.absent = False
+        self.question = ""
+
+    def __call__(self, question: str) -> str | None:
+        """Return the answer, once there is one."""
+        self.question = question
+        if self._reader is None:
+            self._reader = threading.Thread(target=self._read, name="answers", daemon=True)
+            self._reader.start()
+        try:
+            line = None if self.absent else self._lines.get_nowait()
+        except queue.Empty:
+            return None
+        if line is None:
+            self.absent = True
+            return None
+        self.question = ""
+        return line.strip()
+
+    def _read(self) -> None:
+        try:
+            for line in self._source:
+                self._lines.put(line)
+        except (OSError, ValueError):
+            pass  # closed under the reader: the same as its end
+        self._lines.put(None)
+
+
+class Interrupts:
+    """Counts Ctrl-C and SIGTERM; the loop looks at the count, so that nothing is torn apart."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def _take(self, _number: int, _frame: FrameType | None) -> None:
+        self.count += 1
+
+    @contextmanager
+    def counted(self) -> Iterator[None]:
+        """Count them for as long as the context lasts."""
+        before = {one: signal.signal(one, self._take) for one in _SIGNALS}
+        try:
+            yield
+        finally:
+            for one, handler in before.items():
+                signal.signal(one, handler)
+
+
+def standard_input() -> Answers:
+    """Return the answers that are typed in or piped."""
+    return Answers(sys.stdin)
