@@ -16,6 +16,8 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
+from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.run_plan import KnownMass, LoadStep
 from pmm.radiation_file import RadiationFile
 from sim.acquisition import Acquisition
 from sim.acting import Acting
@@ -33,6 +35,7 @@ from sim.photocell import Photocell
 from sim.rig import SimulatedRig
 
 CAMPAIGN_FILE = "campaign.toml"
+RUN_FILE = "run.nc"  # a recording in its run's own folder
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,20 @@ class Run:
     periods
         Whole periods wanted.
     file
-        Recording of another system, beside the campaign file; ``None`` for ``<name>.nc``.
+        Recording of another system, beside the campaign file, or where run control has put its own;
+        ``None`` for ``<name>.nc``.
+    kind, motion, repeat, known_mass
+        What the run was for; see :class:`pmm.plan.run_plan.RunPlan`.
+    drift_rad
+        Steady drift angle, positive for the bow to starboard.
+    u_eccentricity_m, u_strut_phase_rad
+        Standard uncertainties of how eccentricity and phase were set or read.
+    zero_before, zero_after
+        Names of the records at rest that tell the gauges' zero.
+    number
+        Place among all runs of the campaign, those at rest too, from 1.
+    outcome
+        ``"complete"``, ``"stopped"`` or ``"fault"``.
     """
 
     name: str
@@ -59,6 +75,17 @@ class Run:
     medium: Medium = Medium.WATER
     periods: int = 10
     file: str | None = None
+    kind: RunKind = RunKind.OSCILLATION
+    motion: Motion | None = None
+    repeat: int = 1
+    drift_rad: float = 0.0
+    u_eccentricity_m: float = 0.0
+    u_strut_phase_rad: float = 0.0
+    known_mass: KnownMass | None = None
+    zero_before: str | None = None
+    zero_after: str | None = None
+    number: int | None = None
+    outcome: str = "complete"
 
     @property
     def set_point(self) -> SetPoint:
@@ -75,6 +102,35 @@ class Run:
         """Return where the run's recording lies: ``<name>.nc`` if it is there, else ``file``."""
         own = folder / f"{self.name}.nc"
         return own if self.file is None or own.exists() else folder / self.file
+
+
+@dataclass(frozen=True)
+class AtRest:
+    """A record with the shaft at rest: a zero run, a load step, a push, a pluck, a tow.
+
+    It carries no harmonics, so it stands beside the runs. Attributes are as in :class:`Run`; the
+    file is beside the campaign file.
+
+    Attributes
+    ----------
+    load
+        Which gauge was loaded, and with what.
+    """
+
+    name: str
+    kind: RunKind
+    file: str
+    duration_s: float
+    carriage_speed_m_s: float = 0.0
+    medium: Medium = Medium.WATER
+    drift_rad: float = 0.0
+    repeat: int = 1
+    load: LoadStep | None = None
+    known_mass: KnownMass | None = None
+    zero_before: str | None = None
+    zero_after: str | None = None
+    number: int | None = None
+    outcome: str = "complete"
 
 
 @dataclass(frozen=True)
@@ -123,6 +179,8 @@ class Campaign:
         Which column of the text recordings is what.
     model_uncertainty
         Standard uncertainties of the model's numbers, as ``pmm inertia`` writes them.
+    at_rest
+        Records without oscillation: zero runs, loads, tows.
     """
 
     name: str = "campaign"
@@ -147,6 +205,7 @@ class Campaign:
     columns: ColumnMap | None = None
     model_uncertainty: ModelUncertainty | None = None
     runs: tuple[Run, ...] = ()
+    at_rest: tuple[AtRest, ...] = ()
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}

@@ -4,24 +4,29 @@ import math
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from analysis.readers import ColumnMap
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
-from pmm.campaign import Campaign, Run
-from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.campaign import AtRest, Campaign, Run
+from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 from pmm.model_uncertainty import take_uncertainty
 from pmm.oscillator_table import expand_preset
+from pmm.plan.kinds import RunKind
+
+T = TypeVar("T")
 
 # Key for people -> key in SI, and the factor between.
 _UNITS = {
     "eccentricity_mm": ("eccentricity_m", 1e-3),
     "strut_phase_deg": ("strut_phase_rad", math.pi / 180.0),
+    "drift_deg": ("drift_rad", math.pi / 180.0),
 }
-_EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS)}
+_EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": ("drift_deg",)}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
 _NOT_IN_FILE_NAMES = set('/\\:*?"<>|\0')
@@ -77,20 +82,24 @@ def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> Col
 
 def _expand_units(table: dict[str, Any], faults: list[Fault]) -> None:
     """Turn millimetres and degrees of the runs into metres and radians."""
-    runs = table.get("runs")
-    for number, run in enumerate(runs if isinstance(runs, list) else []):
-        if not isinstance(run, dict):
-            continue
-        for key in [key for key in _UNITS if key in run]:
-            value, (si_key, factor) = run.pop(key), _UNITS[key]
-            place = ("runs", number, key)
-            if si_key in run:
-                faults.append(Fault(place, f"and {si_key} are both given; one is enough"))
-            elif isinstance(value, bool) or not isinstance(value, int | float):
-                faults.append(Fault(place, f"= {value!r} should be a number"))
-                run[si_key] = 0.0  # so that it is not reported as missing too
-            else:
-                run[si_key] = value * factor
+    for array in ("runs", "at_rest"):
+        runs = table.get(array)
+        for number, run in enumerate(runs if isinstance(runs, list) else []):
+            if isinstance(run, dict):
+                _expand_units_of(run, (array, number), faults)
+
+
+def _expand_units_of(run: dict[str, Any], where: Place, faults: list[Fault]) -> None:
+    for key in [key for key in _UNITS if key in run]:
+        value, (si_key, factor) = run.pop(key), _UNITS[key]
+        place = (*where, key)
+        if si_key in run:
+            faults.append(Fault(place, f"and {si_key} are both given; one is enough"))
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            faults.append(Fault(place, f"= {value!r} should be a number"))
+            run[si_key] = 0.0  # so that it is not reported as missing too
+        else:
+            run[si_key] = value * factor
 
 
 def _none_for_false(table: dict[str, Any]) -> None:
@@ -105,24 +114,47 @@ def _none_for_false(table: dict[str, Any]) -> None:
 def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what is wrong with runs that are right by themselves."""
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
+    runs = list(_valid(table, "runs", Run))
+    rest = list(_valid(table, "at_rest", AtRest))
+    every: list[tuple[Place, Run | AtRest]] = [*runs, *rest]
     names: set[str] = set()
-    runs = table.get("runs")
-    for number, one in enumerate(runs if isinstance(runs, list) else []):
-        run = validate(Run, one, [])
-        if run is None:
-            continue
-        place = ("runs", number, "name")
-        if run.name.casefold() in names:
-            yield Fault(place, "is taken already; a recording is named by it")
-        if not run.name or run.name.startswith(".") or set(run.name) & _NOT_IN_FILE_NAMES:
-            yield Fault(place, f"= {run.name!r} cannot be the name of a file")
-        names.add(run.name.casefold())
+    for place, one in every:
+        yield from _name_faults(one.name, (*place, "name"), names)
+    for place, run in runs:
         if oscillator is not None:
-            yield from _beyond(oscillator, run, number)
+            yield from _beyond(oscillator, run, place)
+    zeros = [one.name for _, one in rest if one.kind is RunKind.ZERO]
+    for place, one in every:
+        yield from _zero_faults(one, place, zeros)
 
 
-def _beyond(oscillator: Oscillator, run: Run, number: int) -> Iterator[Fault]:
+def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
+    entries = table.get(array)
+    for number, one in enumerate(entries if isinstance(entries, list) else []):
+        found = validate(kind, one, [])
+        if found is not None:
+            yield (array, number), found
+
+
+def _name_faults(name: str, place: Place, names: set[str]) -> Iterator[Fault]:
+    if name.casefold() in names:
+        yield Fault(place, "is taken already; a recording is named by it")
+    if not name or name.startswith(".") or set(name) & _NOT_IN_FILE_NAMES:
+        yield Fault(place, f"= {name!r} cannot be the name of a file")
+    names.add(name.casefold())
+
+
+def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[Fault]:
+    for key in ("zero_before", "zero_after"):
+        name = getattr(run, key)
+        if name is not None and name not in zeros:
+            near = get_close_matches(name, zeros, n=1, cutoff=0.5)
+            hint = f"did you mean {near[0]!r}?" if near else "list it in [[at_rest]], kind zero"
+            yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
+
+
+def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:
     try:
         check_within(oscillator, run.set_point)
     except ConfigurationError as error:
-        yield Fault(("runs", number), str(error))
+        yield Fault(place, str(error))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
-from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign import CAMPAIGN_FILE, RUN_FILE, Campaign
 from pmm.campaign_file import read_campaign
 
 if TYPE_CHECKING:
@@ -33,7 +33,9 @@ class Source:
 
     @property
     def stem(self) -> str:
-        """The file's name without its endings."""
+        """The file's name without its endings; its folder's, where run control has put it."""
+        if self.path.name == RUN_FILE:
+            return self.path.parent.name
         return Path(self.path.name.removesuffix(".gz")).stem
 
 

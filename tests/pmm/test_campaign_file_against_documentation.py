@@ -15,9 +15,10 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.campaign import Campaign, Run, Simulation, SwitchedOn
+from pmm.campaign import AtRest, Campaign, Run, Simulation, SwitchedOn
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.plan.run_plan import KnownMass, LoadStep
 from pmm.radiation_file import RadiationFile
 from sim.acquisition import Acquisition, Digitiser
 from sim.acting import Acting, AnyLaw
@@ -57,6 +58,9 @@ def test_there_are_examples() -> None:
     "kind",
     [
         Run,
+        AtRest,
+        KnownMass,
+        LoadStep,
         Simulation,
         Oscillator,
         Body,

@@ -1,0 +1,144 @@
+"""The campaign file of what has been run: a folder that ``pmm analyse`` takes as a whole."""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+from hardware.description.oscillator import Range
+from hardware.roles import Reading
+from pmm.plan.plan import Plan
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+from pmm.plan.toml_text import toml_table, toml_value
+
+_NAME: Final = "campaign.toml"
+_WITHIN: Final = 3.0  # standard uncertainties: a reading so near to a limit is that of the limit
+
+
+@dataclass(frozen=True)
+class FinishedRun:
+    """A run that was made.
+
+    Attributes
+    ----------
+    recording
+        Its file, seen from the campaign's folder.
+    readings
+        Where the axes stood: ``"eccentricity"`` in metres and ``"phase"`` in radians, from an
+        encoder or a dial.
+    outcome
+        ``"complete"``, ``"stopped"`` or ``"fault"``.
+    """
+
+    plan: RunPlan
+    recording: str
+    readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
+    outcome: str = "complete"
+
+
+def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Path:
+    """Write the campaign file of the runs made so far, in their order; the old one is replaced.
+
+    The file is whole at every moment: it is written beside and moved into place.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    target = folder / _NAME
+    beside = folder / f".{_NAME}.part"
+    text = "\n".join(_tables(folder, plan, rig, done))
+    with beside.open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    beside.replace(target)
+    return target
+
+
+def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Iterator[str]:
+    yield f"# Written by pmm run from {plan.path.name} and {rig.path.name}: docs/campaigns.md\n" + (
+        f"name = {toml_value(plan.name)}\n"
+    )
+    yield toml_table("oscillator", asdict(rig.oscillator))
+    if rig.model is not None:
+        body = {key: one for key, one in asdict(rig.model).items() if key != "length_m"}
+        yield toml_table("model", body)
+    if rig.hull is not None:
+        yield toml_table("hull", asdict(rig.hull))
+    offset = {key: one for key, one in asdict(rig.photocell_offset).items() if one}
+    if offset:
+        yield toml_table("reference", offset)
+    yield from _handed_on(folder, rig)
+    names = {one.plan.name for one in done}
+    for number, one in enumerate(done, 1):
+        array = "runs" if one.plan.oscillates else "at_rest"
+        keys = _turning(one, rig) if one.plan.oscillates else _resting(one.plan)
+        yield toml_table(array, keys | _common(one, names, number), array=True)
+
+
+def _handed_on(folder: Path, rig: RigFile) -> Iterator[str]:
+    for name, table in rig.campaign.items():
+        if name == "radiation" and isinstance(table, Mapping) and "file" in table:
+            file = os.path.relpath(rig.path.resolve().parent / table["file"], folder.resolve())
+            yield toml_table(name, {**table, "file": Path(file).as_posix()})
+        elif isinstance(table, Mapping):
+            yield toml_table(name, table)
+        elif isinstance(table, list):
+            yield from (toml_table(name, one, array=True) for one in table)
+
+
+def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
+    """Return what runs and records at rest share; a zero that is not yet made is left out."""
+    run = one.plan
+    point = run.set_point
+    return {
+        "kind": run.kind,
+        "file": one.recording,
+        "carriage_speed_m_s": point.carriage_speed_m_s,
+        "medium": point.medium,
+        "drift_rad": run.drift_rad,
+        "repeat": run.repeat,
+        "known_mass": None if run.known_mass is None else asdict(run.known_mass),
+        "zero_before": run.zero_before if run.zero_before in names else None,
+        "zero_after": run.zero_after if run.zero_after in names else None,
+        "number": number,
+        "outcome": one.outcome,
+    }
+
+
+def _turning(one: FinishedRun, rig: RigFile) -> dict[str, Any]:
+    """Return the set-point as it was measured or read, else as it was planned."""
+    point = one.plan.set_point
+    keys: dict[str, Any] = {
+        "name": one.plan.name,
+        "motion": one.plan.motion,
+        "frequency_hz": point.frequency_hz,
+        "eccentricity_m": point.eccentricity_m,
+        "strut_phase_rad": point.strut_phase_rad,
+        "periods": one.plan.periods,
+    }
+    for axis, key in (("eccentricity", "eccentricity_m"), ("phase", "strut_phase_rad")):
+        reading = one.readings.get(axis)
+        if reading is not None:
+            keys[key] = reading.value
+            keys[f"u_{key}"] = reading.standard_uncertainty
+            if axis == "eccentricity":
+                keys[key] = _in_range(reading, rig.oscillator.eccentricity_m)
+    return keys
+
+
+def _in_range(reading: Reading, limits: Range) -> float:
+    """Return a reading; at a limit, what its uncertainty puts beyond it is not beyond it."""
+    nearest = min(max(reading.value, limits.low), limits.high)
+    off = abs(reading.value - nearest)
+    return nearest if off <= _WITHIN * reading.standard_uncertainty else reading.value
+
+
+def _resting(run: RunPlan) -> dict[str, Any]:
+    load = None if run.load is None else asdict(run.load)
+    return {"name": run.name, "duration_s": run.duration_s, "load": load}
