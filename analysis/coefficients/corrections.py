@@ -87,17 +87,33 @@ def without_response(run: StrutRun, responses: Mapping[str, Response]) -> StrutR
         If a channel lets less than a tenth of this harmonic through.
     """
     factors = np.ones(len(run.phasors.values), dtype=np.complex128)
-    omega = 2.0 * math.pi * run.frequency_hz * run.order
+    found = response_factors(run.name, run.frequency_hz, run.order, responses)
+    for name, factor in found.items():
+        factors[run.phasors.index(name)] = factor
+    return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
+
+
+def response_factors(
+    run: str, frequency_hz: float, order: int, responses: Mapping[str, Response]
+) -> dict[str, complex]:
+    """Return what each channel's harmonic is multiplied by to take its response out.
+
+    Raises
+    ------
+    DataError
+        If a channel lets less than a tenth of this harmonic through.
+    """
+    found = {}
     for name, response in responses.items():
-        value = response_at(response, omega)
+        value = response_at(response, 2.0 * math.pi * frequency_hz * order)
         if not abs(value) > _LEAST_GAIN:
             raise DataError(
-                f"{run.name}: {name} lets {abs(value):.2g} of harmonic {run.order} at "
-                f"{run.frequency_hz:g} Hz through, less than {_LEAST_GAIN:g}; raise the filter's "
+                f"{run}: {name} lets {abs(value):.2g} of harmonic {order} at "
+                f"{frequency_hz:g} Hz through, less than {_LEAST_GAIN:g}; raise the filter's "
                 "frequency or take a lower harmonic"
             )
-        factors[run.phasors.index(name)] /= value
-    return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
+        found[name] = 1.0 / value
+    return found
 
 
 def response_at(response: Response, omega: float) -> complex:
@@ -121,15 +137,26 @@ def calibrated(run: StrutRun, matrix: FloatArray) -> StrutRun:
     ConfigurationError
         If its shape is another, or it is singular: two gauges would tell the same.
     """
+    whole = np.eye(len(run.phasors.values))
+    places = [run.phasors.index(name) for name in FORCES]
+    whole[np.ix_(places, places)] = calibration(matrix)
+    return replace(run, phasors=run.phasors.mapped(whole))
+
+
+def calibration(matrix: FloatArray) -> FloatArray:
+    """Return a calibration matrix that was checked.
+
+    Raises
+    ------
+    ConfigurationError
+        If its shape is not (2, 2), or it is singular.
+    """
     matrix = np.asarray(matrix, dtype=np.float64)
     if matrix.shape != (2, 2) or not np.linalg.cond(matrix) < 1e6:
         raise ConfigurationError(
             f"the calibration matrix {matrix.tolist()} must be 2 by 2 and not singular"
         )
-    whole = np.eye(len(run.phasors.values))
-    places = [run.phasors.index(name) for name in FORCES]
-    whole[np.ix_(places, places)] = matrix
-    return replace(run, phasors=run.phasors.mapped(whole))
+    return matrix
 
 
 @dataclass(frozen=True, eq=False)

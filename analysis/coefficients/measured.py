@@ -30,6 +30,12 @@ from hardware.description.setpoint import SetPoint
 
 DISPLACEMENTS = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
 FORCES = (FORCE_AFT.name, FORCE_FORE.name)
+MOTION_ASKED = Flag(
+    "motion_from_set_point",
+    Severity.NOTE,
+    "no strut displacements were measured: the set-point's are used, without uncertainty; state "
+    "those of amplitude, strut phase and the photocell's latency",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,7 +205,7 @@ def measured_run(
         )
     has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
     names = (*DISPLACEMENTS, *FORCES) if has_sensors else FORCES
-    joint, flags = _joint(analysis, reading_index)
+    joint, flags = joint_of(analysis, reading_index)
     phasors = reading_phasors(reading, names, order, joint)
     run = StrutRun(
         reading.run, oscillator, set_point, reading.frequency_hz, phasors, order, reading.flags
@@ -208,9 +214,10 @@ def measured_run(
     return run if has_sensors else with_set_point_motion(run)
 
 
-def _joint(
+def joint_of(
     analysis: Analysis, reading_index: int
 ) -> tuple[tuple[FloatArray, FloatArray] | None, tuple[Flag, ...]]:
+    """Return the covariance of all channels of a reading, or ``None`` and a flag that says why."""
     if analysis.settings.hann:
         text = "tapered gates have no periods: the channels' scatter is taken as independent"
         return None, (Flag("channels_independent", Severity.NOTE, text),)
@@ -227,12 +234,7 @@ def with_set_point_motion(run: StrutRun) -> StrutRun:
     asked = strut_displacements(run.oscillator, run.set_point, orders)[run.order]
     values = asked if run.order else asked.imag.astype(np.complex128)  # H[0] = i A0
     exact = Phasors(DISPLACEMENTS, ("m", "m"), values)
-    text = (
-        "no strut displacements were measured: the set-point's are used, without uncertainty; "
-        "state those of amplitude and strut phase"
-    )
-    flag = Flag("motion_from_set_point", Severity.NOTE, text)
-    return replace(run, phasors=joined(exact, run.phasors), flags=(*run.flags, flag))
+    return replace(run, phasors=joined(exact, run.phasors), flags=(*run.flags, MOTION_ASKED))
 
 
 def from_harmonics(

@@ -4,65 +4,22 @@ Each trial has its own phasors of every run and its own deviations of what is kn
 amplitude, lag ...). Derivatives for the linear budget and Monte Carlo both call this one function.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from analysis.coefficients.names import Form, Place
 from analysis.coefficients.phasors import ComplexArray, FloatArray, from_interleaved
 from analysis.coefficients.run import LOADS, MOTIONS, Run, point_matrix
+from analysis.coefficients.stated import STATED, Stated
 from analysis.motion import incidence
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_loads, to_motion, to_strut_forces, to_struts
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
+__all__ = ["PER_RUN", "STATED", "Problem", "Stated", "fit"]
+
 PER_RUN = 8  # real numbers: S and C of translation, rotation, force, moment
-
-
-@dataclass(frozen=True)
-class Stated:
-    """Standard uncertainties of what all runs share; 0 where it is taken as exact.
-
-    Attributes
-    ----------
-    mass_kg, cg_x_m, cg_z_m, inertia_kg_m2
-        Of the body that is taken off, about the midpoint.
-    half_spacing_m, speed_m_s, frequency_relative, restoring_relative
-        Of geometry, carriage, frequency (u/f) and the restoring matrix (common factor).
-    amplitude_relative
-        Of the struts' motion: eccentricity setting, or calibration of the displacement sensors.
-    strut_phase_rad
-        Of the fore strut against the aft one, where set-points stand in for the motion.
-    lag_s
-        Of both forces against the motion: amplifier, skew, and the photocell's latency where
-        set-points stand in for the motion.
-    skew_s
-        Of the fore gauge against the aft one.
-    force_gain_relative
-        Of both gauges together.
-    """
-
-    mass_kg: float = 0.0
-    cg_x_m: float = 0.0
-    cg_z_m: float = 0.0
-    inertia_kg_m2: float = 0.0
-    half_spacing_m: float = 0.0
-    speed_m_s: float = 0.0
-    frequency_relative: float = 0.0
-    restoring_relative: float = 0.0
-    amplitude_relative: float = 0.0
-    strut_phase_rad: float = 0.0
-    lag_s: float = 0.0
-    skew_s: float = 0.0
-    force_gain_relative: float = 0.0
-
-    @property
-    def vector(self) -> FloatArray:
-        """All of them, in the order of :data:`STATED`."""
-        return np.array([getattr(self, name) for name in STATED])
-
-
-STATED = tuple(one.name for one in fields(Stated))
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +95,9 @@ class Problem:
         off = {name: deviations[:, k, None] for k, name in enumerate(STATED)}
         omega = np.array([run.omega for run in self.runs]) * (1.0 + off["frequency_relative"])
         motion, load = self._struts_corrected(from_interleaved(parts), off, omega)
+        arm = -off["midpoint_x_m"] * point_matrix(1.0, self.plane)[0, 1]
+        motion[..., 0] += arm * motion[..., 1]
+        load[..., 1] -= arm * load[..., 0]
         known = self._known(off, omega)
         load = load - np.einsum("trij,trj->tri", known, motion)
         moves = np.stack([point_matrix(run.point_ahead_m, run.plane) for run in self.runs])
@@ -146,9 +106,19 @@ class Problem:
         load = np.einsum("rij,trj->tri", carry, load)
         velocity = 1j * omega[..., None] * motion
         if self.form is Form.MANOEUVRING:
-            speed = np.array([run.speed_m_s for run in self.runs]) + off["speed_m_s"]
-            velocity = velocity + speed[..., None] * (motion @ incidence(self.plane).T)
+            velocity = velocity + self._incidence(motion, off)
         return velocity, load, omega
+
+    def _incidence(self, motion: ComplexArray, off: dict[str, FloatArray]) -> ComplexArray:
+        """What the carriage's speed adds: by the rotation, and by drift or trim to the mean."""
+        speed = np.array([run.speed_m_s for run in self.runs]) + off["speed_m_s"]
+        drift = np.array([run.drift_rad for run in self.runs])
+        mean = np.array([run.order == 0 for run in self.runs])
+        turned = np.array(motion)
+        turned[..., 1] = np.cos(drift) * (motion[..., 1] + mean * off["alignment_rad"])
+        turned[..., 1] += mean * np.sin(drift)
+        found: ComplexArray = speed[..., None] * (turned @ incidence(self.plane).T)
+        return found
 
     def _struts_corrected(
         self, phasors: ComplexArray, off: dict[str, FloatArray], omega: FloatArray
@@ -158,14 +128,18 @@ class Problem:
         order = np.array([run.order for run in self.runs])
         aft, fore = to_struts(phasors[..., 0], phasors[..., 1], half, plane)
         forces = to_strut_forces(phasors[..., 2], phasors[..., 3], half, plane)
+        asked = np.array([run.motion_is_asked for run in self.runs])
         fore = fore * np.exp(1j * order * off["strut_phase_rad"])
         late = forces[1] * np.exp(1j * omega * off["skew_s"])
+        gauge_aft = (1.0 + off["gauge_aft_relative"]) * forces[0] + off["cross_talk_aft"] * late
+        gauge_fore = (1.0 + off["gauge_fore_relative"]) * late + off["cross_talk_fore"] * forces[0]
         motion = np.stack(to_motion(aft, fore, half, plane), axis=-1)
-        load = np.stack(to_loads(forces[0], late, half, plane), axis=-1)
+        load = np.stack(to_loads(gauge_aft, gauge_fore, half, plane), axis=-1)
         longer = 1.0 + off["half_spacing_m"] / half
         motion[..., 1] /= longer
         load[..., 1] *= longer
-        gain = (1.0 + off["force_gain_relative"]) * np.exp(1j * omega * off["lag_s"])
+        lag = off["lag_s"] + asked * off["latency_s"]
+        gain = (1.0 + off["force_gain_relative"]) * np.exp(1j * omega * lag)
         motion *= (1.0 + off["amplitude_relative"])[..., None]
         load *= gain[..., None]
         return motion, load
@@ -174,7 +148,8 @@ class Problem:
         """``C + G - omega^2 M`` of each trial and run, shape ``(trials, runs, 2, 2)``."""
         vertical = self.plane is Plane.VERTICAL
         restoring = np.stack([run.restoring for run in self.runs])
-        known = restoring * (1.0 + off["restoring_relative"])[..., None, None]
+        denser = (1.0 + off["restoring_relative"]) * (1.0 + off["density_relative"])
+        known = restoring * denser[..., None, None]
         known = np.broadcast_to(known, (*omega.shape, 2, 2)).copy()
         for k, run in enumerate(self.runs):
             if run.body is None:

@@ -19,6 +19,7 @@ import numpy as np
 
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.result import Coefficients, Share
+from analysis.coefficients.terms import Term
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
@@ -37,12 +38,30 @@ class Normalisation:
         Of levers.
     mass_kg, mass_per_second
         What force per acceleration and force per velocity are divided by.
+    speed_m_s
+        That the system is built on; 0 where it is built on gravity.
     """
 
     name: str
     length_m: float
     mass_kg: float
     mass_per_second: float
+    speed_m_s: float = 0.0
+
+    @property
+    def velocity(self) -> float:
+        """What velocities are divided by, m/s: U, or sqrt(g L)."""
+        return self.length_m * self.mass_per_second / self.mass_kg
+
+    def term_factor(self, term: Term) -> float:
+        """Return what a manoeuvring term's coefficient is divided by, cubic ones and X alike.
+
+        A force is divided by ``mass_per_second * velocity``, each v by the velocity, each r by
+        velocity over length, their rates once more by velocity over length.
+        """
+        force = self.mass_per_second * self.velocity
+        lengths = term.lengths + term.rates
+        return float(force * self.length_m**lengths / self.velocity ** (term.degree + term.rates))
 
     def factors(self, coefficients: Coefficients) -> FloatArray:
         """Return what each value is divided by, shape ``(n,)``."""
@@ -111,7 +130,7 @@ def prime(length_m: float, speed_m_s: float, density_kg_m3: float) -> Normalisat
     _positive(length_m=length_m, speed_m_s=speed_m_s, density_kg_m3=density_kg_m3)
     area = 0.5 * density_kg_m3 * length_m**2
     name = f"prime (rho/2, L = {length_m:g} m, U = {speed_m_s:g} m/s)"
-    return Normalisation(name, length_m, area * length_m, area * speed_m_s)
+    return Normalisation(name, length_m, area * length_m, area * speed_m_s, speed_m_s)
 
 
 def mmg(length_m: float, draught_m: float, speed_m_s: float, density_kg_m3: float) -> Normalisation:
@@ -130,7 +149,7 @@ def mmg(length_m: float, draught_m: float, speed_m_s: float, density_kg_m3: floa
     )
     area = 0.5 * density_kg_m3 * length_m * draught_m
     name = f"MMG (rho/2, L = {length_m:g} m, d = {draught_m:g} m, U = {speed_m_s:g} m/s)"
-    return Normalisation(name, length_m, area * length_m, area * speed_m_s)
+    return Normalisation(name, length_m, area * length_m, area * speed_m_s, speed_m_s)
 
 
 def seakeeping(

@@ -26,38 +26,42 @@ def run_weights(problem: Problem) -> FloatArray:
     A run's own variance counts as far as its degrees of freedom go beside :data:`_POOLED_FREEDOM`
     of the runs' mean: weights that follow the luck of three periods would be too sure of it.
     """
-    variance = _residual_spread(problem, problem.nominal()) ** 2
+    variance = residual_spread(problem, problem.nominal()) ** 2
     if not np.isfinite(variance).all():
         return np.ones_like(variance)
-    own = np.array([_fewest(run) for run in problem.runs])[:, None]
-    trust = 1.0 / (1.0 + _POOLED_FREEDOM / np.maximum(own, 1e-9))
-    variance = trust * variance + (1.0 - trust) * variance.mean(axis=0)
+    variance = trusted(variance, np.array([_fewest(run) for run in problem.runs])[:, None])
     sizes = np.stack([np.abs(run.loads.values) for run in problem.runs])
     floor = 1e-9 * sizes.max(axis=0) + 1e-300
     return np.asarray(floor / np.maximum(np.sqrt(variance), floor))
+
+
+def trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
+    """Return variances of runs (first axis) shrunk towards their mean; see :func:`run_weights`."""
+    trust = 1.0 / (1.0 + _POOLED_FREEDOM / np.maximum(degrees_of_freedom, 1e-9))
+    return np.asarray(trust * variance + (1.0 - trust) * variance.mean(axis=0))
 
 
 def _fewest(run: Run) -> float:
     return min((source.degrees_of_freedom for source in run.phasors.sources), default=math.inf)
 
 
-def _residual_spread(problem: Problem, matrices: FloatArray) -> FloatArray:
-    """Standard deviation of ``load - (B + i omega A) velocity``, shape ``(runs, 2)``."""
+def residual_spread(problem: Problem, matrices: FloatArray) -> FloatArray:
+    """Return the standard deviation of ``load - (B + i omega A) velocity``, shape ``(runs, 2)``."""
     rows = []
     for run in problem.runs:
         carry = np.linalg.inv(point_matrix(run.point_ahead_m, run.plane)).T
-        slope = np.hstack((-carry @ run.known() - _asked(problem, run, matrices), carry))
+        slope = np.hstack((-carry @ run.known() - asked_load(problem, run, matrices), carry))
         ordered = run.phasors.select((*MOTIONS, *LOADS))
         covariance = ordered.mapped(slope.astype(np.complex128), LOADS, ("N", "N m")).covariance
         rows.append(np.sqrt(np.diagonal(covariance).reshape(2, 2).mean(axis=1)))
     return np.stack(rows)
 
 
-def _asked(problem: Problem, run: Run, matrices: FloatArray) -> ComplexArray:
-    """``(B + i omega A)`` times what turns the midpoint's motion into the form's velocities."""
+def asked_load(problem: Problem, run: Run, matrices: FloatArray) -> ComplexArray:
+    """Return ``(B + i omega A)`` times what makes the form's velocities of the motion."""
     turn = np.asarray(1j * run.omega * np.eye(2), dtype=np.complex128)
     if problem.form is Form.MANOEUVRING:
-        turn = turn + run.speed_m_s * incidence(run.plane)
+        turn = turn + run.speed_m_s * math.cos(run.drift_rad) * incidence(run.plane)
     turn = turn @ point_matrix(run.point_ahead_m, run.plane)
     dynamic = matrices[..., 1] + 1j * run.omega * matrices[..., 0]
     return np.asarray(dynamic @ turn[list(problem.columns)])
@@ -68,10 +72,10 @@ def misfit_of(problem: Problem, matrices: FloatArray) -> float:
     spare = 4 * (len(problem.runs) - len(problem.columns))
     if spare == 0:
         return math.nan
-    spread = _residual_spread(problem, matrices)
+    spread = residual_spread(problem, matrices)
     residuals = np.stack(
         [
-            run.net().values - _asked(problem, run, matrices) @ run.motion.values
+            run.net().values - asked_load(problem, run, matrices) @ run.motion.values
             for run in problem.runs
         ]
     )

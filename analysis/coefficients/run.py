@@ -16,7 +16,7 @@ from analysis.motion import mass_matrix, weight_matrix
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
-from hardware.description.oscillator import Plane
+from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium
 from hardware.description.struts import to_loads, to_motion
 
@@ -47,6 +47,9 @@ class Run:
         Hydrostatic restoring that is taken off, N/m, N and N m; about the midpoint.
     point_ahead_m
         Where coefficients are wanted, ahead of the midpoint.
+    drift_rad
+        Steady heading of the model against the carriage's way, bow to starboard (bow up); the
+        struts move it across this heading.
     """
 
     name: str
@@ -61,6 +64,12 @@ class Run:
     restoring: FloatArray = field(default_factory=_nothing)
     point_ahead_m: float = 0.0
     flags: tuple[Flag, ...] = ()
+    drift_rad: float = 0.0
+
+    @property
+    def motion_is_asked(self) -> bool:
+        """Whether the set-point's motion stands in for one that was not measured."""
+        return any(flag.code == "motion_from_set_point" for flag in self.flags)
 
     @property
     def omega(self) -> float:
@@ -191,13 +200,18 @@ def point_matrix(ahead_m: float, plane: Plane) -> FloatArray:
     return np.array([[1.0, side * ahead_m], [0.0, 1.0]])
 
 
-def from_struts(run: StrutRun) -> Run:
-    """Combine the struts' phasors into motion and loads about the midpoint."""
-    half, plane = run.oscillator.half_spacing_m, run.oscillator.plane
-    unit = np.eye(2)
+def strut_matrix(oscillator: Oscillator) -> FloatArray:
+    """Return what turns the struts' displacements and forces into motion and loads, ``(4, 4)``."""
+    half, plane, unit = oscillator.half_spacing_m, oscillator.plane, np.eye(2)
     whole = np.zeros((4, 4))
     whole[:2, :2] = np.stack(to_motion(unit[0], unit[1], half, plane))
     whole[2:, 2:] = np.stack(to_loads(unit[0], unit[1], half, plane))
+    return whole
+
+
+def from_struts(run: StrutRun) -> Run:
+    """Combine the struts' phasors into motion and loads about the midpoint."""
+    half, plane = run.oscillator.half_spacing_m, run.oscillator.plane
     ordered = run.phasors.select((*run.displacements.names, *run.forces.names))
     return Run(
         run.name,
@@ -206,7 +220,7 @@ def from_struts(run: StrutRun) -> Run:
         run.frequency_hz,
         run.set_point.carriage_speed_m_s,
         run.set_point.medium,
-        ordered.mapped(whole, (*MOTIONS, *LOADS), ("m", "rad", "N", "N m")),
+        ordered.mapped(strut_matrix(run.oscillator), (*MOTIONS, *LOADS), ("m", "rad", "N", "N m")),
         run.order,
         flags=run.flags,
     )

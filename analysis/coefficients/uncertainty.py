@@ -49,7 +49,7 @@ def linear_shares(problem: Problem, stated: Stated) -> tuple[FloatArray, tuple[S
     shares
         Scatter by source, then each stated uncertainty that is not zero.
     """
-    by_phasor, by_stated = _jacobians(problem, stated)
+    by_phasor, by_stated = slopes(problem, stated)
     covariance = np.zeros((len(by_phasor), len(by_phasor)))
     shares = []
     for k, run in enumerate(problem.runs):
@@ -121,8 +121,8 @@ def _sources(run: Run) -> tuple[Source, ...]:
     return run.phasors.select((*MOTIONS, *LOADS)).sources
 
 
-def _jacobians(problem: Problem, stated: Stated) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by the phasors ``(n, 8 runs)`` and by the stated quantities ``(n, stated)``."""
+def slopes(problem: Problem, stated: Stated) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives by the phasors ``(n, 8 runs)`` and by the stated quantities ``(n, stated)``."""
     parts = problem.phasor_parts()
     steps = np.concatenate((_steps(problem, parts).ravel(), _STATED_STEP * stated.vector))
     count = len(steps)
@@ -130,9 +130,9 @@ def _jacobians(problem: Problem, stated: Stated) -> tuple[FloatArray, FloatArray
     trial = parts[None] + shifts[:, : parts.size].reshape(2 * count, *parts.shape)
     solved = problem.flat(problem.solve(trial, shifts[:, parts.size :]))
     with np.errstate(invalid="ignore"):
-        slopes = (solved[:count] - solved[count:]) / (2.0 * steps[:, None])
-    slopes[steps == 0.0] = 0.0
-    return slopes[: parts.size].T, slopes[parts.size :].T
+        found = (solved[:count] - solved[count:]) / (2.0 * steps[:, None])
+    found[steps == 0.0] = 0.0
+    return found[: parts.size].T, found[parts.size :].T
 
 
 def _steps(problem: Problem, parts: FloatArray) -> FloatArray:

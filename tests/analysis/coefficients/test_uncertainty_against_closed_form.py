@@ -1,10 +1,12 @@
 """What a wrong mass, lag or frequency does to a coefficient, from the formulas of one motion."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from analysis.coefficients.measured import StrutRun, with_set_point_motion
 from analysis.coefficients.model import STATED, Stated
 from analysis.coefficients.names import Form
 from analysis.coefficients.solve import problem_of, solve
@@ -128,9 +130,17 @@ def test_monte_carlo_beside_the_linear_budget(form: Form) -> None:
     np.testing.assert_array_equal(again.low, trials.low)
 
 
+def _forces_alone(point: SetPoint, name: str) -> StrutRun:
+    run = ideal_struts(point, name=name)
+    return replace(run, phasors=run.forces)
+
+
 def test_every_stated_quantity_acts_on_something() -> None:
-    runs = [net(ideal_struts(p, name=f"{k}")) for k, p in enumerate(pair())]
+    struts = [with_set_point_motion(_forces_alone(p, f"{k}")) for k, p in enumerate(pair())]
+    runs = [net(run) for run in struts]
     for name in STATED:
+        if name == "alignment_rad":
+            continue  # acts on means, which linear coefficients do not see
         result = solve(runs, Form.MANOEUVRING, stated=Stated(**{name: 1e-3}))
         assert result.standard_uncertainty.max() > 1e-4, name
 

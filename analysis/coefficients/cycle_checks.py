@@ -1,0 +1,121 @@
+"""Whether cycles belong together, and whether their terms can be told apart; what is missing."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.stated import STATED
+from analysis.coefficients.terms import SURGE, Term, name_of_term
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.setpoint import Medium
+
+_APART = 1e-2  # least over greatest singular value of the terms' scaled columns
+
+
+def check_cycles(cycles: Sequence[Cycle], orders: tuple[int, ...]) -> None:
+    """Refuse cycles that cannot be fitted together.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming every run and what does not fit.
+    """
+    if not cycles:
+        raise ConfigurationError("no run was given; one or more are needed")
+    twice = [name for name, count in Counter(one.name for one in cycles).items() if count > 1]
+    faults = [f"two runs are called {name!r}; rename one" for name in twice]
+    for cycle in cycles:
+        faults += _unfit(cycle, cycles[0])
+        moves = cycle.frequency_hz > 0.0
+        if moves and cycle.orders < max(orders):
+            faults.append(
+                f"{cycle.name} was resolved up to harmonic {cycle.orders}, {max(orders)} is needed"
+            )
+        if 0 not in orders and not moves:
+            faults.append(f"{cycle.name} is static and tells through its mean alone")
+    if faults:
+        raise ConfigurationError("the runs do not belong together: " + "; ".join(faults))
+
+
+def _unfit(cycle: Cycle, first: Cycle) -> Iterator[str]:
+    if cycle.plane is not first.plane:
+        yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}"
+    for name in ("half_spacing_m", "point_ahead_m"):
+        own, other = getattr(cycle, name), getattr(first, name)
+        if own != other:
+            yield f"{cycle.name} has {name} = {own:g}, {first.name} {other:g}"
+    if cycle.medium is not Medium.WATER:
+        yield f"{cycle.name} was run in air; take it off as a dry run"
+    if not np.isfinite(cycle.phasors.values).all():
+        yield f"{cycle.name} has values that are not finite; leave the run out"
+
+
+def check_determined(problem: CycleProblem) -> None:
+    """Refuse terms that the cycles cannot tell apart.
+
+    Raises
+    ------
+    DataError
+        Naming the terms of each load that go together and what run would tell them apart.
+    """
+    design, _ = problem.design(problem.parts()[None], np.zeros((1, len(STATED))))
+    for row in sorted({term.row for term in problem.terms}):
+        columns = [k for k, term in enumerate(problem.terms) if term.row == row]
+        if row == SURGE and not all(cycle.has_surge for cycle in problem.cycles):
+            lacking = [cycle.name for cycle in problem.cycles if not cycle.has_surge]
+            raise DataError(
+                f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
+            )
+        flat = design[0][..., columns].reshape(-1, len(columns))
+        matrix = np.concatenate((flat.real, flat.imag))
+        _check_apart(problem, matrix, [problem.terms[k] for k in columns])
+
+
+def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -> None:
+    plane, runs = problem.cycles[0].plane, ", ".join(cycle.name for cycle in problem.cycles)
+    size = np.sqrt((matrix**2).sum(axis=0))
+    still = [t for t, s in zip(terms, size, strict=True) if not s > 1e-9 * _typical(t, problem)]
+    if still:
+        names = ", ".join(name_of_term(term, plane) for term in still)
+        raise DataError(
+            f"{names} cannot be determined from {runs}: nothing there moves in that way; add "
+            f"{_remedy(still, problem)}"
+        )
+    _, singular, right = np.linalg.svd(matrix / size)
+    least = singular[-1] if len(singular) == len(terms) else 0.0
+    if least > _APART * singular[0]:
+        return
+    tied = [t for t, part in zip(terms, right[-1], strict=True) if abs(part) > 0.1]
+    names = " and ".join(name_of_term(term, plane) for term in tied)
+    raise DataError(
+        f"{names} cannot be told apart from {runs} (ratio of singular values "
+        f"{least / singular[0]:.2g}, limit {_APART:g}); add {_remedy(tied, problem)}"
+    )
+
+
+def _typical(term: Term, problem: CycleProblem) -> float:
+    """Size of a term if both motions moved the struts as much as the greatest one does."""
+    velocity, omega = problem.linear.velocities()
+    half = problem.cycles[0].half_spacing_m
+    pace = float(np.abs(velocity * np.array([1.0, half])).max())
+    turning = sum("r" in factor.replace("dot", "") for factor in term.factors)
+    return float(pace**term.degree * omega.max() ** term.rates / half**turning)
+
+
+def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
+    """Return which run would tell terms apart, or from nothing."""
+    letters = {f.replace("dot", "").strip("|") for term in terms for f in term.factors}
+    mixed = [t for t in terms if {"v", "r"} <= {f.replace("dot", "").strip("|") for f in t.factors}]
+    vertical = problem.cycles[0].plane.value == "vertical"
+    sway, yaw = ("heave", "pitch") if vertical else ("sway", "yaw")
+    if mixed:
+        return f"runs in {yaw} with drift, or with strut phases between pure {sway} and pure {yaw}"
+    if any(term.degree == 0 for term in terms):
+        return "a run at another drift angle, or take zero runs off and leave the constant out"
+    motion = " and ".join({"v": sway, "r": yaw}[letter] for letter in sorted(letters, reverse=True))
+    if any(term.degree > 1 for term in terms):
+        return f"a run in {motion} at another amplitude, or fit third harmonics as well"
+    return f"a run in {motion} at another strut phase"

@@ -1,0 +1,209 @@
+"""Non-linear coefficients from cycles: single runs, several runs, quasi-steady or with all orders.
+
+===================  ============  ======================================================
+method               harmonics     tells cubic from linear by
+===================  ============  ======================================================
+:data:`HIGHER`       1, 2, 3       third harmonics and amplitudes, all runs together
+:data:`FIRST`        1             amplitudes alone (multiple runs)
+:data:`QUASI_STEADY` 0, 1          means and amplitudes; needs zero runs, or a constant term
+===================  ============  ======================================================
+
+A single run is fitted by giving it alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_checks import check_cycles, check_determined
+from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.phasors import FloatArray, Source, real_form
+from analysis.coefficients.quality import residual_spread, trusted
+from analysis.coefficients.stated import STATED, Stated
+from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of
+from analysis.uncertainty import Contribution, UncertainValues
+
+HIGHER = (1, 2, 3)
+FIRST = (1,)
+QUASI_STEADY = (0, 1)
+STATIC = (0,)
+
+_STEP = 1e-5  # of the largest motion or load
+_STATED_STEP = 0.01  # of the stated uncertainty: curvature is the Monte Carlo's to find
+
+
+@dataclass(frozen=True, eq=False)
+class CycleFit:
+    """Coefficients of terms, with their correlations.
+
+    Attributes
+    ----------
+    names
+        In the order of ``uncertain``; SI units.
+    chi_square
+        Weighted squares of the residuals by load (force, moment, surge), shape ``(3,)``.
+    data
+        Numbers fitted by load, shape ``(3,)``.
+    """
+
+    names: tuple[str, ...]
+    terms: tuple[Term, ...]
+    uncertain: UncertainValues
+    chi_square: FloatArray
+    data: FloatArray
+    problem: CycleProblem
+
+    def __getitem__(self, name: str) -> float:
+        """Return one coefficient."""
+        return float(self.uncertain.values[self.names.index(name)])
+
+    def misfit(self, row: int) -> float:
+        """Return the root of ``chi_square`` per degree of freedom; NaN without any left over."""
+        spare = self.data[row] - sum(term.row == row for term in self.terms)
+        return float(np.sqrt(self.chi_square[row] / spare)) if spare > 0 else float("nan")
+
+
+def fit_cycles(
+    cycles: Sequence[Cycle],
+    names: Sequence[str],
+    orders: tuple[int, ...] = HIGHER,
+    *,
+    stated: Stated = Stated(),  # noqa: B008 - frozen
+) -> CycleFit:
+    """Return the coefficients of some terms.
+
+    Parameters
+    ----------
+    cycles
+        Of one oscillator, with what is known to be taken off; any frequencies, amplitudes, drift
+        angles. Static runs tell through order 0 alone.
+    names
+        Of the terms, as :mod:`analysis.coefficients.terms` writes them.
+    orders
+        The harmonics to be fitted.
+
+    Raises
+    ------
+    ConfigurationError
+        If the cycles do not belong together or a name means no term.
+    DataError
+        If the terms cannot be told apart; the message says which, and what run would do it.
+    """
+    check_cycles(cycles, orders)
+    terms = tuple(term_of(name, cycles[0].plane) for name in names)
+    usable = tuple(n for n in orders if n <= min(cycle.orders for cycle in cycles))
+    first = CycleProblem(
+        tuple(cycles), terms, usable or STATIC, np.ones((len(cycles), len(usable or STATIC), 3))
+    )
+    check_determined(first)
+    problem = replace(first, weights=_weights(first))
+    nominal = problem.solve(problem.parts()[None], np.zeros((1, len(STATED))))[0]
+    chi_square, data = _squares(problem, nominal)
+    own = tuple(name_of_term(term, cycles[0].plane) for term in terms)
+    uncertain = UncertainValues(nominal, tuple(_contributions(problem, stated)))
+    return CycleFit(own, terms, uncertain, chi_square, data, problem)
+
+
+def _weights(problem: CycleProblem) -> FloatArray:
+    """One over the scatter of each load and order, shrunk towards the mean of all cycles'."""
+    linear = problem.linear
+    spread = residual_spread(linear, _linear_part(problem))
+    count = problem.highest + 1
+    variance = spread.reshape(len(problem.cycles), count, 2) ** 2
+    whole = np.concatenate((variance, _surge_variance(problem, count)), axis=2)
+    whole = whole[:, list(problem.orders)]
+    if not np.isfinite(whole).all():
+        return np.ones_like(whole)
+    own = np.array([_fewest(cycle) for cycle in problem.cycles])[:, None, None]
+    shrunk = trusted(whole, own)
+    sizes = np.abs(problem.parts()).max()
+    floor = 1e-9 * sizes + 1e-300
+    return np.asarray(1.0 / np.maximum(np.sqrt(shrunk), floor))
+
+
+def _fewest(cycle: Cycle) -> float:
+    return min((source.degrees_of_freedom for source in cycle.phasors.sources), default=np.inf)
+
+
+def _linear_part(problem: CycleProblem) -> FloatArray:
+    """A and B of the linear terms in a first fit, shape ``(2, 2, 2)``, for the residuals' size."""
+    nominal = problem.solve(problem.parts()[None], np.zeros((1, len(STATED))))[0]
+    found = np.zeros((2, 2, 2))
+    for term, value in zip(problem.terms, nominal, strict=True):
+        if term.degree == 1 and term.row != SURGE and "|" not in term.factors[0]:
+            column = int("r" in term.factors[0].replace("dot", ""))
+            found[term.row, column, int(term.rates == 0)] = -value
+    return found
+
+
+def _surge_variance(problem: CycleProblem, count: int) -> FloatArray:
+    found = np.ones((len(problem.cycles), count, 1))
+    for k, cycle in enumerate(problem.cycles):
+        if cycle.has_surge:
+            places = np.array(problem.places(cycle)).reshape(count, -1)[:, -1]
+            diagonal = np.diagonal(cycle.phasors.covariance).reshape(-1, 2)
+            found[k, :, 0] = diagonal[places].mean(axis=1)
+    return found
+
+
+def _squares(problem: CycleProblem, nominal: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weighted squares and count of the numbers fitted, by load."""
+    design, loads = problem.design(problem.parts()[None], np.zeros((1, len(STATED))))
+    squares, data = np.zeros(3), np.zeros(3)
+    for row in range(3):
+        columns = [k for k, term in enumerate(problem.terms) if term.row == row]
+        if not columns:
+            continue
+        left = loads[0, ..., row] - design[0][..., columns] @ nominal[columns]
+        squares[row] = float((np.abs(problem.weights[..., row] * left) ** 2).sum())
+        per_order = [1 if order == 0 else 2 for order in problem.orders]
+        data[row] = len(problem.cycles) * sum(per_order)
+    return squares, data
+
+
+def _contributions(problem: CycleProblem, stated: Stated) -> list[Contribution]:
+    """Scatter by source of each cycle, then each stated uncertainty that is not zero."""
+    by_part, by_stated = _slopes(problem, stated)
+    everywhere, found = np.arange(len(problem.terms)), []
+    size = problem.per_cycle
+    for k, cycle in enumerate(problem.cycles):
+        slope = by_part[:, k * size : (k + 1) * size]
+        places = problem.places(cycle)
+        pick = real_form(np.eye(len(cycle.phasors.names))[[max(p, 0) for p in places]])
+        pick[np.repeat(np.array(places) < 0, 2)] = 0.0
+        for source in cycle.phasors.sources:
+            parts = slope @ pick @ root_of(source)
+            found.append(Contribution(source.label, source.degrees_of_freedom, everywhere, parts))
+    for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
+        if spread > 0.0:
+            column = by_stated[:, k, None] * spread
+            found.append(Contribution(name, np.inf, everywhere, column))
+    return found
+
+
+def root_of(source: Source) -> FloatArray:
+    """Return a square root of a source's covariance; NaN where it has none."""
+    if not np.isfinite(source.covariance).all():
+        return np.full_like(source.covariance, np.nan)
+    values, vectors = np.linalg.eigh(source.covariance)
+    return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
+
+
+def _slopes(problem: CycleProblem, stated: Stated) -> tuple[FloatArray, FloatArray]:
+    """Derivatives by the cycles' numbers and by the stated quantities: central differences."""
+    parts = problem.parts()
+    size = np.abs(parts).reshape(len(parts), problem.highest + 1, -1, 2)
+    largest = np.broadcast_to(size.max(axis=(0, 1, 3))[:, None], size.shape)
+    steps = np.concatenate((_STEP * largest.ravel(), _STATED_STEP * stated.vector))
+    moving = np.flatnonzero(steps)
+    shifts = np.zeros((len(moving), len(steps)))
+    shifts[np.arange(len(moving)), moving] = steps[moving]
+    both = np.concatenate((shifts, -shifts))
+    trial = parts[None] + both[:, : parts.size].reshape(-1, *parts.shape)
+    solved = problem.solve(trial, both[:, parts.size :])
+    slopes = np.zeros((len(steps), solved.shape[1]))
+    half = len(moving)
+    slopes[moving] = (solved[:half] - solved[half:]) / (2.0 * steps[moving, None])
+    return slopes[: parts.size].T, slopes[parts.size :].T

@@ -1,0 +1,152 @@
+"""Which non-linear form the data support: cubic, |v|v, both or none; or that they cannot tell.
+
+All forms are fitted to the same harmonics. Squares of the residuals over their scatter give
+Akaike's criterion for few data, and ``exp(difference/2)`` is the evidence ratio. Where even the
+richest form leaves more than scatter explains, all squares are divided by that excess (quasi-AIC):
+a model that fits nowhere must not seem to decide.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import FormChoice
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import HIGHER, CycleFit, fit_cycles
+from analysis.coefficients.terms import VELOCITY_LETTERS, linear_terms, name_of_term, term_of
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+
+LINEAR_FORM = "linear"
+CUBIC = "cubic"
+QUADRATIC = "quadratic"
+BOTH = "cubic and quadratic"
+NOT_SEPARABLE = "not separable"
+
+DECIDES = 20.0  # evidence ratio: 1 in 20 is what the intervals leave open too
+_LOADS = ("force", "moment", "surge force")
+
+
+def forms_of(
+    plane: Plane, row: int, motions: str, *, cross: bool = True
+) -> Mapping[str, tuple[str, ...]]:
+    """Return the terms of each form of one load.
+
+    Parameters
+    ----------
+    motions
+        ``"v"``, ``"r"`` or ``"vr"`` (``w`` and ``q`` alike): in what the runs move.
+    cross
+        Whether terms of both motions together are among them, where the runs move in both.
+    """
+    v, r = tuple(VELOCITY_LETTERS[plane])
+    load = name_of_term(term_of(linear_terms(plane, (row,))[0], plane), plane)[0]
+    own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
+    linear = tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
+    cubic = tuple(f"{load}_{letter * 3}" for letter in own)
+    quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in own)
+    if len(own) == 2 and cross:
+        cubic += (f"{load}_{v}{v}{r}", f"{load}_{v}{r}{r}")
+        quadratic += (f"{load}_{v}|{r}|", f"{load}_{r}|{v}|")
+    return {
+        LINEAR_FORM: linear,
+        CUBIC: linear + cubic,
+        QUADRATIC: linear + quadratic,
+        BOTH: linear + cubic + quadratic,
+    }
+
+
+def choose_form(
+    cycles: Sequence[Cycle],
+    row: int,
+    motions: str = "v",
+    orders: tuple[int, ...] = HIGHER,
+    *,
+    cross: bool = True,
+) -> FormChoice:
+    """Return which form of one load the cycles support.
+
+    Parameters
+    ----------
+    row
+        0 force, 1 moment.
+    motions, cross
+        As in :func:`forms_of`.
+
+    Raises
+    ------
+    DataError
+        If not even the linear terms are determined.
+    """
+    forms = forms_of(cycles[0].plane, row, motions, cross=cross)
+    fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
+    for form in (CUBIC, QUADRATIC, BOTH):
+        try:
+            fits[form] = fit_cycles(cycles, forms[form], orders)
+        except DataError:
+            continue  # terms that these runs cannot tell apart are no candidate
+    criteria, dispersion = _criteria(fits, row)
+    best = min(criteria.values())
+    weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
+    verdict, ratio, why = _verdict(criteria)
+    ranked = sorted(criteria, key=lambda form: criteria[form])
+    total = sum(weights.values())
+    return FormChoice(
+        _LOADS[row],
+        tuple(cycle.name for cycle in cycles),
+        tuple(ranked),
+        tuple(len(fits[form].names) for form in ranked),
+        tuple(float(fits[form].chi_square[row]) for form in ranked),
+        tuple(criteria[form] for form in ranked),
+        tuple(weights[form] / total for form in ranked),
+        dispersion,
+        verdict,
+        ratio,
+        why,
+    )
+
+
+def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float], float]:
+    """Akaike's criterion for few data by form, and what the squares were divided by."""
+    richest = max(fits.values(), key=lambda fit: len(fit.names))
+    spare = float(richest.data[row]) - len(richest.names)
+    dispersion = max(1.0, float(richest.chi_square[row]) / spare) if spare > 0 else 1.0
+    found = {}
+    for form, fit in fits.items():
+        count, data = len(fit.names), float(fit.data[row])
+        few = data - count - 1.0
+        penalty = 2.0 * count * (count + 1.0) / few if few > 0 else np.inf
+        found[form] = float(fit.chi_square[row]) / dispersion + 2.0 * count + penalty
+    return found, dispersion
+
+
+def _verdict(criteria: Mapping[str, float]) -> tuple[str, float, str]:
+    """Return the verdict, the evidence ratio that decided it, and words for both."""
+    best = min(criteria, key=lambda form: criteria[form])
+
+    def ratio(over: Sequence[str]) -> float:
+        others = [criteria[form] for form in over if form in criteria]
+        return math.exp(min((min(others) - criteria[best]) / 2.0, 700.0)) if others else math.inf
+
+    if best == LINEAR_FORM:
+        found = ratio((CUBIC, QUADRATIC, BOTH))
+        return best, found, "no non-linear term is needed within the scatter"
+    if best == BOTH and ratio((CUBIC, QUADRATIC)) < DECIDES:
+        inner = {form: value for form, value in criteria.items() if form != BOTH}
+        return _verdict(inner)
+    rivals = [form for form in (LINEAR_FORM, CUBIC, QUADRATIC) if form != best]
+    found = ratio(rivals)
+    if found < DECIDES:
+        close = [f for f in rivals if f in criteria and criteria[f] - criteria[best] < _NEAR]
+        words = f"{best} and {' and '.join(close)} explain the data about as well"
+        return (
+            NOT_SEPARABLE,
+            found,
+            f"{words} (evidence ratio {found:.3g}, {DECIDES:g} is needed): take a larger range of "
+            "amplitudes, or more periods",
+        )
+    return best, found, f"{best} is {found:.3g} times as well supported as the next"
+
+
+_NEAR = 2.0 * math.log(DECIDES)

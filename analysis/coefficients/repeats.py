@@ -1,0 +1,200 @@
+"""Runs of one kind beside each other: what repeating adds to the scatter, and who stands off.
+
+Runs with the same motion are brought to one motion (loads over motion, both are measured) and their
+loads compared. What they differ by beyond their own scatter is a source of its own, relative to the
+load, pooled over all kinds of the campaign: it stays where no period tells of it.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import Outlier
+from analysis.coefficients.cycle import Cycle, at_order
+from analysis.coefficients.phasors import ComplexArray, FloatArray, Source
+from analysis.coefficients.run import LOADS
+
+_SAME_FREQUENCY = 5e-3
+_SAME_MOTION = 2e-2
+_CHANCE = 0.01  # that any run of a good campaign is named
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """Repeats of one motion.
+
+    Attributes
+    ----------
+    loads
+        Of each run for the first one's motion, shape ``(runs, 2)``.
+    variance
+        Of each part (in phase, quadrature) by the runs' own scatter, shape ``(runs, 2)``.
+    size
+        Largest part of each load, that errors of the run are relative to, shape ``(2,)``.
+    freedom
+        Fewest of the runs' scatter.
+    """
+
+    runs: tuple[str, ...]
+    loads: ComplexArray
+    variance: FloatArray
+    size: FloatArray
+    freedom: float
+
+
+@dataclass(frozen=True, eq=False)
+class Repeatability:
+    """What repeating adds.
+
+    Attributes
+    ----------
+    relative
+        Standard deviation between runs beyond their scatter, over the load's size, ``(2,)``.
+    degrees_of_freedom
+        Repeats less kinds; 0 without any repeat.
+    """
+
+    relative: FloatArray
+    degrees_of_freedom: float
+    kinds: tuple[Kind, ...]
+
+
+def repeatability(cycles: Sequence[Cycle]) -> Repeatability:
+    """Return what repeating adds to the scatter of force and moment."""
+    kinds = tuple(_kind(group) for group in _groups(cycles) if len(group) > 1)
+    freedom = sum(len(kind.runs) - 1 for kind in kinds)
+    if not freedom:
+        return Repeatability(np.zeros(2), 0.0, kinds)
+    between = sum(_squares(kind.loads) / kind.size**2 for kind in kinds) / (2.0 * freedom)
+    weights = [len(kind.runs) - 1 for kind in kinds]
+    within = sum(
+        w * kind.variance.mean(axis=0) / kind.size**2
+        for w, kind in zip(weights, kinds, strict=True)
+    )
+    excess = np.maximum(np.asarray(between) - np.asarray(within) / freedom, 0.0)
+    return Repeatability(np.sqrt(excess), float(freedom), kinds)
+
+
+def with_repeats(cycle: Cycle, found: Repeatability) -> Cycle:
+    """Return the cycle with what repeating adds as a source of its own."""
+    if not (found.relative > 0.0).any():
+        return cycle
+    size = 2 * len(cycle.phasors.names)
+    covariance = np.zeros((size, size))
+    spread = found.relative * _size(cycle)
+    for name, part in zip(LOADS, spread, strict=True):
+        place = 2 * cycle.phasors.index(at_order(name, 1))
+        covariance[place, place] = covariance[place + 1, place + 1] = part**2
+    source = Source(f"repeats: {cycle.name}", covariance, found.degrees_of_freedom)
+    return replace(cycle, phasors=replace(cycle.phasors, sources=(*cycle.phasors.sources, source)))
+
+
+def outliers(found: Repeatability) -> tuple[Outlier, ...]:
+    """Return the runs that stand off from three or more of their kind.
+
+    Each is held against the others' mean; the scale is the larger of the runs' own scatter and of
+    the scatter between all other repeats. The limit is Student's, so wide that a good campaign
+    names any run once in a hundred.
+    """
+    tests = 4 * sum(len(kind.runs) for kind in found.kinds if len(kind.runs) > 2)
+    named = []
+    for kind in found.kinds:
+        for k in range(len(kind.runs) if len(kind.runs) > 2 else 0):
+            for row, load in enumerate(LOADS):
+                ratio, freedom = _distance(found.kinds, kind, k, row)
+                limit = _limit(freedom, tests)
+                if ratio > limit:
+                    named.append(_outlier(kind, k, load, ratio, limit))
+    return tuple(named)
+
+
+def _outlier(kind: Kind, k: int, load: str, ratio: float, limit: float) -> Outlier:
+    others = tuple(run for run in kind.runs if run != kind.runs[k])
+    message = (
+        f"{kind.runs[k]}: its {load} stands {ratio:.3g} standard uncertainties from the mean of "
+        f"{', '.join(others)} (limit {limit:.3g}); look at its record, and leave it out if there "
+        "is a reason"
+    )
+    return Outlier(kind.runs[k], others, load, ratio, limit, message)
+
+
+def _distance(kinds: Sequence[Kind], kind: Kind, k: int, row: int) -> tuple[float, float]:
+    """Distance of one run from the others' mean over its scale, and that scale's freedom."""
+    others = np.delete(kind.loads[:, row], k)
+    apart = kind.loads[k, row] - others.mean()
+    whole, freedom = 0.0, 0.0
+    for one in kinds:
+        loads = np.delete(one.loads, k, axis=0) if one is kind else one.loads
+        whole += float(_squares(loads)[row]) * (kind.size[row] / one.size[row]) ** 2
+        freedom += 2.0 * (len(loads) - 1)
+    between = whole / freedom
+    within = float(kind.variance[:, row].mean())
+    widest = max(between, within)
+    scale = math.sqrt(widest * (1.0 + 1.0 / len(others))) + 1e-12 * float(kind.size[row])
+    largest = max(abs(apart.real), abs(apart.imag))
+    return largest / scale, freedom if between >= within else kind.freedom
+
+
+def _limit(freedom: float, tests: int) -> float:
+    from scipy.special import ndtri, stdtrit
+
+    place = 1.0 - _CHANCE / (2.0 * tests)
+    return float(stdtrit(freedom, place) if math.isfinite(freedom) else ndtri(place))
+
+
+def _groups(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
+    groups: list[list[Cycle]] = []
+    for cycle in (one for one in cycles if one.frequency_hz > 0.0):
+        for group in groups:
+            if _same(group[0], cycle):
+                group.append(cycle)
+                break
+        else:
+            groups.append([cycle])
+    return groups
+
+
+def _lever(cycle: Cycle) -> ComplexArray:
+    return np.asarray(cycle.run().motion.values * np.array([1.0, cycle.half_spacing_m]))
+
+
+def _ratio(first: Cycle, other: Cycle) -> complex:
+    own, found = _lever(first), _lever(other)
+    return complex(np.vdot(own, found) / np.vdot(own, own))
+
+
+def _same(first: Cycle, other: Cycle) -> bool:
+    if abs(other.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
+        return False
+    if abs(other.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
+        return False
+    if abs(other.drift_rad - first.drift_rad) > 1e-3:
+        return False
+    ratio = _ratio(first, other)
+    left = np.abs(_lever(other) - ratio * _lever(first)).max()
+    alike = abs(abs(ratio) - 1.0) < _SAME_MOTION
+    return bool(alike and left < _SAME_MOTION * np.abs(_lever(first)).max())
+
+
+def _size(cycle: Cycle) -> FloatArray:
+    """Largest part of each load at the fundamental: measured, or what is taken off."""
+    run = cycle.run()
+    return np.maximum(np.abs(run.loads.values), np.abs(run.known() @ run.motion.values)) + 1e-300
+
+
+def _kind(cycles: Sequence[Cycle]) -> Kind:
+    loads, variance, freedom = [], [], math.inf
+    for cycle in cycles:
+        run = cycle.run()
+        loads.append(run.loads.values / _ratio(cycles[0], cycle))
+        net = np.diagonal(run.net().covariance).reshape(2, 2).mean(axis=1)
+        variance.append(np.maximum(net, np.diagonal(run.loads.covariance).reshape(2, 2).mean(1)))
+        freedom = min([freedom, *(s.degrees_of_freedom for s in run.phasors.sources)])
+    names = tuple(cycle.name for cycle in cycles)
+    return Kind(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
+
+
+def _squares(loads: ComplexArray) -> FloatArray:
+    return np.asarray((np.abs(loads - loads.mean(axis=0)) ** 2).sum(axis=0))

@@ -1,0 +1,73 @@
+"""Standard uncertainties that the experimenter states: of what all runs of a campaign share."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray
+
+
+@dataclass(frozen=True)
+class Stated:
+    """Standard uncertainties of what all runs share; 0 where it is taken as exact.
+
+    Attributes
+    ----------
+    mass_kg, cg_x_m, cg_z_m, inertia_kg_m2
+        Of the body that is taken off, about the midpoint.
+    half_spacing_m, speed_m_s, frequency_relative, restoring_relative
+        Of geometry, carriage, frequency (u/f) and the restoring matrix (common factor).
+    amplitude_relative
+        Of the struts' motion: eccentricity setting, or calibration of the displacement sensors.
+    strut_phase_rad
+        Of the fore strut against the aft one, where set-points stand in for the motion.
+    lag_s
+        Of both forces against the motion: amplifier and skew.
+    skew_s
+        Of the fore gauge against the aft one.
+    force_gain_relative
+        Of both gauges together (the calibration's weights).
+    gauge_aft_relative, gauge_fore_relative, cross_talk_aft, cross_talk_fore
+        Of the calibration matrix: each gauge's own gain, and what it reads of the other's force.
+    latency_s
+        Of the photocell's pulse; acts where set-points stand in for the motion, which begins with
+        the pulse, and nowhere else.
+    midpoint_x_m
+        Of where the midpoint between the struts stands on the model.
+    alignment_rad
+        Of the model's heading (or trim) against the carriage's way; acts where the mean incidence
+        counts: in non-linear terms and under drift.
+    density_relative
+        Of the water; acts on the restoring, and again where a system without dimensions divides
+        by it.
+    """
+
+    mass_kg: float = 0.0
+    cg_x_m: float = 0.0
+    cg_z_m: float = 0.0
+    inertia_kg_m2: float = 0.0
+    half_spacing_m: float = 0.0
+    speed_m_s: float = 0.0
+    frequency_relative: float = 0.0
+    restoring_relative: float = 0.0
+    amplitude_relative: float = 0.0
+    strut_phase_rad: float = 0.0
+    lag_s: float = 0.0
+    skew_s: float = 0.0
+    force_gain_relative: float = 0.0
+    gauge_aft_relative: float = 0.0
+    gauge_fore_relative: float = 0.0
+    cross_talk_aft: float = 0.0
+    cross_talk_fore: float = 0.0
+    latency_s: float = 0.0
+    midpoint_x_m: float = 0.0
+    alignment_rad: float = 0.0
+    density_relative: float = 0.0
+
+    @property
+    def vector(self) -> FloatArray:
+        """All of them, in the order of :data:`STATED`."""
+        return np.array([getattr(self, name) for name in STATED])
+
+
+STATED = tuple(one.name for one in fields(Stated))

@@ -1,0 +1,141 @@
+"""Terms of a manoeuvring model: ``Y_vvr`` is the coefficient of v v r in Y, without factorials.
+
+A name is a load, an underscore and factors: velocities (``v``, ``r`` or ``w``, ``q``), their rates
+(``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the constant. X takes the same.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Plane
+
+LOAD_LETTERS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
+VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
+SURGE = 2  # row of X
+
+_WORD = re.compile(r"(\w)_((?:[a-z]dot|\|[a-z]\||[a-z])+|0)")
+_FACTOR = re.compile(r"[a-z]dot|\|[a-z]\||[a-z]")
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term.
+
+    Attributes
+    ----------
+    row
+        0 force, 1 moment, 2 surge force.
+    factors
+        ``"v"``, ``"vdot"``, ``"|v|"`` for the translation, ``"r"``, ``"rdot"``, ``"|r|"`` for the
+        rotation, in either plane; none for the constant.
+    """
+
+    row: int
+    factors: tuple[str, ...]
+
+    @property
+    def lengths(self) -> int:
+        """Powers of length in a system without dimensions: rotations, and one for a moment."""
+        return sum("r" in f.replace("dot", "") for f in self.factors) + (self.row == 1)
+
+    @property
+    def rates(self) -> int:
+        """Number of accelerations among the factors."""
+        return sum(factor.endswith("dot") for factor in self.factors)
+
+    @property
+    def degree(self) -> int:
+        """Number of factors: 1 linear, 2 quadratic, 3 cubic."""
+        return len(self.factors)
+
+    @property
+    def unit(self) -> str:
+        """SI unit, radians left out: N s2/m2, N m s ..."""
+        turning = self.lengths - (self.row == 1)
+        metres = self.degree - turning - (self.row == 1)
+        seconds = self.degree + self.rates
+        above = "N" + _power("m", -metres) + _power("s", seconds)
+        return above + ("/" + _power("m", metres).strip() if metres > 0 else "")
+
+
+def _power(letter: str, exponent: int) -> str:
+    return "" if exponent <= 0 else f" {letter}" + (str(exponent) if exponent > 1 else "")
+
+
+def term_of(name: str, plane: Plane) -> Term:
+    """Return the term that a name means.
+
+    Raises
+    ------
+    ConfigurationError
+        If it means none in this plane.
+    """
+    velocities, loads = VELOCITY_LETTERS[plane], LOAD_LETTERS[plane] + "X"
+    found = _WORD.fullmatch(name)
+    letters = set(re.sub(r"dot|\||0", "", found[2])) if found else set()
+    if found is None or found[1] not in loads or not letters <= set(velocities):
+        example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
+        raise ConfigurationError(
+            f"{name!r} is no term in the {plane} plane: a load of {', '.join(loads)}, an "
+            f"underscore and factors of {velocities[0]} and {velocities[1]}; for example {example}"
+        )
+    row = loads.index(found[1])
+    if row == SURGE and plane is Plane.VERTICAL:
+        raise ConfigurationError(f"{name!r}: surge forces are had in the horizontal plane only")
+    common = {velocities[0]: "v", velocities[1]: "r"}
+    factors = [
+        re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]
+        for f in _FACTOR.findall(found[2])
+    ]
+    return Term(row, tuple(factors))
+
+
+def name_of_term(term: Term, plane: Plane) -> str:
+    """Return the name of a term: the inverse of :func:`term_of`."""
+    letters = dict(zip("vr", VELOCITY_LETTERS[plane], strict=True))
+    loads = LOAD_LETTERS[plane] + "X"
+    factors = [
+        re.sub("[vr](?!o)", lambda m: letters[m[0]], factor, count=1) for factor in term.factors
+    ]
+    return f"{loads[term.row]}_{''.join(factors) or '0'}"
+
+
+def waves_of(terms: Sequence[Term], velocity: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return each term's product of factors over a cycle.
+
+    Parameters
+    ----------
+    velocity, rate
+        Translation and rotation through the water and their rates, shape ``(..., 2, instants)``.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(..., terms, instants)``.
+    """
+    factors = {
+        "v": velocity[..., 0, :],
+        "r": velocity[..., 1, :],
+        "vdot": rate[..., 0, :],
+        "rdot": rate[..., 1, :],
+        "|v|": np.abs(velocity[..., 0, :]),
+        "|r|": np.abs(velocity[..., 1, :]),
+    }
+    found = []
+    for term in terms:
+        product = np.ones_like(factors["v"])
+        for factor in term.factors:
+            product = product * factors[factor]
+        found.append(product)
+    return np.stack(found, axis=-2)
+
+
+def linear_terms(plane: Plane, rows: Sequence[int] = (0, 1)) -> tuple[str, ...]:
+    """Return the names of all linear terms of some loads, as :func:`model` orders them."""
+    factors = ("vdot", "v", "rdot", "r")
+    return tuple(name_of_term(Term(row, (factor,)), plane) for row in rows for factor in factors)

@@ -1,0 +1,100 @@
+"""Coefficients at zero frequency, from those at several: with an interval for the way there.
+
+Added mass and damping of a water that forgets are even functions of the frequency, so polynomials
+in its square are fitted: constant, linear, quadratic. Their values at zero are averaged by the
+weights that Akaike's criterion gives them, and what they differ by is part of the uncertainty.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.uncertainty import FloatArray, UncertainValues
+from hardware.description.errors import DataError
+
+_DEGREES = (0, 1, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Extrapolation:
+    """A value at zero frequency.
+
+    Attributes
+    ----------
+    uncertain
+        One value: what the inputs add, and what the choice of polynomial leaves open
+        (``extrapolation of NAME``).
+    weights
+        Of the polynomials, by their degree.
+    """
+
+    uncertain: UncertainValues
+    weights: tuple[float, ...]
+
+
+def extrapolate(name: str, frequency_hz: Sequence[float], found: UncertainValues) -> Extrapolation:
+    """Return the value at zero frequency.
+
+    Parameters
+    ----------
+    frequency_hz
+        Of each value, shape ``(n,)``.
+    found
+        The values, with what they have in common.
+
+    Raises
+    ------
+    DataError
+        If there are fewer than two frequencies.
+    """
+    square = np.asarray(frequency_hz, dtype=np.float64) ** 2
+    if len(np.unique(square)) < 2:
+        raise DataError(
+            f"{name} at zero frequency needs runs at two frequencies or more, and there is "
+            f"{', '.join(f'{f:g} Hz' for f in frequency_hz)}; add runs at a lower one"
+        )
+    variance = _own_variance(found)
+    pace = square / square.max()
+    degrees = [k for k in _DEGREES if k < len(np.unique(square))]
+    fits = [_at_zero(pace, variance, degree) for degree in degrees]
+    squares = np.array([_chi_square(pace, variance, found.values, d) for d in degrees])
+    spare = len(pace) - degrees[-1] - 1
+    dispersion = max(1.0, squares[-1] / spare) if spare > 0 else 1.0
+    criterion = squares / dispersion + 2.0 * (np.array(degrees) + 1.0)
+    weights = np.exp((criterion.min() - criterion) / 2.0)
+    weights /= weights.sum()
+    singles = np.array([row @ found.values for row in fits])
+    value = found.mapped((weights @ np.array(fits))[None, :])
+    between = float(weights @ (singles - value.values[0]) ** 2)
+    lack = (dispersion - 1.0) * float((weights @ np.array(fits)) ** 2 @ variance)
+    label = f"extrapolation of {name}"
+    whole = value.plus(label, np.array([np.sqrt(between + lack)]))
+    return Extrapolation(whole, tuple(float(weight) for weight in weights))
+
+
+def _own_variance(found: UncertainValues) -> FloatArray:
+    """Return the scatter that the values do not share; stated uncertainty moves them together."""
+    by_input = found.variances()
+    own = np.array([np.isfinite(one.degrees_of_freedom) for one in found.contributions], dtype=bool)
+    variance = np.asarray(by_input[own].sum(axis=0)) if own.any() else np.zeros(len(found))
+    size = np.abs(found.values).max() + 1e-300
+    return np.asarray(np.maximum(np.nan_to_num(variance), (1e-9 * size) ** 2))
+
+
+def _design(pace: FloatArray, degree: int) -> FloatArray:
+    return np.asarray(pace[:, None] ** np.arange(degree + 1))
+
+
+def _at_zero(pace: FloatArray, variance: FloatArray, degree: int) -> FloatArray:
+    """Return the row that gives the value at zero from the values."""
+    root = 1.0 / np.sqrt(variance)
+    inverse = np.linalg.pinv(_design(pace, degree) * root[:, None])
+    return np.asarray(inverse[0] * root)
+
+
+def _chi_square(pace: FloatArray, variance: FloatArray, values: FloatArray, degree: int) -> float:
+    root = 1.0 / np.sqrt(variance)
+    design = _design(pace, degree) * root[:, None]
+    left = values * root - design @ np.linalg.lstsq(design, values * root, rcond=None)[0]
+    return float(left @ left)
