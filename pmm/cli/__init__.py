@@ -13,8 +13,12 @@ from hardware.description.errors import DataError, PmmError
 _COMMANDS = {
     "analyse": "pmm.cli.analyse",
     "demo": "pmm.cli.demo",
+    "devices": "pmm.cli.devices",
     "inertia": "pmm.cli.inertia",
+    "run": "pmm.cli.run",
     "effects": "pmm.cli.effects",
+    "recover": "pmm.cli.recover",
+    "replay": "pmm.cli.replay",
     "simulate": "pmm.cli.simulate",
 }
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended

@@ -2,19 +2,19 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import LiveResolver, Provisional
+from analysis.resolver.live import LiveResolver
 from hardware.description.channels import Channel
 from hardware.rig import Rig
 from hardware.roles import Pulse, Sampled
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.samples import Piece
+from pmm.recorder.samples import FloatArray, Piece
 
 PATIENCE_CYCLES: Final = 3
 
@@ -106,71 +106,104 @@ class Assembler:
         return tuple(pieces)
 
 
-class LivePath:
-    """Samples, pulses and readings of a rig, cycle by cycle.
+class Gatherer:
+    """Samples and pulses of a rig, cycle by cycle: the shaft's angle, then the forces.
 
     Parameters
     ----------
     first
-        SYNC of the first sample that counts; earlier ones are left out.
+        SYNC of the first sample that counts; earlier ones, and the pulses so far, are left out.
     """
 
-    def __init__(self, rig: Rig, first: int, settings: LiveSettings) -> None:
+    def __init__(self, rig: Rig, first: int) -> None:
         shaft = () if rig.shaft is None else (rig.shaft,)
-        self._photocell = rig.photocell
-        self._assembler = Assembler((*shaft, *rig.forces), first)
-        self._next = first
-        rate_hz = rig.configuration.sample_rate_hz
-        self._resolver = LiveResolver(
-            self.channels,
-            rate_hz,
-            harmonics=settings.harmonics,
-            periods=settings.periods,
-            start_s=first / rate_hz,
-            latency_s=settings.latency_s,
-            angle_offset_rad=settings.angle_offset_rad,
-        )
-        self._start_s = (first - 1) / rate_hz
-        self._last_pulse_s = -math.inf
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """The channels, in the order of the samples' rows: the shaft's angle, then the forces."""
-        return self._assembler.channels
-
-    @property
-    def sources(self) -> dict[str, str]:
-        """Channel to the name of its device."""
-        return self._assembler.sources
+        assembler = Assembler((*shaft, *rig.forces), first)
+        self.channels, self.sources = assembler.channels, assembler.sources
+        self._assembler, self._photocell = assembler, rig.photocell
+        self._pulses()
 
     def step(self, number: int) -> Taken:
         """Take what cycle ``number`` brought; call it after :meth:`hardware.rig.Rig.cycle`."""
-        return self._feed(self._assembler.take(number))
+        return Taken(self._assembler.take(number), self._pulses())
+
+    def finish(self) -> Taken:
+        """Take what was still waited for."""
+        return Taken(self._assembler.finish(), self._pulses())
+
+    def _pulses(self) -> tuple[Pulse, ...]:
+        return () if self._photocell is None else self._photocell.take()
+
+
+class Feed:
+    """A live resolver that is fed from a SYNC on, what is missing as NaN.
+
+    Parameters
+    ----------
+    first
+        SYNC of the resolver's first sample.
+    pulses_from_s
+        Earlier pulses do not count.
+    """
+
+    def __init__(
+        self,
+        channels: Sequence[Channel],
+        sample_rate_hz: float,
+        settings: LiveSettings,
+        first: int,
+        pulses_from_s: float,
+    ) -> None:
+        self.resolver = LiveResolver(
+            channels,
+            sample_rate_hz,
+            harmonics=settings.harmonics,
+            periods=settings.periods,
+            start_s=first / sample_rate_hz,
+            latency_s=settings.latency_s,
+            angle_offset_rad=settings.angle_offset_rad,
+        )
+        self._next = first
+        self._after_s = pulses_from_s
+
+    def take(self, taken: Taken) -> list[Harmonics]:
+        """Take what a cycle brought; return the readings that it made final."""
+        readings: list[Harmonics] = []
+        for first, values in taken.samples:
+            readings += self._push(first, values)
+        for one in taken.pulses:
+            if one.time_s >= self._after_s:
+                self._after_s = math.nextafter(one.time_s, math.inf)
+                readings += self.resolver.pulse(one.time_s)
+        return readings
+
+    def _push(self, first: int, values: FloatArray) -> list[Harmonics]:
+        values, first = values[:, max(0, self._next - first) :], max(first, self._next)
+        if not values.shape[1]:
+            return []
+        missing = np.full((values.shape[0], first - self._next), np.nan)
+        self._next = first + values.shape[1]
+        return self.resolver.push(np.concatenate([missing, values], axis=1))
+
+
+class LivePath:
+    """Samples, pulses and readings of a rig, cycle by cycle; see :class:`Gatherer`."""
+
+    def __init__(self, rig: Rig, first: int, settings: LiveSettings) -> None:
+        self._gatherer = Gatherer(rig, first)
+        self.channels, self.sources = self._gatherer.channels, self._gatherer.sources
+        rate_hz = rig.configuration.sample_rate_hz
+        self._feed = Feed(self.channels, rate_hz, settings, first, first / rate_hz)
+
+    def step(self, number: int) -> Taken:
+        """Take what cycle ``number`` brought, and the readings it made final."""
+        taken = self._gatherer.step(number)
+        return replace(taken, readings=tuple(self._feed.take(taken)))
 
     def finish(self) -> Taken:
         """Take what was still waited for, and the readings that only a run's end makes final."""
-        taken = self._feed(self._assembler.finish())
-        return Taken(taken.samples, taken.pulses, (*taken.readings, *self._resolver.finish()))
-
-    def provisional(self) -> Provisional | None:
-        """Return the needles between pulses; ``None`` before the first period."""
-        return self._resolver.provisional()
-
-    def _feed(self, samples: tuple[Piece, ...]) -> Taken:
-        readings: list[Harmonics] = []
-        for first, values in samples:
-            if first > self._next:  # the resolver counts samples: what is missing is NaN
-                gap = np.full((values.shape[0], first - self._next), np.nan)
-                readings += self._resolver.push(gap)
-            readings += self._resolver.push(values)
-            self._next = first + values.shape[1]
-        taken = () if self._photocell is None else self._photocell.take()
-        pulses = tuple(one for one in taken if one.time_s > self._start_s)
-        for one in pulses:
-            if one.time_s > self._last_pulse_s:
-                self._last_pulse_s = one.time_s
-                readings += self._resolver.pulse(one.time_s)
-        return Taken(samples, pulses, tuple(readings))
+        taken = self._gatherer.finish()
+        readings = (*self._feed.take(taken), *self._feed.resolver.finish())
+        return replace(taken, readings=readings)
 
 
 def as_record(reading: Harmonics) -> dict[str, Any]:
