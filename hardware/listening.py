@@ -83,16 +83,20 @@ class Heard:
 
 
 def listen(
-    port: Port, seconds: float, clock: Callable[[], float], sleep: Callable[[float], None]
+    port: Port,
+    seconds: float,
+    clock: Callable[[], float],
+    sleep: Callable[[float], None],
+    heard: Heard | None = None,
 ) -> Heard:
-    """Listen to a port for a time.
+    """Listen to a port for a time; what is heard is added to ``heard``, if that is given.
 
     Raises
     ------
     UnpluggedError
         If the port fails meanwhile.
     """
-    heard, end = Heard(), clock() + seconds
+    heard, end = heard or Heard(), clock() + seconds
     while clock() < end:
         try:
             found = port.lines()

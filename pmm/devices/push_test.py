@@ -1,0 +1,155 @@
+"""Which gauge was pushed, and to which side: judged from what all gauges read.
+
+:func:`judge` turns two records, at rest and pushed, into channel and sign; :func:`faults` compares
+that with what was asked for and names the fix.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import Channel
+from hardware.description.errors import DataError
+
+Records = Mapping[str, NDArray[np.float64]]
+
+NOISE_TIMES: Final = 8.0  # a push is so many standard deviations of the reading at rest
+LEAST_SHARE: Final = 0.005  # and at least this part of the full scale
+ALONE_SHARE: Final = 0.5  # a second gauge with more than this part of the push leaves it open
+_SMOOTH: Final = 5  # samples: a single wild one is no push
+
+
+class PushError(DataError):
+    """It cannot be told which gauge was pushed."""
+
+
+class NoPushError(PushError):
+    """No gauge moved by more than its threshold."""
+
+
+@dataclass(frozen=True)
+class Push:
+    """A push as the gauges saw it.
+
+    Attributes
+    ----------
+    channel
+        The gauge that was pushed.
+    sign
+        +1 if its reading rose, -1 if it fell.
+    change, threshold
+        Its largest change from rest, and what would have been too little, in ``unit``.
+    others
+        Largest changes of the other channels, in their units.
+    """
+
+    channel: str
+    sign: int
+    change: float
+    threshold: float
+    unit: str
+    others: Mapping[str, float]
+
+
+def judge(
+    channels: Sequence[Channel],
+    rest: Records,
+    pushed: Records,
+    noise_times: float = NOISE_TIMES,
+    least_share: float = LEAST_SHARE,
+) -> Push:
+    """Return which gauge was pushed and to which side.
+
+    Parameters
+    ----------
+    rest, pushed
+        For each channel its samples, shape ``(samples,)``, in the channel's unit: nobody touches
+        the gauges, and one is pushed for some part of the time. Offsets do not matter.
+    noise_times, least_share
+        The threshold: so many standard deviations at rest, and at least that part of the full
+        scale.
+
+    Raises
+    ------
+    NoPushError
+        If no gauge passes its threshold.
+    PushError
+        If a channel has too few samples or one that is not valid, or if two gauges moved alike.
+    """
+    changes = {one.name: _largest(one.name, rest, pushed) for one in channels}
+    limits = {
+        one.name: max(
+            noise_times * float(np.std(rest[one.name])), least_share * (one.full_scale or 0.0)
+        )
+        for one in channels
+    }
+    by_strength = sorted(
+        channels, key=lambda one: _strength(changes[one.name], limits[one.name]), reverse=True
+    )
+    first = by_strength[0]
+    change, limit = changes[first.name], limits[first.name]
+    if not abs(change) > limit:
+        raise NoPushError(
+            f"no push: {first.name} moved most, by {change:.3g} {first.unit}, and a push is more "
+            f"than {limit:.3g} {first.unit}; push harder, or look whether the gauge is connected"
+        )
+    for other in by_strength[1:]:
+        _check_alone(first, changes, limits, other)
+    others = {one.name: changes[one.name] for one in by_strength[1:]}
+    return Push(first.name, 1 if change > 0.0 else -1, change, limit, first.unit, others)
+
+
+def faults(found: Push, asked: str, sign: int = 1) -> tuple[str, ...]:
+    """Return what is wrong with a push on the gauge ``asked`` that should read ``sign``.
+
+    Each with its fix; empty if all is right.
+    """
+    wrong = []
+    if found.channel != asked:
+        wrong.append(
+            f"the push on {asked} came in on {found.channel}: their cables are swapped; exchange "
+            f"the plugs of {asked} and {found.channel}, or the two channels' `object` in the rig's "
+            "file"
+        )
+    if found.sign != sign:
+        wrong.append(
+            f"{found.channel} went to {found.change:+.3g} {found.unit} where it should go to "
+            f"{'plus' if sign > 0 else 'minus'}: turn the sign of its `scale` in the rig's file, "
+            "or exchange its two signal wires"
+        )
+    return tuple(wrong)
+
+
+def _largest(name: str, rest: Records, pushed: Records) -> float:
+    """Return the largest change of a channel, its sign kept, a few samples smoothed."""
+    before, during = rest[name], pushed[name]
+    for what, record in (("at rest", before), ("while pushed", during)):
+        if record.size < _SMOOTH:
+            raise PushError(f"{name}: {record.size} samples {what}; {_SMOOTH} are needed")
+        if not np.all(np.isfinite(record)):
+            raise PushError(f"{name}: not valid {what}; check the gauge and its cable")
+    smooth = np.convolve(during - np.mean(before), np.full(_SMOOTH, 1.0 / _SMOOTH), mode="valid")
+    return float(smooth[np.argmax(np.abs(smooth))])
+
+
+def _strength(change: float, limit: float) -> float:
+    if limit > 0.0:
+        return abs(change) / limit
+    return math.inf if change else 0.0
+
+
+def _check_alone(
+    first: Channel, changes: Mapping[str, float], limits: Mapping[str, float], other: Channel
+) -> None:
+    """Refuse a push that another gauge shows about as much, as a part of its full scale."""
+    mine, theirs = (abs(changes[one.name]) / (one.full_scale or 1.0) for one in (first, other))
+    if abs(changes[other.name]) > limits[other.name] and theirs > ALONE_SHARE * mine:
+        raise PushError(
+            f"{first.name} ({changes[first.name]:+.3g} {first.unit}) and {other.name} "
+            f"({changes[other.name]:+.3g} {other.unit}) moved about alike: push one gauge alone, "
+            "close to it, or look for a short between the channels"
+        )
