@@ -1,7 +1,7 @@
 """The guided workflow: tare, test, known-weight check, tare again."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from analysis.inertia.estimate import Estimate
@@ -82,8 +82,18 @@ def next_step(readings: tuple[Reading, ...]) -> tuple[Step, str] | None:
     return order[len(made)], _PROMPTS[order[len(made)]]
 
 
-def assess_workflow(readings: tuple[Reading, ...], known: Estimate) -> WorkflowResult:
+def assess_workflow(
+    readings: tuple[Reading, ...], known: Estimate, *, scale_relative: float = 0.0
+) -> WorkflowResult:
     """Bring the four steps together.
+
+    Parameters
+    ----------
+    known
+        The known body's, on its certificate.
+    scale_relative
+        Relative standard uncertainty that all readings share (lines, spacing, gravity) and that is
+        not in theirs: it drops out of the drift, not out of the results.
 
     Raises
     ------
@@ -104,12 +114,21 @@ def assess_workflow(readings: tuple[Reading, ...], known: Estimate) -> WorkflowR
         first.unit,
         first.degrees_of_freedom + second.degrees_of_freedom,
     )
-    model, body = _difference(test, tare), _difference(check, tare)
+    model, body = (_scaled(_difference(one, tare), scale_relative) for one in (test, check))
+    tare = _scaled(tare, scale_relative)
     apart = _difference(body, known)
     error = apart.value / (apart.coverage_factor() * apart.uncertainty)
     drifted = abs(drift.value) > drift.coverage_factor() * drift.uncertainty
     flags = _flags(drift, drifted, error, body, known)
     return WorkflowResult(tare, drift, model, body, error, abs(error) <= 1.0, flags)
+
+
+def _scaled(value: Estimate, relative: float) -> Estimate:
+    """Add an uncertainty of the scale, known for certain, by Welch's degrees of freedom."""
+    total = math.hypot(value.uncertainty, relative * value.value)
+    part = value.uncertainty / total if total > 0.0 else 1.0
+    freedom = value.degrees_of_freedom / part**4 if part > 0.0 else math.inf
+    return replace(value, uncertainty=total, degrees_of_freedom=freedom)
 
 
 def _difference(first: Estimate, second: Estimate) -> Estimate:

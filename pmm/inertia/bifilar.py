@@ -11,6 +11,7 @@ from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
+from pmm.inertia.bifilar_workflow import workflow
 from pmm.inertia.given import flags_of, given, gravity_of
 from pmm.inertia.outcome import (
     Finding,
@@ -43,6 +44,7 @@ def run(path: str) -> Outcome:
     notes: list[str] = []
     gyradii, used = _results(table, hung, findings, flags, notes)
     axes = _tilts(job, gyradii, used, findings, periods, flags)
+    step = workflow(job, hung, findings, flags, periods)
     body, missing = properties(
         table.name,
         table.model,
@@ -64,6 +66,7 @@ def run(path: str) -> Outcome:
         table.plane or _plane(gyradii),
         compare(findings, table.targets),
         tuple(notes),
+        step,
         axes=axes,
     )
 

@@ -8,7 +8,7 @@ from hardware.description.oscillator import Plane
 from pmm.inertia.bifilar_axes import TiltedTable
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
-from pmm.inertia.reading import one_of
+from pmm.inertia.reading import one_of, together
 from pmm.inertia.sources import PeriodSource
 
 
@@ -62,11 +62,32 @@ class SuspensionTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """Something has to be measured."""
-        if not {"yaw", "beats", "pitch", "roll"} & set(table):
-            yield "", "measures nothing; add one of yaw, beats, pitch, roll"
+        """Pitch and roll hang in other ways."""
         if "pitch" in table and "roll" in table:
             yield "roll", "and pitch are both given; each needs a suspension of its own"
+
+
+@dataclass(frozen=True)
+class FrameTable:
+    """Yaw of the empty frame on the lines of the first suspension: a step of the workflow."""
+
+    period: PeriodSource
+    mass_kg: float
+    u_mass_kg: float = 0.0
+
+
+@dataclass(frozen=True)
+class KnownTable(FrameTable):
+    """The frame with a body of known yaw inertia in the model's place; the mass is of both."""
+
+    known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
+    u_known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """The inertia is needed."""
+        if "known_inertia_kg_m2" not in table:
+            yield "known_inertia_kg_m2", "is missing: the known body's, about the vertical axis"
 
 
 @dataclass(frozen=True)
@@ -81,6 +102,9 @@ class BifilarTable:
     body_density_kg_m3: float | None = None
     method: Literal["period", "ratio", "beats"] | None = None
     tilted: tuple[TiltedTable, ...] = ()
+    tare: FrameTable | None = None
+    check: KnownTable | None = None
+    tare_again: FrameTable | None = None
     model: ModelTable = field(default_factory=ModelTable)
     take_off: tuple[PartTable, ...] = ()
     targets: tuple[TargetTable, ...] = ()
@@ -91,11 +115,37 @@ class BifilarTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """At least one suspension, each with a name of its own."""
+        """At least one suspension, each with a name of its own; the workflow's order is kept."""
+        yield from _workflow_rules(table)
         rows = table.get("suspensions")
         if rows == []:
             yield "suspensions", "is empty; add a table [[suspensions]]"
         named = rows if isinstance(rows, list) else []
+        for number, one in enumerate(named):
+            if isinstance(one, dict) and not _measures(one) and "tare" not in table:
+                yield f"suspensions[{number + 1}]", _NOTHING
         names = [str(one.get("name")) for one in named if isinstance(one, dict)]
         if len(set(names)) < len(names):
             yield "suspensions", "have to have names of their own, each another one"
+
+
+_NOTHING = "measures nothing; add one of yaw, beats, pitch, roll"
+
+
+def _measures(suspension: Mapping[str, Any]) -> bool:
+    return bool({"yaw", "beats", "pitch", "roll"} & set(suspension))
+
+
+def _workflow_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    if "tare_again" in table:
+        yield from together(table, "tare_again", "check")
+    if "check" in table:
+        yield from together(table, "check", "tare")
+    rows, model = table.get("suspensions"), table.get("model", {})
+    first = rows[0] if isinstance(rows, list) and rows else {}
+    if "tare" not in table or not isinstance(first, dict):
+        return
+    if "yaw" not in first and "check" in table:
+        yield "suspensions[1].yaw", "is missing: the test comes before the known body"
+    if "yaw" in first and isinstance(model, dict) and "mass_kg" not in model:
+        yield "model", "needs mass_kg, of all that hung, for the inertia beside the tare's"

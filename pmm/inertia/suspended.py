@@ -32,6 +32,13 @@ class Suspended:
     periods: tuple[PeriodRuns, ...]
     flags: tuple[Flag, ...]
 
+    @property
+    def yaw(self) -> Estimate | None:
+        """The yaw period, where it was measured."""
+        by_period = self.found.get("yaw by period")
+        lines = by_period.budget.shares if by_period else ()
+        return next((one.input for one in lines if one.name == "period_s"), None)
+
 
 def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
     """Read all periods of a suspension and turn them into gyradii and depth.

@@ -16,6 +16,8 @@ def guide(
     axis: str,
     findings: list[Finding],
     flags: list[Flag],
+    *,
+    scale_relative: float = 0.0,
 ) -> str | None:
     """Say which step is next, or bring all four together.
 
@@ -29,6 +31,8 @@ def guide(
         The known body's inertia, if the file has it.
     axis
         In words, what the inertias are about.
+    scale_relative
+        See :func:`analysis.inertia.workflow.assess_workflow`.
 
     Raises
     ------
@@ -42,7 +46,7 @@ def guide(
         return f"{len(readings) + 1} of {len(Step)}, [{tables[step]}]: {what}"
     if known is None:
         raise ConfigurationError("the workflow has no known-weight check; add [check]")
-    found = assess_workflow(readings, known)
+    found = assess_workflow(readings, known, scale_relative=scale_relative)
     flags += found.flags
     findings += [
         Finding("workflow_tare_kg_m2", f"both tares: inertia about {axis}", found.tare),
