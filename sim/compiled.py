@@ -23,12 +23,14 @@ def available() -> bool:
 
 
 def compile_loop(function: FunctionT) -> FunctionT:
-    """Return the function compiled by numba, or as it is without numba: the same numbers."""
+    """Return the function compiled by numba, or as it is without numba: the same to rounding."""
     if not available():
         return function
     import numba
 
-    return cast("FunctionT", numba.njit(cache=True, nogil=True)(function))
+    # Sums may be taken in another order; nothing is assumed about infinities and NaN.
+    any_order = {"reassoc", "contract", "nsz"}
+    return cast("FunctionT", numba.njit(cache=True, nogil=True, fastmath=any_order)(function))
 
 
 def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArray:

@@ -7,12 +7,13 @@ each other (:mod:`sim.relaxation`), so that any part, changed by whatever effect
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Final, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim import signals
+from sim.coupled_march import TORQUE_DEGREE, ShaftSystem, coupled_march
 from sim.drive import SHAFT, DriveSettings, Shaft, shaft_over
 from sim.linear import ComplexArray, Hold, causal_hold
 from sim.motor import Motor, closed_loop, droop
@@ -21,8 +22,6 @@ from sim.relaxation import LONGEST_SWEEP, Tail, relax
 from sim.sampled import steady_of
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
-
-TORQUE_DEGREE: Final = 3  # of the polynomial by which the torque goes on between samples
 
 
 class LoadedState(NamedTuple):
@@ -91,6 +90,22 @@ class LoadedDrive:
         beyond[1:] += system.response(real.s[1:])[:, 0, 0] * whole[1:]
         return real, shaft_over(real, beyond)
 
+    @property
+    def shaft(self) -> ShaftSystem:
+        """What the march of drive and model needs of this drive."""
+        motor, inertia = self.motor, self.reflected_inertia_kg_m2
+        both = (motor.guides, self.settings.guides)
+        return ShaftSystem(
+            self.settings,
+            self.frequency_hz,
+            closed_loop(motor, inertia),
+            motor.shaft_inertia_kg_m2,
+            inertia,
+            (sum(one.coulomb_n for one in both), sum(one.viscous_n_s_m for one in both)),
+            tuple((float(one.order), one.torque_n_m, one.phase_rad) for one in motor.cogging),
+            (0.0, 0.0, 0.0),
+        )
+
     def _hold(self, sample_rate_hz: float) -> Hold:
         system = closed_loop(self.motor, self.reflected_inertia_kg_m2)
         return causal_hold(system, 1.0 / sample_rate_hz, TORQUE_DEGREE)
@@ -140,12 +155,16 @@ class Coupled:
     ) -> tuple[tuple[Any, Any, Any], Signals]:
         """Return states and signals over the block, swept in stretches."""
         written: list[Signals] = []
-        for first in range(0, block.count, LONGEST_SWEEP):
-            count = min(LONGEST_SWEEP, block.count - first)
+        first = 0
+        while first < block.count:
+            # A run's first sample has no state to march from.
+            most = 1 if state[0].states is None else LONGEST_SWEEP
+            count = min(most, block.count - first)
             part = Block(block.first + first, count, block.sample_rate_hz)
             given = {name: values[first : first + count] for name, values in inputs.items()}
             state, out = _Stretch(self, state, part, given).solve()
             written.append(out)
+            first += count
         if len(written) == 1:
             return state, written[0]
         names = [signal.name for signal in self.writes]
@@ -220,7 +239,23 @@ class _Stretch:
     inputs: Signals
 
     def solve(self) -> tuple[tuple[Any, Any, Any], Signals]:
-        """Sweep until torque and motion fit each other."""
+        """March, or sweep until torque and motion fit each other."""
+        marched = self._march()
+        return self._sweep() if marched is None else marched
+
+    def _march(self) -> tuple[tuple[Any, Any, Any], Signals] | None:
+        states, torques = self.state[0]
+        march = coupled_march(self.stage.drive.shaft, self.stage.parts, self.block, self.inputs)
+        found = None if states is None or march is None else march.run(*self.state[0], self.state[2])
+        if found is None:
+            return None
+        shaft, _, hull, run = found
+        run[signals.LOAD_TORQUE.name] = self.stage._torque(run)
+        tail = tuple(tuple(row) for row in shaft.torques[-TORQUE_DEGREE:].tolist())
+        drive = LoadedState(tuple(shaft.states[-1].tolist()), tail)
+        return (drive, self.state[1], hull), {one.name: run[one.name] for one in self.stage.writes}
+
+    def _sweep(self) -> tuple[tuple[Any, Any, Any], Signals]:
         at_start = np.zeros(self.block.count)
         if self.state[0].torques:
             at_start += self.state[0].torques[-1][0]

@@ -16,6 +16,7 @@ from sim.hull_coefficients import HullCoefficients, mass_matrix, weight_matrix
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_harmonics
 from sim.hull_system import HullSystem
 from sim.linear import ComplexArray, Hold
+from sim.model_march import Marching, marching_of, periodic_laws
 from sim.mounting import Mounting
 from sim.period import Period, Spectra
 from sim.relaxation import LONGEST_SWEEP, relax
@@ -104,49 +105,70 @@ class Hull:
             state, force = self._with_memory(state, struts, instants)
         return state, {"force_aft": force[:, 0].copy(), "force_fore": force[:, 1].copy()}
 
-    def _over(self, instants: Instants) -> BlockForces:
-        return BlockForces(self.laws, self.cross_flow, self.system, instants)
+    def forces_over(self, block: Block, flow_m_s: FloatArray) -> BlockForces:
+        """Return the forces over a block, at the flow's speed at each sample."""
+        return self._over(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
+
+    def _over(self, instants: Instants, marching: Marching | None = None) -> BlockForces:
+        return BlockForces(self.laws, self.cross_flow, self.system, instants, marching)
 
     def _with_memory(
         self, state: HullState, struts: FloatArray, instants: Instants
     ) -> tuple[HullState, FloatArray]:
         """Go on in stretches that fit the fastest memory, and one thread of the matrix products."""
         holds = _holds(self, instants.step_s)
+        marching = marching_of(self, instants.step_s)
         forces: list[FloatArray] = []
         for first in range(0, len(struts), LONGEST_SWEEP):
             part = slice(first, first + LONGEST_SWEEP)
             here = instants._replace(
                 time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
             )
-            state, force = self._over(here).with_memory(state, struts[part], holds)
+            state, force = self._over(here, marching).with_memory(state, struts[part], holds)
             forces.append(force)
         return state, np.concatenate(forces)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the forces: exact, the laws by harmonic balance."""
         speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
-        system = replace(self, carriage_speed_m_s=speed).system
+        hull = self if speed == self.carriage_speed_m_s else replace(self, carriage_speed_m_s=speed)
+        system = hull.system
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         impedance, _ = system.impedance(period.s)
         give = _mounting_gain(system, impedance, period)
-
-        def model(laws: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-            load = _apply(impedance, y) + laws
-            h = y if give is None else y + _apply(give, load)
-            return h, _apply(impedance, h)
-
-        def balance(laws: ComplexArray) -> ComplexArray:
-            h, linear = model(laws)
-            column = period.s[:, np.newaxis]
-            waves = np.hstack([h, h * column, h * column**2, linear])
-            motion = ModelMotion(*np.split(period.values(waves), 4, axis=1))
-            return law_harmonics(self.laws, self.cross_flow, system, motion, period, speed)
-
         laws = np.zeros_like(y)
         if self.laws or self.cross_flow is not None:
-            laws = balance(laws) if give is None else relax(balance, balance(laws), "hull")
-        force = model(laws)[1] + laws
+            laws = hull._balance(period, y, give, impedance)
+        h = _yielded(y, give, _apply(impedance, y) + laws)
+        force = _apply(impedance, h) + laws
         return period, {"force_aft": force[:, 0], "force_fore": force[:, 1]}
+
+    def _balance(
+        self, period: Period, y: ComplexArray, give: ComplexArray | None, impedance: ComplexArray
+    ) -> ComplexArray:
+        """Return the laws' harmonics, in balance with what the mounting gives way."""
+        table, speed = periodic_laws(self), self.carriage_speed_m_s
+        if table is not None:
+            from sim.balance import balanced_laws
+
+            found = balanced_laws(table, (y, give, impedance), period, speed)
+            if found is not None:
+                return found
+
+        def balance(laws: ComplexArray) -> ComplexArray:
+            h = _yielded(y, give, _apply(impedance, y) + laws)
+            column = period.s[:, np.newaxis]
+            waves = np.hstack([h, h * column, h * column**2, _apply(impedance, h)])
+            motion = ModelMotion(*np.split(period.values(waves), 4, axis=1))
+            return law_harmonics(self.laws, self.cross_flow, self.system, motion, period, speed)
+
+        start = balance(np.zeros_like(y))
+        return start if give is None else relax(balance, start, "hull")
+
+
+def _yielded(y: ComplexArray, give: ComplexArray | None, load: ComplexArray) -> ComplexArray:
+    """Return the motion of the model at the struts under a load on rigid ones."""
+    return y if give is None else y + _apply(give, load)
 
 
 def _mounting_gain(
@@ -188,6 +210,7 @@ def _system(hull: Hull) -> HullSystem:
         to_motion=to,
         radiation=radiation,
         elastic=hull.mounting.elastic,
+        joint=hull.mounting.joint,
     )
 
 

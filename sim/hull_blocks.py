@@ -1,17 +1,23 @@
 """The forces on the model over one block of samples."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from hardware.description.errors import ConfigurationError
 from sim.acting import Acting
 from sim.compiled import follow
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
 from sim.hull_system import LOAD_DEGREE, HullSystem
+from sim.law_table import has_number
 from sim.linear import Hold
+from sim.model_march import Marching, course_of, march_model
 from sim.relaxation import Tail, relax
 from sim.signals import FloatArray
+
+if TYPE_CHECKING:
+    from sim.marching import Course
 
 
 class HullState(NamedTuple):
@@ -37,12 +43,14 @@ class BlockForces:
     """The forces over one block; arrays have one row a sample.
 
     Strut motion is (y, y', y''), aft and fore: six columns. Loads are (f, g): four columns.
+    ``marching`` solves for them sample by sample; without it they are swept over the block.
     """
 
     laws: tuple[Acting, ...]
     cross_flow: CrossFlow | None
     system: HullSystem
     instants: Instants
+    marching: Marching | None = None
 
     def on_rigid_mounting(self, struts: FloatArray) -> FloatArray:
         """Return the forces where nothing is remembered: arithmetic on whole blocks."""
@@ -56,7 +64,11 @@ class BlockForces:
         by_motion, by_load = holds
         known = 0 if state.states is not None else 1
         if known:
-            state = self._at_first_sample(struts)
+            state = self.at_first_sample(struts)
+        if self.marching is not None and self.acts_back:
+            solved = self._marched(self.marching, state, struts, known)
+            if solved is not None:
+                return solved
         driven = by_motion.forcing(np.vstack([np.array(state.motion), struts[known:]]))
         history = np.array(state.loads)
         by_struts, by_states, by_loads = self.system.model_maps
@@ -75,14 +87,79 @@ class BlockForces:
             return self._loads(*under(loads)[1:])
 
         loads = self._loads(struts, self._linear(struts))
-        if self.system.elastic_count and loads.any():
-            loads = relax(respond, loads, "hull", self._scale(struts))
+        if not self.system.elastic_count:
+            loads = respond(loads)  # with the memory's part of what the linear parts ask
+        elif loads.any():
+            loads = relax(respond, loads, "hull", self.scale(struts))
         states, _, linear = under(loads)
         tail = np.vstack([history, loads[known:]])[-LOAD_DEGREE:]
         after = HullState(_value(states[-1]), _value(struts[-1]), tuple(map(_value, tail)))
         return after, linear + loads[:, :2]
 
-    def _at_first_sample(self, struts: FloatArray) -> HullState:
+    @property
+    def acts_back(self) -> bool:
+        """Whether loads depend on what they do: on how the mounting gives way to them."""
+        loaded = self.laws or self.cross_flow is not None or self.system.joint is not None
+        return bool(self.system.elastic_count and (loaded or self._extra.any()))
+
+    @property
+    def _extra(self) -> FloatArray:
+        return self.instants.speed_m_s - self.system.speed_m_s
+
+    def _marched(
+        self, marching: Marching, state: HullState, struts: FloatArray, known: int
+    ) -> tuple[HullState, FloatArray] | None:
+        """Solve sample by sample; laws that the march does not know are swept around it."""
+        course = self.course(state, struts, known)
+        rest = tuple(one for one in self.laws if not has_number(one.law))
+        outputs = march_model(marching, course)
+
+        def respond(loads: FloatArray) -> FloatArray:
+            nonlocal outputs
+            course.given[:, :2] = loads
+            outputs = march_model(marching, course)
+            return self._forces(rest, outputs) if outputs is not None else loads
+
+        if rest and outputs is not None:
+            relax(respond, self._forces(rest, outputs), "hull", self.scale(struts)[:2])
+        if outputs is None:
+            return self._unsettled()
+        return marched_state(course), outputs[:, 6:8] + course.loads[LOAD_DEGREE:, :2]
+
+    def _unsettled(self) -> None:
+        if self.system.joint is not None:
+            raise ConfigurationError(
+                "hull: what meets in the gauges' clearance is too stiff for the sample rate; "
+                "sample faster, or make the gauges softer"
+            )
+
+    def _forces(self, laws: tuple[Acting, ...], outputs: FloatArray) -> FloatArray:
+        at_struts = ModelMotion(*np.split(outputs[:, :8], 4, axis=1))
+        return law_forces(laws, None, self.system, at_struts, self.instants)
+
+    def course(self, state: HullState, struts: FloatArray, known: int) -> "Course":
+        """Return what a march over the block starts from and is given."""
+        instants = self.instants
+        joined, history = np.vstack([np.array(state.motion), struts]), np.array(state.loads)
+        flow = self._extra.any() or history[:, 2:].any()
+        loads = history.shape[1] if flow or self.system.joint is not None else 2
+        course = course_of(
+            joined,
+            self.system.states,
+            loads,
+            instants.time_s,
+            instants.step_s,
+            self.scale(struts),
+        )
+        # Of the states before the block only the last counts; a first sample has its own.
+        course.states[LOAD_DEGREE - 1 + known] = state.states
+        course.loads[:LOAD_DEGREE] = history[:, :loads]
+        course.instants[:, 1] = self._extra
+        course.instants[:, 2] = instants.speed_m_s
+        return course._replace(known=known)
+
+    def at_first_sample(self, struts: FloatArray) -> HullState:
+        """Return the state at a run's first sample: mounting and water at rest under the load."""
         first = BlockForces(
             self.laws,
             self.cross_flow,
@@ -94,7 +171,9 @@ class BlockForces:
         linear = first._linear(struts[:1])
         loads = first._loads(struts[:1], linear)
         at_rest = self.system.at_rest((linear + loads[:, :2])[0])
-        return HullState(_value(at_rest), _value(struts[0]), (_value(loads[0]),) * LOAD_DEGREE)
+        given_back = () if self.system.joint is None else (0.0, 0.0)
+        last = (*_value(loads[0]), *given_back)
+        return HullState(_value(at_rest), _value(struts[0]), (last,) * LOAD_DEGREE)
 
     def _linear(self, motion: FloatArray) -> FloatArray:
         """Return the force of the linear parts for the model's motion, without the memory."""
@@ -109,7 +188,7 @@ class BlockForces:
             loads[:, :2] = law_forces(
                 self.laws, self.cross_flow, self.system, at_struts, self.instants
             )
-        extra = self.instants.speed_m_s - self.system.speed_m_s
+        extra = self._extra
         if extra.any():
             by_position, by_velocity = self.system.speed_loads
             added = position @ by_position.T + velocity @ by_velocity.T
@@ -117,12 +196,20 @@ class BlockForces:
             loads[:, 2:] = extra[:, np.newaxis] * (position @ self.system.turn.T)
         return loads
 
-    def _scale(self, struts: FloatArray) -> FloatArray:
+    def scale(self, struts: FloatArray) -> FloatArray:
         """Return what a change of the loads counts relative to."""
         force = (np.abs(struts) @ np.abs(self.system.per_motion.T)).max()
-        extra = np.abs(self.instants.speed_m_s - self.system.speed_m_s).max()
+        extra = np.abs(self._extra).max()
         velocity = extra * np.abs(self.system.turn).max() * np.abs(struts[:, :2]).max()
         return np.array([force, force, velocity, velocity])
+
+
+def marched_state(course: "Course") -> HullState:
+    """Return the state after a march."""
+    last = course.loads[-LOAD_DEGREE:]
+    rest = (0.0,) * (4 - last.shape[1])
+    tail = tuple((*_value(row), *rest) for row in last)
+    return HullState(_value(course.states[-1]), _value(course.struts[-1]), tail)
 
 
 def _value(row: FloatArray) -> tuple[float, ...]:

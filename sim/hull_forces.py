@@ -80,7 +80,7 @@ def at(
     point: Point, system: HullSystem, motion: ModelMotion, instants: Instants
 ) -> tuple[FloatArray, Motion]:
     """Return the direction of a point's motion in strut coordinates, and that motion."""
-    along, load = _direction(point, system.to_motion)
+    along, load = direction(point, system.to_motion)
     velocity, acceleration = motion.velocity @ along, motion.acceleration @ along
     if point is Point.THROUGH_WATER:
         velocity = velocity + motion.position @ system.incidence[0]
@@ -90,7 +90,8 @@ def at(
     )
 
 
-def _direction(point: Point, to_motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+def direction(point: Point, to_motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return what of the struts' motion a point has, and what of their loads: shape ``(2,)``."""
     if point in (Point.AFT, Point.FORE):
         unit = np.eye(2)[0 if point is Point.AFT else 1]
         return unit, unit

@@ -8,7 +8,8 @@ and v the velocity through the water, v = T h' + U S T h:
     M_e p'' + C_e p' + K_e p = - E^T F            mounting
 
 f are the forces that are no part of the linear system, and g the velocity through the water that a
-carriage adds which is not at its mean speed. The states are (p, p', xi).
+carriage adds which is not at its mean speed. Where the gauges' joints have a clearance, c is what
+their springs then have too much, on the right of the last line. The states are (p, p', xi).
 """
 
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from sim.linear import ComplexArray, Hold, LinearSystem, causal_hold, hermite_hold
-from sim.mounting import Elastic
+from sim.mounting import Elastic, Joint
 from sim.signals import FloatArray
 from sim.water.radiation import Radiation
 
@@ -40,6 +41,8 @@ class HullSystem:
         Forces per unit of speed beyond the mean, and per displacement and velocity.
     to_motion
         T: from the struts to translation and rotation.
+    joint
+        The clearance of the gauges, which are the first two elastic coordinates then.
     """
 
     mass: FloatArray
@@ -51,6 +54,7 @@ class HullSystem:
     to_motion: FloatArray
     radiation: Radiation
     elastic: Elastic
+    joint: Joint | None = None
 
     @property
     def elastic_count(self) -> int:
@@ -115,11 +119,15 @@ class HullSystem:
 
     @cached_property
     def load_input(self) -> FloatArray:
-        """What (f, g) add to the states' rate, shape ``(states, 4)``."""
+        """What (f, g) add to the states' rate, or (f, g, c); shape ``(states, 4)`` or 6."""
         into = self.radiation.input_matrix
         force = self._driven(np.eye(2), np.zeros_like(into))
         velocity = self._driven(np.zeros((2, 2)), into)
-        return np.hstack([force, velocity])
+        if self.joint is None:
+            return np.hstack([force, velocity])
+        r, given_back = self.elastic_count, np.zeros((self.states, 2))
+        given_back[r : 2 * r] = np.linalg.inv(self._inertia)[:, :2]
+        return np.hstack([force, velocity, given_back])
 
     def _driven(self, load: FloatArray, memory: FloatArray) -> FloatArray:
         r = self.elastic_count
@@ -128,7 +136,7 @@ class HullSystem:
 
     @cached_property
     def model_maps(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What struts (six columns), states and loads (f, g) give the model.
+        """What struts (six columns), states and loads (f, g, c) give the model.
 
         Eight columns each: h, h', h'' at both struts, and the force of the linear parts there.
         """
@@ -139,7 +147,7 @@ class HullSystem:
         states[:r, :2] = shape
         states[rows, 2:4] = shape
         states[:, 4:] = self.state_matrix[rows].T @ shape
-        loads = np.zeros((4, 6))
+        loads = np.zeros((self.load_input.shape[1], 6))
         loads[:, 4:] = self.load_input[rows].T @ shape
         struts = np.eye(6)
         struts[:, 4:] += np.hstack(self.motion_inputs)[rows].T @ shape

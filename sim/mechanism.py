@@ -120,7 +120,7 @@ class Mechanism:
         acceleration = inputs[signals.SHAFT_ACCELERATION.name]
         written: dict[str, FloatArray] = {}
         after = list(state or (None, None))
-        for i, (strut, names) in enumerate(zip(self._struts, _WRITES, strict=True)):
+        for i, (strut, names) in enumerate(zip(self.struts, _WRITES, strict=True)):
             d, slope, curvature = self._strut(strut, angle)
             motion = Motion(d, slope * speed, curvature * speed**2 + slope * acceleration)
             values: tuple[FloatArray, ...] = (*motion, slope)
@@ -137,7 +137,7 @@ class Mechanism:
         beyond = period.values(inputs[signals.SHAFT_ANGLE.name])
         angle = period.omega_rad_s * period.time_s + beyond
         written: dict[str, np.ndarray] = {}
-        for strut, names in zip(self._struts, _WRITES, strict=True):
+        for strut, names in zip(self.struts, _WRITES, strict=True):
             d, slope, curvature = self._strut(strut, angle)
             if strut[0].half_play_m:
                 speed = period.values(inputs[signals.SHAFT_SPEED.name])
@@ -152,7 +152,8 @@ class Mechanism:
         return period, written
 
     @property
-    def _struts(self) -> tuple[tuple[Setting, float], tuple[Setting, float]]:
+    def struts(self) -> tuple[tuple[Setting, float], tuple[Setting, float]]:
+        """Each strut's setting, and the crank angle (rad) by which it is ahead: aft, fore."""
         return (self.aft, 0.0), (self.fore, self.strut_phase_rad)
 
     def _strut(

@@ -23,6 +23,32 @@ class Elastic(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Joint:
+    """The last joint of each strut, with a clearance that only forces take up.
+
+    Attributes
+    ----------
+    half_play_m
+        Clearance to either side of its middle.
+    preload_n
+        Force that presses it to one side: it opens where the strut's force is larger, and at rest
+        lies at that side.
+    """
+
+    half_play_m: float
+    preload_n: float = 0.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def __post_init__(self) -> None:
+        if not (self.half_play_m > 0.0 and self.preload_n >= 0.0):
+            raise ConfigurationError(
+                f"joint: half_play_m = {self.half_play_m:g} must be positive and "
+                f"preload_n = {self.preload_n:g} not negative; leave the joint out for none"
+            )
+
+
+@dataclass(frozen=True)
 class Mounting:
     """Springs between the model and what moves it.
 
@@ -36,11 +62,14 @@ class Mounting:
         Of each strut's gauge; a stiffness of ``None`` for rigid ones.
     frame_stiffness_n_m, frame_damping_n_s_m, frame_mass_kg
         Of the frame; a stiffness of ``None`` for a rigid one.
+    joint
+        A clearance in a row with each gauge; ``None`` for joints without play.
 
     Raises
     ------
     ConfigurationError
-        If a stiffness or the frame's mass is not positive.
+        If a stiffness or the frame's mass is not positive, or a joint has play on rigid gauges:
+        what meets in it would never come to rest.
     """
 
     gauge_stiffness_n_m: float | None = None
@@ -48,6 +77,7 @@ class Mounting:
     frame_stiffness_n_m: float | None = None
     frame_damping_n_s_m: float = 0.0
     frame_mass_kg: float = 500.0
+    joint: Joint | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
@@ -58,6 +88,11 @@ class Mounting:
                 raise ConfigurationError(
                     f"{key} = {value:g} must be positive; leave it out for a rigid part"
                 )
+        if self.joint is not None and self.gauge_stiffness_n_m is None:
+            raise ConfigurationError(
+                "joint: its clearance is in a row with the gauges, which are rigid; "
+                "give gauge_stiffness_n_m"
+            )
 
     @property
     def elastic(self) -> Elastic:

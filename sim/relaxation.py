@@ -26,7 +26,7 @@ ROUNDING: Final = 1e-11  # changes below it that shrink no more are rounding
 MOST_SWEEPS: Final = 80
 LONGEST_SWEEP: Final = 1024  # samples that are swept together
 _DEPTH: Final = 4
-_STALLED: Final = 3  # sweeps without a smaller change: mixing now and then makes one worse
+STALLED: Final = 3  # sweeps without a smaller change: mixing now and then makes one worse
 
 
 def relax(
@@ -61,7 +61,7 @@ def relax(
             best, settled, stalled = largest, answer, 0
         else:
             stalled += 1
-        if best <= 1.0 or (best <= ROUNDING / TOLERANCE and stalled >= _STALLED):
+        if best <= 1.0 or (best <= ROUNDING / TOLERANCE and stalled >= STALLED):
             return settled
         answers.append(answer)
         changes.append(change)

@@ -1,0 +1,136 @@
+"""The force laws at one instant: what the compiled loops call; the same as :mod:`sim.laws`.
+
+Loaded when the first such loop runs, because numba is. Without numba the functions are Python.
+"""
+
+import math
+
+import numpy as np
+
+from sim.compiled import compile_loop
+from sim.laws import CREEP_M_S
+from sim.signals import FloatArray
+
+_FIRST_WITH_REFERENCE = 4
+_FIRST_THAT_JUMPS = 7
+_ROOT_PI = math.sqrt(math.pi)
+
+
+@compile_loop
+def _polynomial(kind: int, p: FloatArray, i: int, x: float, v: float) -> float:
+    """Viscous, quadratic, cubic, spring."""
+    if kind == 0:
+        return p[i, 1] * v
+    if kind == 1:
+        through = v + p[i, 2]
+        return p[i, 1] * through * abs(through)
+    if kind == 2:
+        return p[i, 1] * v**3
+    return p[i, 4] + x * (p[i, 1] + x * (p[i, 2] + x * p[i, 3]))
+
+
+@compile_loop
+def _curved(
+    kind: int, p: FloatArray, i: int, x: float, time_s: float, speed_m_s: float
+) -> float:
+    """Proximity, exponential, tone."""
+    if kind == 6:
+        fade = 1.0 if math.isnan(p[i, 4]) else math.exp(-time_s / p[i, 4])
+        return p[i, 1] * fade * math.sin(2.0 * math.pi * p[i, 2] * time_s + p[i, 3])
+    reference = p[i, 4] if kind == 4 else p[i, 3]
+    dynamic = 1.0 if math.isnan(reference) else (speed_m_s / reference) ** 2
+    if kind == 4:
+        return p[i, 1] * dynamic * ((p[i, 2] / (p[i, 2] - x)) ** p[i, 3] - 1.0)
+    return p[i, 1] * dynamic * math.expm1(p[i, 2] * x)
+
+
+@compile_loop
+def _jumping(
+    kind: int, p: FloatArray, i: int, x: float, v: float, half: float, load: float
+) -> float:
+    """Coulomb, Stribeck, load friction, rubbing spring: means over the sample."""
+    if kind == 8:
+        velocity, width = v / p[i, 2], half / p[i, 2]
+        risen = math.erf(abs(velocity + width)) - math.erf(abs(velocity - width))
+        return p[i, 1] * (_ROOT_PI / 4.0) * risen / width
+    sign = min(max(v / half, -1.0), 1.0)
+    if kind == 7:
+        return p[i, 1] * sign + p[i, 2]
+    if kind == 9:
+        return p[i, 1] * abs(p[i, 3] * load + p[i, 2]) * sign
+    return p[i, 1] * abs(x) * sign
+
+
+@compile_loop
+def _cross_flow(k: FloatArray, at: FloatArray, line: int, force: FloatArray, into: int) -> None:
+    h0, h1, v0, v1 = at[line, 0], at[line, 1], at[line, 2], at[line, 3]
+    v = k[4, 0] * v0 + k[4, 1] * v1 + k[4, 2] * h0 + k[4, 3] * h1
+    r = k[5, 0] * v0 + k[5, 1] * v1 + k[5, 2] * h0 + k[5, 3] * h1
+    for row in range(2):
+        load = k[row, 0] * v**3 + k[row, 1] * v * v * r + k[row, 2] * v * r * r
+        load += k[row, 3] * r**3 + k[row + 2, 0] * v * abs(v) + k[row + 2, 1] * v * abs(r)
+        load += k[row + 2, 2] * r * abs(v) + k[row + 2, 3] * r * abs(r)
+        force[into, 0] += k[4 + row, 0] * load
+        force[into, 1] += k[4 + row, 1] * load
+
+
+@compile_loop
+def law_force(
+    laws: FloatArray,
+    cross_flow: FloatArray,
+    at: FloatArray,
+    line: int,
+    time_s: float,
+    step_s: float,
+    speed_m_s: float,
+    smooth: FloatArray,
+    jumps: FloatArray,
+    into: int,
+) -> None:
+    """Add the force of each strut that the laws ask for, those that jump apart from the others.
+
+    Parameters
+    ----------
+    laws, cross_flow
+        See :class:`sim.law_table.LawTable`.
+    at, line
+        The row that holds the model at the struts: h, h', h'' and the load of the linear parts, two
+        values each.
+    smooth, jumps, into
+        Where the forces go, to the first two columns of row ``into``; ``smooth`` and ``jumps`` are
+        the same array where no difference is made.
+    """
+    for i in range(laws.shape[0]):
+        kind, a0, a1 = int(laws[i, 0]), laws[i, 5], laws[i, 6]
+        turn0, turn1 = laws[i, 9], laws[i, 10]
+        x = at[line, 0] * a0 + at[line, 1] * a1
+        v = at[line, 2] * a0 + at[line, 3] * a1 + at[line, 0] * turn0 + at[line, 1] * turn1
+        if kind < _FIRST_THAT_JUMPS:
+            if kind < _FIRST_WITH_REFERENCE:
+                force = _polynomial(kind, laws, i, x, v)
+            else:
+                force = _curved(kind, laws, i, x, time_s, speed_m_s)
+            smooth[into, 0] += force * a0
+            smooth[into, 1] += force * a1
+        else:
+            a = at[line, 4] * a0 + at[line, 5] * a1 + at[line, 2] * turn0 + at[line, 3] * turn1
+            load = at[line, 6] * laws[i, 7] + at[line, 7] * laws[i, 8]
+            half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
+            force = _jumping(kind, laws, i, x, v, half, load)
+            jumps[into, 0] += force * a0
+            jumps[into, 1] += force * a1
+    if cross_flow.shape[0]:
+        _cross_flow(cross_flow, at, line, smooth, into)
+
+
+@compile_loop
+def laws_over_period(
+    laws: FloatArray, cross_flow: FloatArray, values: FloatArray, step_s: float, speed_m_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the forces at the points of a period, ``(points, 2)``: smooth ones, ones that jump."""
+    smooth, jumps = np.zeros((len(values), 2)), np.zeros((len(values), 2))
+    for k in range(len(values)):
+        law_force(
+            laws, cross_flow, values, k, k * step_s, step_s, speed_m_s, smooth, jumps, k
+        )
+    return smooth, jumps
