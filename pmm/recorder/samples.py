@@ -38,6 +38,7 @@ class SampleWriter:
                 about[key] = repr(value)
             fields.append(pa.field(one.name, pa.float64(), metadata=about))
         self._schema = pa.schema(fields, metadata={_HEADER_KEY: header.to_json().encode()})
+        self.batch([(1, np.zeros((len(header.channels), 1)))])  # what is slow the first time
 
     def head(self) -> bytes:
         """Return the beginning of the stream."""
@@ -49,9 +50,15 @@ class SampleWriter:
             [np.arange(first, first + values.shape[1], dtype=np.int64) for first, values in pieces]
         )
         values = np.ascontiguousarray(np.concatenate([values for _, values in pieces], axis=1))
-        columns = [self._arrow.array(one) for one in (sync, *values)]
+        columns = [self._column(one) for one in (sync, *values)]
         batch = self._arrow.RecordBatch.from_arrays(columns, schema=self._schema)
         return bytes(batch.serialize())
+
+    def _column(self, values: NDArray[Any]) -> Any:
+        """Return a column over an array; Arrow's own way from NumPy would load pandas here."""
+        pa = self._arrow
+        kind = pa.int64() if values.dtype == np.int64 else pa.float64()
+        return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(values)])
 
 
 @dataclass(frozen=True)
