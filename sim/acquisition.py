@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -148,18 +149,18 @@ class Acquisition:
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
     name: ClassVar[str] = "acquisition"
 
-    @property
+    @cached_property
     def lines(self) -> tuple[Line, ...]:
         """The channels that are recorded, in their order."""
         found = ((channel, getattr(self, channel.name)) for channel in _SOURCES)
         return tuple(Line(channel, _SOURCES[channel], how) for channel, how in found if how)
 
-    @property
+    @cached_property
     def reads(self) -> tuple[Signal, ...]:
         """The quantities behind the recorded channels."""
         return tuple(line.source for line in self.lines)
 
-    @property
+    @cached_property
     def writes(self) -> tuple[Signal, ...]:
         """The recorded channels."""
         return tuple(signals.recorded(line.channel) for line in self.lines)

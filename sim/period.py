@@ -6,6 +6,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -41,11 +42,12 @@ class Period:
         """Angular frequency."""
         return 2.0 * math.pi * self.frequency_hz
 
-    @property
+    @cached_property
     def s(self) -> ComplexArray:
-        """Laplace variable i n w of each order, shape ``(orders + 1,)``."""
+        """Laplace variable i n w of each order, shape ``(orders + 1,)``; not to be written to."""
         s = np.zeros(self.orders + 1, dtype=np.complex128)
         s.imag = self.omega_rad_s * np.arange(self.orders + 1)
+        s.setflags(write=False)
         return s
 
     @property

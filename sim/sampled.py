@@ -40,9 +40,9 @@ def steady_by_samples(
 
 def steady_of(stage: Stage[Any], period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
     """Return a stage's periodic steady state: its own, or from its samples where it has none."""
-    if isinstance(stage, Periodic):
-        return stage.steady(period, inputs)
-    return steady_by_samples(stage, period, inputs)
+    # Not isinstance: that looks through the protocol's members every time.
+    own: Periodic | None = stage if hasattr(stage, "steady") else None  # type: ignore[assignment]
+    return steady_by_samples(stage, period, inputs) if own is None else own.steady(period, inputs)
 
 
 def _with_angle(values: dict[str, np.ndarray], angle: np.ndarray) -> Signals:
