@@ -1,7 +1,7 @@
 """How long a plan takes, and how much of the tank each run needs."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from hardware.rig_configuration import Part
 from pmm.plan.rig_file import RigFile
@@ -44,16 +44,10 @@ def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
     return parked + moving + back
 
 
-def total_s(runs: Sequence[RunPlan], rig: RigFile) -> float:
-    """Return how long all runs take at most, in this order."""
-    return sum(run_s(one, before, rig) for before, one in _with_before(runs))
-
-
-def _with_before(runs: Sequence[RunPlan]) -> Iterator[tuple[RunPlan | None, RunPlan]]:
-    before: RunPlan | None = None
-    for one in runs:
-        yield before, one
-        before = one
+def duration_rows(runs: Sequence[RunPlan], rig: RigFile) -> tuple[float, ...]:
+    """Return how long each run takes at most, in seconds, made in this order."""
+    before = (None, *runs[:-1])
+    return tuple(run_s(one, last, rig) for one, last in zip(runs, before, strict=True))
 
 
 def _setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
