@@ -42,7 +42,7 @@ from pmm.recorder.samples import SampleWriter
 from pmm.recorder.texts import as_line
 
 _SHARE: Final = 0.5  # of flush_s: what is left of it is for the disk
-_MOST_BEHIND: Final = 20  # hand-overs that may wait for a disk that has stopped answering
+_MOST_BEHIND: Final = 120  # hand-overs that may wait for a disk that has stopped answering
 
 
 class RecordingStalledError(DataError):

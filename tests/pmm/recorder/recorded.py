@@ -1,0 +1,146 @@
+"""Runs of simulated rigs, recorded as run control does it, with what truly happened beside."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hardware.description.channels import Channel
+from hardware.description.setpoint import SetPoint
+from hardware.opening import opening_of
+from hardware.pacing import FreeRunning
+from hardware.raw_log import Frame
+from hardware.rig import Rig
+from hardware.rig_configuration import read_rig
+from hardware.roles import Pulse, Reading
+from pmm.recorder.header import LiveSettings, RunHeader
+from pmm.recorder.live_path import LivePath, Taken, as_record
+from pmm.recorder.run_recorder import RunRecorder
+from sim.devices.bench_file import DRIVERS
+from sim.devices.plant import Surroundings
+from sim.devices.registry import running
+from sim.devices.world import Scene, World
+from sim.rig import vertical_rig
+from tests.hardware.rigs import nobody
+from tests.sim.devices.benches import WHOLE, turning
+
+CHANNELS = (Channel("shaft_angle", "rad"), Channel("force_aft", "N", 490.0))
+_NAMES = count()
+
+
+def header(**more: Any) -> RunHeader:
+    """A header of two channels at 100 Hz."""
+    given: dict[str, Any] = {
+        "run_name": "heave 1",
+        "channels": CHANNELS,
+        "sample_rate_hz": 100.0,
+        "started_utc": "2026-11-21T12:00:00Z",
+        "kind": "oscillation",
+        "set_point": SetPoint(1.0, 0.02),
+        "configuration_sha256": {"rig.toml": "12ab"},
+        "readings": {"eccentricity": Reading(0.02, 1e-5, "encoder")},
+    }
+    return RunHeader(**(given | more))
+
+
+def fed(recorder: RunRecorder, numbers: range, tick_s: float = 0.01) -> np.ndarray:
+    """Feed a recorder what :func:`truth` says, a block of ten at a time; return the truth."""
+    for first in numbers[::10]:
+        recorder.samples(first, truth(range(first, min(first + 10, numbers.stop))))
+        recorder.cycle_statistics(1e-4)
+        recorder.frame(Frame(timestamp=first / 100.0, arbitration_id=0x181, data=[first % 256] * 8))
+        recorder.line(first, "photocell", b"P,%d" % first)
+        if first % 100 == 0:
+            recorder.pulse(Pulse(first // 100, first / 100.0 + 0.0123))
+        recorder.tick(first * tick_s)
+    return truth(numbers)
+
+
+def truth(numbers: range) -> np.ndarray:
+    """What the two channels are at these SYNCs."""
+    n = np.arange(numbers.start, numbers.stop, dtype=float)
+    return np.array([n * 0.0628, np.sin(n * 0.0628) * 100.0 + 1.0 / 3.0])
+
+
+@dataclass
+class Session:
+    """A simulated rig that lives through many runs."""
+
+    rig: Rig
+    world: World
+    tables: Mapping[str, Any]
+    observe: list[Callable[[Frame], None]] = field(default_factory=list)
+    hear: list[Callable[[int, str, bytes], None]] = field(default_factory=list)
+
+    def record(
+        self, folder: Path, cycles: int, live: LiveSettings, **options: Any
+    ) -> tuple[RunRecorder, list[Taken]]:
+        """Record some cycles; the recorder is not closed."""
+        first = self.rig.number + 1
+        path = LivePath(self.rig, first, live)
+        about = header(
+            channels=path.channels,
+            sources=path.sources,
+            first_sync=first,
+            sample_rate_hz=self.rig.configuration.sample_rate_hz,
+            rig_tables=self.tables,
+            opening=opening_of(self.rig),
+            live=live,
+        )
+        recorder = RunRecorder(folder, about, **options)
+        self.observe[:], self.hear[:] = [recorder.frame], [recorder.line]
+        taken = [self._cycle(recorder, path) for _ in range(cycles)]
+        taken.append(path.finish())
+        _keep(recorder, taken[-1])
+        self.observe.clear()
+        self.hear.clear()
+        return recorder, taken
+
+    def _cycle(self, recorder: RunRecorder, path: LivePath) -> Taken:
+        cycle = self.rig.cycle()
+        taken = path.step(cycle.number)
+        _keep(recorder, taken)
+        recorder.cycle_statistics(cycle.lateness_s)
+        recorder.tick(cycle.time_s)
+        return taken
+
+
+def _keep(recorder: RunRecorder, taken: Taken) -> None:
+    for first, values in taken.samples:
+        recorder.samples(first, values)
+    for pulse in taken.pulses:
+        recorder.pulse(pulse)
+    for reading in taken.readings:
+        recorder.harmonic(as_record(reading))
+
+
+@contextmanager
+def session(serial: tuple[str, ...] = (), **parts: Any) -> Iterator[Session]:
+    """A whole simulated rig, its shaft turning at 1 Hz."""
+    name = f"recorded-{next(_NAMES)}"
+    bus = {"interface": "pmm-simulated", "channel": name, "receive_thread": False}
+    tables: dict[str, Any] = {**WHOLE, **parts, "bus": bus}
+    for part in serial:
+        tables[part] = {**tables[part], "port": {"url": f"sim://{name}/{part}"}}
+    configuration = read_rig(tables, DRIVERS)
+    world = World(configuration, Scene(vertical_rig(), Surroundings(1.2, seed=7), 0.019, 0.45))
+    observe: list[Callable[[Frame], None]] = []
+    hear: list[Callable[[int, str, bytes], None]] = []
+    with (
+        running(name, world),
+        Rig(
+            configuration,
+            lambda: world.time_s,
+            FreeRunning(),
+            nobody,
+            observers=(lambda frame: [each(frame) for each in observe] and None,),
+            line_observers=(lambda *heard: [each(*heard) for each in hear] and None,),
+        ) as rig,
+    ):
+        rig.prepare()
+        turning(rig, 0.02, 0.5, 1.0)
+        yield Session(rig, world, tables, observe, hear)
