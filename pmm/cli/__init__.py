@@ -17,6 +17,7 @@ _COMMANDS = {
     "inertia": "pmm.cli.inertia",
     "run": "pmm.cli.run",
     "effects": "pmm.cli.effects",
+    "plan": "pmm.cli.plan",
     "recover": "pmm.cli.recover",
     "replay": "pmm.cli.replay",
     "simulate": "pmm.cli.simulate",
