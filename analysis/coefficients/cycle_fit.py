@@ -13,6 +13,7 @@ A single run is fitted by giving it alone.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class CycleFit:
     Attributes
     ----------
     names
-        In the order of ``uncertain``; SI units.
+        In the order of ``values``; SI units.
     chi_square
         Weighted squares of the residuals by load (force, moment, surge), shape ``(3,)``.
     data
@@ -50,14 +51,20 @@ class CycleFit:
 
     names: tuple[str, ...]
     terms: tuple[Term, ...]
-    uncertain: UncertainValues
+    values: FloatArray
     chi_square: FloatArray
     data: FloatArray
     problem: CycleProblem
+    stated: Stated
+
+    @cached_property
+    def uncertain(self) -> UncertainValues:
+        """The values with what scatter and stated uncertainties add."""
+        return UncertainValues(self.values, tuple(_contributions(self.problem, self.stated)))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""
-        return float(self.uncertain.values[self.names.index(name)])
+        return float(self.values[self.names.index(name)])
 
     def misfit(self, row: int) -> float:
         """Return the root of ``chi_square`` per degree of freedom; NaN without any left over."""
@@ -93,17 +100,16 @@ def fit_cycles(
     """
     check_cycles(cycles, orders)
     terms = tuple(term_of(name, cycles[0].plane) for name in names)
-    usable = tuple(n for n in orders if n <= min(cycle.orders for cycle in cycles))
+    highest = min(cycle.orders for cycle in cycles)
     first = CycleProblem(
-        tuple(cycles), terms, usable or STATIC, np.ones((len(cycles), len(usable or STATIC), 3))
+        tuple(cycles), terms, orders, np.ones((len(cycles), len(orders), 3)), highest
     )
     check_determined(first)
     problem = replace(first, weights=_weights(first))
     nominal = problem.solve(problem.parts()[None], np.zeros((1, len(STATED))))[0]
     chi_square, data = _squares(problem, nominal)
     own = tuple(name_of_term(term, cycles[0].plane) for term in terms)
-    uncertain = UncertainValues(nominal, tuple(_contributions(problem, stated)))
-    return CycleFit(own, terms, uncertain, chi_square, data, problem)
+    return CycleFit(own, terms, nominal, chi_square, data, problem, stated)
 
 
 def _weights(problem: CycleProblem) -> FloatArray:
@@ -192,18 +198,41 @@ def root_of(source: Source) -> FloatArray:
 
 
 def _slopes(problem: CycleProblem, stated: Stated) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by the cycles' numbers and by the stated quantities: central differences."""
+    """Derivatives by the cycles' numbers and by the stated quantities: central differences.
+
+    A cycle's numbers change that cycle's part of the design alone.
+    """
     parts = problem.parts()
+    none = np.zeros((1, len(STATED)))
+    design, loads = problem.design(parts[None], none)
     size = np.abs(parts).reshape(len(parts), problem.highest + 1, -1, 2)
-    largest = np.broadcast_to(size.max(axis=(0, 1, 3))[:, None], size.shape)
-    steps = np.concatenate((_STEP * largest.ravel(), _STATED_STEP * stated.vector))
+    largest = _STEP * np.broadcast_to(size.max(axis=(0, 1, 3))[:, None], size.shape[1:]).ravel()
+    moving = np.flatnonzero(largest)
+    shifts = np.zeros((len(moving), len(largest)))
+    shifts[np.arange(len(moving)), moving] = largest[moving]
+    both = np.concatenate((shifts, -shifts))
+    slopes = np.zeros((parts.size, len(problem.terms)))
+    for k in range(len(parts)):
+        own = problem.alone(k).design((parts[k] + both)[:, None], none.repeat(len(both), axis=0))
+        changed = [np.repeat(whole, len(both), axis=0) for whole in (design, loads)]
+        for whole, part in zip(changed, own, strict=True):
+            whole[:, k] = part[:, 0]
+        solved = problem.fit(*changed)
+        difference = solved[: len(moving)] - solved[len(moving) :]
+        slopes[k * len(largest) + moving] = difference / (2.0 * largest[moving, None])
+    return slopes.T, _stated_slopes(problem, stated)
+
+
+def _stated_slopes(problem: CycleProblem, stated: Stated) -> FloatArray:
+    steps = _STATED_STEP * stated.vector
     moving = np.flatnonzero(steps)
     shifts = np.zeros((len(moving), len(steps)))
     shifts[np.arange(len(moving)), moving] = steps[moving]
     both = np.concatenate((shifts, -shifts))
-    trial = parts[None] + both[:, : parts.size].reshape(-1, *parts.shape)
-    solved = problem.solve(trial, both[:, parts.size :])
-    slopes = np.zeros((len(steps), solved.shape[1]))
-    half = len(moving)
-    slopes[moving] = (solved[:half] - solved[half:]) / (2.0 * steps[moving, None])
-    return slopes[: parts.size].T, slopes[parts.size :].T
+    parts = np.broadcast_to(problem.parts(), (len(both), *problem.parts().shape))
+    found = np.zeros((len(problem.terms), len(steps)))
+    if len(moving):
+        solved = problem.solve(parts, both)
+        difference = solved[: len(moving)] - solved[len(moving) :]
+        found[:, moving] = (difference / (2.0 * steps[moving, None])).T
+    return found

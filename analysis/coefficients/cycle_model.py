@@ -7,7 +7,7 @@ third; nothing of this is written down by hand, so mixed motions, drift and cran
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -34,17 +34,15 @@ class CycleProblem:
         The harmonics that are fitted: (0, 1) is quasi-steady, (1,) needs no zero runs.
     weights
         One over the standard deviation, shape ``(cycles, orders, 3)``: force, moment, surge.
+    highest
+        Harmonic of the motion that is taken into account: all cycles have it.
     """
 
     cycles: tuple[Cycle, ...]
     terms: tuple[Term, ...]
     orders: tuple[int, ...]
     weights: FloatArray
-
-    @property
-    def highest(self) -> int:
-        """Harmonics that all cycles have."""
-        return min(cycle.orders for cycle in self.cycles)
+    highest: int
 
     @property
     def per_cycle(self) -> int:
@@ -56,6 +54,10 @@ class CycleProblem:
         """Every harmonic of every cycle as a run: corrections and what is taken off."""
         runs = [cycle.run(n) for cycle in self.cycles for n in range(self.highest + 1)]
         return Problem(tuple(runs), Form.MANOEUVRING, (0, 1), np.ones((len(runs), 2)))
+
+    def alone(self, k: int) -> "CycleProblem":
+        """Return the problem of one cycle, whose design is that cycle's part of this one's."""
+        return replace(self, cycles=self.cycles[k : k + 1], weights=self.weights[k : k + 1])
 
     def places(self, cycle: Cycle) -> list[int]:
         """Where the fit's phasors stand among a cycle's; -1 for a surge force not measured."""
@@ -83,8 +85,11 @@ class CycleProblem:
         deviations
             Of the stated quantities, shape ``(trials, len(STATED))``.
         """
-        design, loads = self.design(parts, deviations)
-        found = np.empty((len(parts), len(self.terms)))
+        return self.fit(*self.design(parts, deviations))
+
+    def fit(self, design: ComplexArray, loads: ComplexArray) -> FloatArray:
+        """Return the coefficients that fit loads best, by trial; shapes as :meth:`design`."""
+        found = np.empty((len(design), len(self.terms)))
         for row in sorted({term.row for term in self.terms}):
             columns = [k for k, term in enumerate(self.terms) if term.row == row]
             weighted = self.weights[..., row, None] * design[..., columns]

@@ -55,7 +55,9 @@ class Term:
 
     @property
     def unit(self) -> str:
-        """SI unit, radians left out: N s2/m2, N m s ..."""
+        """SI unit, radians left out: kg m, N s2/m2, N m s ..."""
+        if self.degree == 1 and self.rates == 1:
+            return ("kg", "kg m", "kg m2")[self.lengths]
         turning = self.lengths - (self.row == 1)
         metres = self.degree - turning - (self.row == 1)
         seconds = self.degree + self.rates

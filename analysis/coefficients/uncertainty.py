@@ -16,7 +16,7 @@ from analysis.coefficients.run import LOADS, MOTIONS, Run
 
 _STEP = 1e-6  # of the run's largest motion or load
 _STATED_STEP = 0.01  # of the stated uncertainty: curvature is the Monte Carlo's to find
-_TRIALS_AT_ONCE = 5_000
+TRIALS_AT_ONCE = 5_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,16 +84,8 @@ def monte_carlo(
 
     Scatter with few degrees of freedom is drawn from Student's t, as its own kind of knowledge.
     """
-    generator = np.random.default_rng(seed)
-    found = []
-    for start in range(0, trials, _TRIALS_AT_ONCE):
-        count = min(_TRIALS_AT_ONCE, trials - start)
-        parts = np.broadcast_to(problem.phasor_parts(), (count, len(problem.runs), PER_RUN)).copy()
-        for k, run in enumerate(problem.runs):
-            for source in _sources(run):
-                parts[:, k] += _draw(source, count, generator)
-        deviations = generator.standard_normal((count, len(STATED))) * stated.vector
-        found.append(problem.flat(problem.solve(parts, deviations)))
+    counts = [min(TRIALS_AT_ONCE, trials - start) for start in range(0, trials, TRIALS_AT_ONCE)]
+    found = [draw(problem, stated, count, (seed, k)) for k, count in enumerate(counts)]
     values = np.concatenate(found)
     tail = (1.0 - level) / 2.0
     low, high = np.quantile(values, (tail, 1.0 - tail), axis=0)
@@ -107,7 +99,25 @@ def monte_carlo(
     )
 
 
-def _draw(source: Source, count: int, generator: Generator) -> FloatArray:
+def draw(problem: Problem, stated: Stated, count: int, seed: tuple[int, int]) -> FloatArray:
+    """Return one block of trials, shape ``(count, n)``: the same wherever it is drawn.
+
+    Parameters
+    ----------
+    seed
+        Of the whole, and the number of the block.
+    """
+    generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
+    parts = np.broadcast_to(problem.phasor_parts(), (count, len(problem.runs), PER_RUN)).copy()
+    for k, run in enumerate(problem.runs):
+        for source in _sources(run):
+            parts[:, k] += draw_source(source, count, generator)
+    deviations = generator.standard_normal((count, len(STATED))) * stated.vector
+    return problem.flat(problem.solve(parts, deviations))
+
+
+def draw_source(source: Source, count: int, generator: Generator) -> FloatArray:
+    """Return draws of a source's scatter, Student's t where its freedom is finite."""
     values, vectors = np.linalg.eigh(source.covariance)
     root = vectors * np.sqrt(np.clip(values, 0.0, None))
     normal = np.asarray(generator.standard_normal((count, len(root))) @ root.T)
@@ -122,7 +132,7 @@ def _sources(run: Run) -> tuple[Source, ...]:
 
 
 def slopes(problem: Problem, stated: Stated) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives by the phasors ``(n, 8 runs)`` and by the stated quantities ``(n, stated)``."""
+    """Return derivatives by phasors ``(n, 8 runs)`` and by stated quantities ``(n, stated)``."""
     parts = problem.phasor_parts()
     steps = np.concatenate((_steps(problem, parts).ravel(), _STATED_STEP * stated.vector))
     count = len(steps)

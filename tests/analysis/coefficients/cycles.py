@@ -26,7 +26,7 @@ TRUTH = {
     "Y_vvv": -900.0, "Y_vvr": 250.0, "Y_vrr": -180.0, "Y_rrr": 20.0,
     "N_vvv": 90.0, "N_vvr": -260.0, "N_vrr": 70.0, "N_rrr": -40.0,
 }  # fmt: skip
-SURGE = {"X_0": -12.0, "X_vv": -60.0, "X_vr": 45.0, "X_rr": -8.0}
+SURGE_TRUTH = {"X_0": -12.0, "X_vv": -60.0, "X_vr": 45.0, "X_rr": -8.0}
 CHANNEL_NAMES = ("displacement_aft", "displacement_fore", "force_aft", "force_fore")
 
 

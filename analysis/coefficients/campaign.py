@@ -1,0 +1,201 @@
+"""A whole campaign's coefficients, by pure functions: check, group, solve each group, put together.
+
+:func:`plan` sorts the runs into groups, each of which :func:`solve_group` solves on its own (a
+plain function of what can be pickled, for an executor's ``map``), and :func:`assemble` makes one
+table of them. :func:`campaign_coefficients` does all three.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from analysis.coefficients.campaign_checks import consistency
+from analysis.coefficients.campaign_plan import Group, Request, check_campaign, plan
+from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, Entry, Missing
+from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_solve import Block, solve_group
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.names import place_of
+from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
+from analysis.coefficients.terms import term_of
+from analysis.coefficients.zero_frequency import extrapolate
+from analysis.uncertainty import stacked
+from hardware.description.errors import ConfigurationError, DataError
+
+Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """Solve a group for a request: an object, so that it can be sent to another process."""
+
+    request: Request
+
+    def __call__(self, group: Group) -> Block:
+        return solve_group(group, self.request)
+
+
+def campaign_coefficients(
+    cycles: Sequence[Cycle],
+    request: Request = Request(),  # noqa: B008 - frozen
+    *,
+    mapped: Map = map,
+) -> CampaignCoefficients:
+    """Return all coefficients of a campaign.
+
+    Parameters
+    ----------
+    cycles
+        Of one oscillator and one model, each with its body (or a dry run taken off) and restoring;
+        static runs have frequency 0.
+    mapped
+        An executor's ``map``, for groups side by side; the numbers are the same.
+
+    Raises
+    ------
+    ConfigurationError
+        If runs have one name, differ in geometry or lack the inertia; all faults are named.
+    DataError
+        If a wanted coefficient is not determined: the message says which run would do it.
+    """
+    check_campaign(cycles)
+    known = repeatability(cycles)
+    widened = [with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in cycles]
+    groups = plan(widened, request)
+    return assemble(list(mapped(_Solver(request), groups)), widened, known, request)
+
+
+def assemble(
+    blocks: Sequence[Block], cycles: Sequence[Cycle], known: Repeatability, request: Request
+) -> CampaignCoefficients:
+    """Put the groups' coefficients together, with all that only the whole campaign tells.
+
+    Raises
+    ------
+    DataError
+        If a wanted coefficient is in none of the groups.
+    """
+    entries = tuple(entry for block in blocks for entry in block.entries)
+    uncertain = stacked([block.uncertain for block in blocks])
+    trials = TrialColumns(
+        request.trials,
+        *(np.concatenate([getattr(block.trials, name) for block in blocks])
+          for name in ("standard_uncertainty", "low", "high")),
+    ) if blocks else TrialColumns(0, np.zeros(0), np.zeros(0), np.zeros(0))  # fmt: skip
+    found = CampaignCoefficients(
+        request.form,
+        cycles[0].plane,
+        "dimensional",
+        request.level,
+        entries,
+        uncertain,
+        trials,
+        choices=tuple(choice for block in blocks for choice in block.choices),
+        outliers=outliers(known),
+        missing=_still_missing(blocks, entries),
+        flags=tuple(dict.fromkeys(flag for block in blocks for flag in block.flags)),
+    )
+    _check_wanted(found, request)
+    if request.zero_frequency:
+        found = with_zero_frequency(found)
+    return replace(found, checks=consistency(found, cycles))
+
+
+def _still_missing(blocks: Sequence[Block], entries: Sequence[Entry]) -> tuple[Missing, ...]:
+    """What no group gave; what another group did give is not missing."""
+    names = {entry.name for entry in entries}
+    every = dict.fromkeys(missing for block in blocks for missing in block.missing)
+    return tuple(missing for missing in every if missing.name not in names)
+
+
+def _check_wanted(found: CampaignCoefficients, request: Request) -> None:
+    for name in request.wanted:
+        _check_name(name, found, request)
+        if found.rows(name):
+            continue
+        why = [missing.message for missing in found.missing if missing.name == name]
+        known = ", ".join(dict.fromkeys(entry.name for entry in found.entries))
+        raise DataError(why[0] if why else f"{name} is not determined by these runs ({known} are)")
+
+
+def _check_name(name: str, found: CampaignCoefficients, request: Request) -> None:
+    """Refuse a name that is neither of the form nor a term."""
+    try:
+        place_of(name, found.plane, request.form)
+    except ConfigurationError as unknown:
+        try:
+            term_of(name, found.plane)
+        except ConfigurationError:
+            raise unknown from None
+
+
+def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
+    """Return the campaign with each coefficient at zero frequency, where two frequencies allow it.
+
+    Those of the non-linear fits are taken before the linear ones, which hold what the amplitude
+    adds; of several amplitudes the smallest.
+    """
+    entries, values = list(found.entries), [found.uncertain]
+    for name, speed in dict.fromkeys((one.name, one.speed_m_s) for one in found.entries):
+        rows = _series(found, name, speed)
+        if len(rows) < 2:
+            continue
+        own = found.uncertain.taken(rows)
+        label = f"{name} at {speed:g} m/s"
+        frequencies = [found.entries[k].frequency_hz for k in rows]
+        values.append(extrapolate(label, frequencies, own).uncertain)
+        entries.append(_at_zero(found, rows))
+    more = len(entries) - len(found.entries)
+    empty = np.full(more, np.nan)
+    trials = found.trials
+    return replace(
+        found,
+        entries=tuple(entries),
+        uncertain=stacked(values),
+        trials=TrialColumns(
+            trials.count,
+            np.concatenate((trials.standard_uncertainty, empty)),
+            np.concatenate((trials.low, empty)),
+            np.concatenate((trials.high, empty)),
+        ),
+    )
+
+
+def _series(found: CampaignCoefficients, name: str, speed_m_s: float) -> list[int]:
+    """Rows of a coefficient over frequency, one each."""
+    rows = found.rows(name, speed_m_s=speed_m_s)
+    rows = [k for k in rows if found.entries[k].frequency_hz > 0.0]
+    higher = [k for k in rows if found.entries[k].method.startswith("higher")]
+    if len({found.entries[k].frequency_hz for k in higher}) > 1:
+        rows = higher
+    else:
+        rows = [k for k in rows if found.entries[k].method == LINEAR]
+    single: dict[float, int] = {}
+    for k in rows:
+        single.setdefault(round(found.entries[k].frequency_hz, 4), k)
+    return list(single.values())
+
+
+def _at_zero(found: CampaignCoefficients, rows: Sequence[int]) -> Entry:
+    several = [found.entries[k] for k in rows]
+    return replace(
+        several[0],
+        method=ZERO_FREQUENCY,
+        frequency_hz=0.0,
+        translation_amplitude_m=max(one.translation_amplitude_m for one in several),
+        rotation_amplitude_rad=max(one.rotation_amplitude_rad for one in several),
+        runs=tuple(dict.fromkeys(run for one in several for run in one.runs)),
+        retained=min(one.retained for one in several),
+        misfit=np.nan,
+    )
+
+
+__all__ = [
+    "CampaignCoefficients",
+    "Request",
+    "assemble",
+    "campaign_coefficients",
+    "with_zero_frequency",
+]

@@ -1,0 +1,162 @@
+"""Consistency between runs: one quantity from two ways, with what both share cancelled."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER, SINGLE_RUN, STATIC_DRIFT
+from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, Check, Entry
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.zero_frequency import extrapolate
+from analysis.motion import mass_matrix, weight_matrix
+from analysis.uncertainty import Contribution, UncertainValues, stacked
+from hardware.description.oscillator import Plane
+
+TWO_TESTS = "two tests"
+STATIC = "static drift"
+SINGLE = "single and multiple runs"
+RESTORING = "restoring"
+
+_PURE = 1e-2
+
+
+def consistency(found: CampaignCoefficients, cycles: Sequence[Cycle]) -> tuple[Check, ...]:
+    """Return all checks that the campaign allows."""
+    pairs = [*_two_tests(found), *_static(found), *_single(found)]
+    checks = [_compared(found, *pair) for pair in pairs]
+    return (*checks, *restoring_checks(cycles, found.level))
+
+
+def _two_tests(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+    """Linear coefficients at one frequency and speed, of neighbouring amplitudes."""
+    names = dict.fromkeys((one.name, one.speed_m_s) for one in found.entries)
+    for name, speed in names:
+        rows = found.rows(name, method=LINEAR, speed_m_s=speed)
+        for first, second in pairwise(rows):
+            one, other = found.entries[first], found.entries[second]
+            if abs(one.frequency_hz - other.frequency_hz) <= 5e-3 * one.frequency_hz:
+                yield TWO_TESTS, first, second
+
+
+def _static(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+    """Static drift against zero frequency, or else against the slowest run."""
+    for row in found.rows(method=STATIC_DRIFT):
+        entry = found.entries[row]
+        dynamic = [
+            k
+            for method in (ZERO_FREQUENCY, HIGHER_ORDER, LINEAR)
+            for k in found.rows(entry.name, method=method, speed_m_s=entry.speed_m_s)
+        ]
+        if dynamic:
+            yield STATIC, row, dynamic[0]
+
+
+def _single(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+    """Each run alone against all runs together."""
+    for row in found.rows(method=SINGLE_RUN):
+        entry = found.entries[row]
+        for k in found.rows(entry.name, method=HIGHER_ORDER, speed_m_s=entry.speed_m_s):
+            if set(entry.runs) < set(found.entries[k].runs):
+                yield SINGLE, row, k
+
+
+def _compared(found: CampaignCoefficients, kind: str, first: int, second: int) -> Check:
+    one, other = found.entries[first], found.entries[second]
+    both = found.uncertain.taken([first, second])
+    texts = (_where(one), _where(other))
+    return _check(kind, one.name, one.unit, texts, both, found.level)
+
+
+def _check(
+    kind: str, name: str, unit: str, texts: tuple[str, str], both: UncertainValues, level: float
+) -> Check:
+    """Hold the first of two values against the second."""
+    difference = both.mapped(np.array([[1.0, -1.0]]))
+    apart, spread = float(difference.values[0]), float(difference.standard_uncertainty[0])
+    freedom = float(difference.degrees_of_freedom[0])
+    half = float(difference.half_width(level)[0])
+    size = float(np.abs(both.values).max())
+    agrees = abs(apart) <= half + 1e-9 * size
+    words = "agree" if agrees else "DIFFER by more than their interval"
+    message = (
+        f"{name} from {texts[0]} is {both.values[0]:.5g}, from {texts[1]} {both.values[1]:.5g} "
+        f"{unit}: they {words} ({apart:.3g} +- {half:.3g})"
+    )
+    return Check(
+        kind,
+        name,
+        unit,
+        *texts,
+        float(both.values[0]),
+        float(both.values[1]),
+        apart,
+        spread,
+        freedom,
+        agrees,
+        message,
+    )
+
+
+def _where(entry: Entry) -> str:
+    names = ", ".join(entry.runs[:3]) + (" ..." if len(entry.runs) > 3 else "")
+    return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"
+
+
+def restoring_checks(cycles: Sequence[Cycle], level: float) -> tuple[Check, ...]:
+    """Return the measured restoring beside the hydrostatic one, from pure motions at rest.
+
+    The load in phase with the motion is ``C + G - omega^2 (M + A)``; the model's part is taken off,
+    and what is left is extrapolated to zero frequency. At forward speed incidence adds damping to
+    it, so only runs at rest serve; two frequencies or more are needed.
+    """
+    if cycles[0].plane is not Plane.VERTICAL:
+        return ()
+    found = []
+    for column in (0, 1):
+        pure = [cycle for cycle in cycles if _serves(cycle, column)]
+        if len({round(cycle.frequency_hz, 4) for cycle in pure}) < 2:
+            continue
+        found += [_restoring(pure, row, column, level) for row in (0, 1)]
+    return tuple(found)
+
+
+def _serves(cycle: Cycle, column: int) -> bool:
+    if cycle.frequency_hz == 0.0 or cycle.speed_m_s != 0.0 or cycle.body is None:
+        return False
+    size = np.abs(cycle.run().motion.values * np.array([1.0, cycle.half_spacing_m]))
+    return bool(size[1 - column] <= _PURE * size[column])
+
+
+def _restoring(cycles: Sequence[Cycle], row: int, column: int, level: float) -> Check:
+    name = f"C{'35'[row]}{'35'[column]}"
+    stiffness = stacked([_stiffness(cycle, row, column) for cycle in cycles])
+    intercept = extrapolate(name, [cycle.frequency_hz for cycle in cycles], stiffness)
+    known = UncertainValues(np.array([float(cycles[0].restoring[row, column])]))
+    both = stacked([intercept.uncertain, known])
+    texts = (f"the load in phase of {len(cycles)} runs", "hydrostatics")
+    return _check(RESTORING, name, ("N/m", "N", "N m")[row + column], texts, both, level)
+
+
+def _stiffness(cycle: Cycle, row: int, column: int) -> UncertainValues:
+    """Load in phase with the motion, over it, less the model's inertia and weight."""
+    run = cycle.run()
+    chosen = run.phasors.select((("translation", "rotation")[column], ("force", "moment")[row]))
+    own, load = chosen.values
+    ratio = load / own
+    body = run.body
+    assert body is not None  # noqa: S101 - _serves saw to it
+    taken = weight_matrix(body, run.plane) - run.omega**2 * mass_matrix(body, run.plane)
+    value = np.array([ratio.real - taken[row, column]])
+    slope = np.array([-ratio / own, 1.0 / own])
+    real = np.array([part for z in slope for part in (z.real, -z.imag)])
+    parts = []
+    for source in chosen.sources:
+        size = float(real @ source.covariance @ real)
+        parts.append(
+            Contribution(
+                source.label, source.degrees_of_freedom, np.arange(1), np.array([[size**0.5]])
+            )
+        )
+    return UncertainValues(value, tuple(parts))

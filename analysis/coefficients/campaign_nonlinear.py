@@ -1,0 +1,146 @@
+"""The non-linear fits of one speed and frequency: several runs, quasi-steady, single runs, X."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from analysis.coefficients.campaign_plan import Request
+from analysis.coefficients.campaign_records import FormChoice, Missing
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import (
+    FIRST,
+    HIGHER,
+    QUASI_STEADY,
+    STATIC,
+    CycleFit,
+    fit_cycles,
+)
+from analysis.coefficients.form_choice import LINEAR_FORM, NOT_SEPARABLE, choose_form, forms_of
+from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+
+HIGHER_ORDER = "higher order, several runs"
+FIRST_HARMONICS = "first harmonics, several runs"
+QUASI = "quasi-steady"
+SINGLE_RUN = "single run"
+STATIC_DRIFT = "static drift"
+SURGE_FORCES = "surge"
+
+_MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
+_STATIC_FOR_CUBIC = 4
+
+Found = tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]]
+
+
+def nonlinear_fits(cycles: Sequence[Cycle], request: Request) -> Found:
+    """Return the fits of force and moment in the form that the data support, and of X."""
+    fits: list[tuple[str, CycleFit]] = []
+    choices: list[FormChoice] = []
+    missing: list[Missing] = []
+    motions, cross = _motions(cycles)
+    orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
+    for row in (0, 1):
+        try:
+            choice = choose_form(cycles, row, motions, orders, cross=cross)
+        except DataError as error:
+            missing.append(Missing(f"{LOAD_LETTERS[cycles[0].plane][row]} terms", str(error)))
+            continue
+        choices.append(choice)
+        names = forms_of(cycles[0].plane, row, motions, cross=cross)[_form(choice)]
+        for method, of, chosen in _methods(cycles, orders):
+            _try(fits, missing, method, of, names, chosen, request)
+        for cycle in cycles:
+            own, both = _motions([cycle])
+            single = forms_of(cycle.plane, row, own, cross=both)[_form(choice)]
+            _try(fits, [], SINGLE_RUN, [cycle], single, orders, request)
+    if all(cycle.has_surge for cycle in cycles):
+        _surge(fits, missing, cycles, motions, cross, request)
+    return fits, choices, missing
+
+
+def _form(choice: FormChoice) -> str:
+    """The form to be fitted: where forms cannot be told apart, the best of the non-linear ones."""
+    if choice.verdict != NOT_SEPARABLE:
+        return choice.verdict
+    return next(form for form in choice.forms if form != LINEAR_FORM)
+
+
+def _methods(
+    cycles: Sequence[Cycle], orders: tuple[int, ...]
+) -> list[tuple[str, Sequence[Cycle], tuple[int, ...]]]:
+    found: list[tuple[str, Sequence[Cycle], tuple[int, ...]]] = []
+    if orders != FIRST:
+        found.append((HIGHER_ORDER, cycles, orders))
+    found.append((FIRST_HARMONICS, cycles, FIRST))
+    if all(cycle.mean_known for cycle in cycles):
+        found.append((QUASI, cycles, QUASI_STEADY))
+    return found
+
+
+def _try(
+    fits: list[tuple[str, CycleFit]],
+    missing: list[Missing],
+    method: str,
+    cycles: Sequence[Cycle],
+    names: Sequence[str],
+    orders: tuple[int, ...],
+    request: Request,
+) -> None:
+    """Fit, or say what cannot be had."""
+    try:
+        fits.append((method, fit_cycles(cycles, names, orders, stated=request.stated)))
+    except DataError as error:
+        missing += [Missing(name, f"{method}: {error}") for name in names]
+
+
+def _motions(cycles: Sequence[Cycle]) -> tuple[str, bool]:
+    """Return in what the runs move through the water, and whether any moves in both at once."""
+    speeds = []
+    for cycle in cycles:
+        run = cycle.run()
+        side = 1.0 if cycle.plane is Plane.VERTICAL else -1.0
+        way, turn = run.motion.values
+        ahead = cycle.speed_m_s * np.cos(cycle.drift_rad)
+        incidence = 1j * run.omega * way + side * ahead * turn
+        steady = abs(cycle.speed_m_s * np.sin(cycle.drift_rad))
+        speeds.append((abs(incidence) + steady, abs(run.omega * turn) * cycle.half_spacing_m))
+    size = np.array(speeds)
+    most = size.max()
+    motions = "".join(
+        letter for letter, own in zip("vr", size.max(axis=0), strict=True) if own > _MOVES * most
+    )
+    return motions, bool((size.min(axis=1) > _MOVES * most).any())
+
+
+def _surge(
+    fits: list[tuple[str, CycleFit]],
+    missing: list[Missing],
+    cycles: Sequence[Cycle],
+    motions: str,
+    cross: bool,
+    request: Request,
+) -> None:
+    """X forces: even terms, at the mean and the second harmonic."""
+    v, r = tuple(VELOCITY_LETTERS[cycles[0].plane])
+    means = all(cycle.mean_known for cycle in cycles)
+    names = ["X_0"] if means else []
+    names += [f"X_{letter}{letter}" for letter, own in ((v, "v"), (r, "r")) if own in motions]
+    names += [f"X_{v}{r}"] if cross else []
+    even = (0, 2) if means else (2,)
+    orders = (0, 1, 2) if cross and means else even
+    _try(fits, missing, SURGE_FORCES, cycles, names, orders, request)
+
+
+def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
+    """Return force and moment over drift (or trim) angles: linear, cubic from four angles on."""
+    plane = cycles[0].plane
+    letter = VELOCITY_LETTERS[plane][0]
+    angles = {round(cycle.drift_rad, 6) for cycle in cycles}
+    fits: list[tuple[str, CycleFit]] = []
+    missing: list[Missing] = []
+    for load in LOAD_LETTERS[plane]:
+        names = [f"{load}_0", f"{load}_{letter}"]
+        names += [f"{load}_{letter * 3}"] if len(angles) >= _STATIC_FOR_CUBIC else []
+        _try(fits, missing, STATIC_DRIFT, cycles, names, STATIC, request)
+    return fits, [], missing

@@ -1,0 +1,177 @@
+"""Which runs of a campaign are solved together, and what is refused before anything is solved."""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.determined import told_apart
+from analysis.coefficients.model import Problem
+from analysis.coefficients.names import Form
+from analysis.coefficients.stated import Stated
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import Medium
+
+_SAME_FREQUENCY = 5e-3
+_SAME_SPEED = 1e-2
+_SAME_AMPLITUDE = 2e-2
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is wanted of a campaign.
+
+    Attributes
+    ----------
+    wanted
+        Coefficients that have to be there.
+    level
+        Of all intervals.
+    trials, seed
+        Of the Monte Carlo beside the linear budget; none by default.
+    nonlinear
+        Whether non-linear terms are sought where the runs have several amplitudes or drift.
+    zero_frequency
+        Whether coefficients are extrapolated to zero frequency.
+    """
+
+    form: Form = Form.MANOEUVRING
+    stated: Stated = field(default_factory=Stated)
+    wanted: tuple[str, ...] = ()
+    level: float = 0.95
+    trials: int = 0
+    seed: int = 0
+    nonlinear: bool = True
+    zero_frequency: bool = True
+
+
+class GroupKind(StrEnum):
+    """How a group is solved."""
+
+    LINEAR = "linear"
+    NONLINEAR = "nonlinear"
+    STATIC = "static"
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Runs that are solved together."""
+
+    kind: GroupKind
+    cycles: tuple[Cycle, ...]
+
+
+def check_campaign(cycles: Sequence[Cycle]) -> None:
+    """Refuse a campaign whose runs cannot be of one rig and model.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming all faults: names twice, inconsistent geometry, missing inertia, values that are not
+        finite.
+    """
+    if not cycles:
+        raise ConfigurationError("no run was given; one or more are needed")
+    twice = [name for name, count in Counter(one.name for one in cycles).items() if count > 1]
+    faults = [f"two runs are called {name!r}; rename one" for name in twice]
+    for cycle in cycles:
+        faults += [*_other_rig(cycle, cycles[0]), *_incomplete(cycle)]
+    if faults:
+        raise ConfigurationError("the campaign cannot be solved: " + "; ".join(faults))
+
+
+def _other_rig(cycle: Cycle, first: Cycle) -> Iterator[str]:
+    if cycle.plane is not first.plane:
+        yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}; solve each plane alone"
+    for name in ("half_spacing_m", "point_ahead_m"):
+        own, other = getattr(cycle, name), getattr(first, name)
+        if own != other:
+            yield f"{cycle.name} has {name} = {own:g}, {first.name} {other:g}"
+    if cycle.body is not None and first.body is not None and cycle.body != first.body:
+        yield (
+            f"{cycle.name} takes off another body ({cycle.body.mass_kg:g} kg) than {first.name} "
+            f"({first.body.mass_kg:g} kg): one campaign has one model"
+        )
+
+
+def _incomplete(cycle: Cycle) -> Iterator[str]:
+    dry = any(flag.code == "dry_run_taken_off" for flag in cycle.flags)
+    if cycle.medium is Medium.AIR:
+        yield f"{cycle.name} was run in air; take it off as a dry run, or leave it out"
+    elif cycle.body is None and not dry and cycle.frequency_hz > 0.0:
+        yield (
+            f"{cycle.name} has no inertia to take off: give the model's mass, centre of gravity "
+            "and moment of inertia (swing or bifilar test), or a dry run at "
+            f"{cycle.frequency_hz:g} Hz"
+        )
+    if not all(math.isfinite(abs(value)) for value in cycle.phasors.values):
+        yield f"{cycle.name} has values that are not finite; leave the run out"
+
+
+def plan(cycles: Sequence[Cycle], request: Request) -> tuple[Group, ...]:
+    """Return the groups: by speed, frequency and amplitude; all amplitudes together; static runs.
+
+    Linear coefficients come from runs with one amplitude, so that what the amplitude does can be
+    seen. Where one amplitude alone tells nothing apart (pitch about the midpoint at forward speed,
+    with heave at another amplitude), all amplitudes of that frequency are solved as one.
+    """
+    found = []
+    for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
+        here = [one for one in cycles if _near(one.speed_m_s, speed, _SAME_SPEED, 0.01)]
+        static = [cycle for cycle in here if cycle.frequency_hz == 0.0]
+        if static:
+            found.append(Group(GroupKind.STATIC, tuple(static)))
+        moving = [cycle for cycle in here if cycle.frequency_hz > 0.0]
+        for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
+            same = [c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)]
+            found += _by_amplitude(same, request)
+    return tuple(found)
+
+
+def _by_amplitude(cycles: Sequence[Cycle], request: Request) -> list[Group]:
+    straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0]
+    sizes = _classes([strut_amplitude(one) for one in straight], _SAME_AMPLITUDE, 0.0)
+    classes = [
+        tuple(one for one in straight if _near(strut_amplitude(one), size, _SAME_AMPLITUDE, 0.0))
+        for size in sizes
+    ]
+    columns = [_told(group, request.form) for group in classes]
+    told = [group for group, own in zip(classes, columns, strict=True) if own]
+    if straight and {0, 1} != {column for own in columns for column in own} and () in columns:
+        told.append(tuple(straight))
+    found = [Group(GroupKind.LINEAR, group) for group in told]
+    several = len(classes) > 1 or len(straight) < len(cycles)
+    if request.nonlinear and several:
+        found.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
+    return found
+
+
+def _told(cycles: Sequence[Cycle], form: Form) -> tuple[int, ...]:
+    """Which motions' coefficients these runs determine."""
+    runs = tuple(cycle.run() for cycle in cycles)
+    velocity, _ = Problem(runs, form, (0, 1), np.ones((len(runs), 2))).velocities()
+    return told_apart(runs, velocity * np.array([1.0, runs[0].half_spacing_m]))
+
+
+def strut_amplitude(cycle: Cycle) -> float:
+    """Return the larger amplitude of both struts, m."""
+    way, turn = cycle.run().motion.values
+    arm = turn * cycle.half_spacing_m
+    return float(max(abs(way + arm), abs(way - arm)))
+
+
+def _near(value: float, centre: float, relative: float, least: float) -> bool:
+    return abs(value - centre) <= relative * max(abs(centre), least)
+
+
+def _classes(values: Sequence[float], relative: float, least: float) -> list[float]:
+    """Return one value of each cluster, in rising order."""
+    found: list[float] = []
+    for value in sorted(values):
+        if not found or not _near(value, found[-1], relative, least):
+            found.append(value)
+    return found

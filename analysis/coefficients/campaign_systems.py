@@ -1,0 +1,128 @@
+"""A campaign's table in a system without dimensions, each entry by its own speed, and back."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import Entry
+from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.names import Form, place_of
+from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
+from analysis.coefficients.stated import Stated
+from analysis.coefficients.terms import Term, term_of
+from analysis.uncertainty import Contribution, FloatArray, UncertainValues
+from hardware.description.errors import ConfigurationError
+
+System = Callable[[float], Normalisation]
+"""From a carriage speed to the system there: ``lambda u: prime(length, u, density)``."""
+
+
+def without_dimensions(
+    found: CampaignCoefficients,
+    system: System,
+    stated: Stated = Stated(),  # noqa: B008 - frozen
+) -> CampaignCoefficients:
+    """Return the campaign in a system without dimensions.
+
+    Parameters
+    ----------
+    stated
+        Uncertainty of the density and of the speed, as they were stated for the campaign: the same
+        inputs act again in what the values are divided by.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign is in a system already, or holds a speed at which the system has no meaning.
+    """
+    _check_system(found, DIMENSIONAL)
+    systems = [system(entry.speed_m_s) for entry in found.entries]
+    factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
+    scaled = _scaled(found, 1.0 / factors, _common_name(systems), None)
+    uncertain = scaled.uncertain
+    if stated.density_relative > 0.0:
+        uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
+    if stated.speed_m_s > 0.0 and any(one.speed_m_s > 0.0 for one in systems):
+        pairs = zip(found.entries, systems, strict=True)
+        powers = np.array([_speed_power(found, entry, own) for entry, own in pairs])
+        speeds = np.array([one.speed_m_s or np.inf for one in systems])
+        parts = -uncertain.values * powers * stated.speed_m_s / speeds
+        uncertain = uncertain.plus("speed_m_s", parts)
+    return replace(scaled, uncertain=uncertain)
+
+
+def with_dimensions(found: CampaignCoefficients, system: System) -> CampaignCoefficients:
+    """Return the campaign in SI units: the inverse where the system itself is exact.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign is in another system.
+    """
+    systems = [system(entry.speed_m_s) for entry in found.entries]
+    _check_system(found, _common_name(systems))
+    factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
+    units = tuple(_term(found, entry).unit for entry in found.entries)
+    return _scaled(found, factors, DIMENSIONAL, units)
+
+
+def _check_system(found: CampaignCoefficients, needed: str) -> None:
+    if found.normalisation != needed:
+        raise ConfigurationError(
+            f"the coefficients are in the system {found.normalisation!r}, not in {needed!r}"
+        )
+
+
+def _common_name(systems: list[Normalisation]) -> str:
+    """Return the systems' name; without the speed where they are of several."""
+    names = list(dict.fromkeys(one.name for one in systems))
+    if len(names) == 1:
+        return names[0]
+    return re.sub(r"U = [^ ]+ m/s", "U = the carriage's", names[0]) if names else DIMENSIONAL
+
+
+def _term(found: CampaignCoefficients, entry: Entry) -> Term:
+    """Return a coefficient of either form as a term: ``a35`` is that of a rotation's rate."""
+    try:
+        return term_of(entry.name, found.plane)
+    except ConfigurationError:
+        place = place_of(entry.name, found.plane, Form.SEAKEEPING)
+        letter = "vr"[place.column]
+        return Term(place.row, (letter + "dot" if place.inertial else letter,))
+
+
+def _factor(found: CampaignCoefficients, entry: Entry, system: Normalisation) -> float:
+    return system.term_factor(_term(found, entry))
+
+
+def _speed_power(found: CampaignCoefficients, entry: Entry, system: Normalisation) -> float:
+    """Power of the speed in what the value is divided by."""
+    term = _term(found, entry)
+    return 2.0 - term.degree - term.rates if system.speed_m_s > 0.0 else 0.0
+
+
+def _scaled(
+    found: CampaignCoefficients, factors: FloatArray, name: str, units: tuple[str, ...] | None
+) -> CampaignCoefficients:
+    contributions = tuple(
+        Contribution(
+            one.label, one.degrees_of_freedom, one.rows, one.parts * factors[one.rows][:, None]
+        )
+        for one in found.uncertain.contributions
+    )
+    trials = found.trials
+    texts = units or ("1",) * len(found.entries)
+    return replace(
+        found,
+        normalisation=name,
+        entries=tuple(replace(e, unit=u) for e, u in zip(found.entries, texts, strict=True)),
+        uncertain=UncertainValues(found.values * factors, contributions),
+        trials=TrialColumns(
+            trials.count,
+            trials.standard_uncertainty * factors,
+            trials.low * factors,
+            trials.high * factors,
+        ),
+    )
