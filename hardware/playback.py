@@ -14,7 +14,7 @@ from can.interfaces import BACKENDS
 from hardware.raw_log import read_frames
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
 
 INTERFACE: Final = "pmm-playback"
 _SYNC: Final = 0x080
@@ -45,7 +45,7 @@ class PlaybackBus(can.BusABC):
         super().__init__(channel)
         self.channel_info = f"raw log {channel}"
         self.at_end = False
-        self._log: Iterator[can.Message] = read_frames(Path(channel))
+        self._log: Generator[can.Message, None, None] = read_frames(Path(channel))
         self._due: deque[can.Message] = deque()
         self._next_sync: can.Message | None = None
         self._release()
@@ -61,6 +61,11 @@ class PlaybackBus(can.BusABC):
     def recv(self, timeout: float | None = None) -> can.Message | None:
         """Return the next frame of the cycle, or ``None``; never waits."""
         return self._due.popleft() if self._due else None
+
+    def shutdown(self) -> None:
+        """Close the log."""
+        self._log.close()
+        super().shutdown()
 
     def _release(self) -> None:
         """Make the received frames up to the log's next SYNC available."""

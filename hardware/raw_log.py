@@ -8,7 +8,7 @@ reader reads both.
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final
@@ -129,11 +129,11 @@ def look(path: Path) -> LogState:
     return LogState(frames, size - min(end, size))
 
 
-def read_frames(path: Path) -> Iterator[Frame]:
+def read_frames(path: Path) -> Generator[Frame, None, None]:
     """Yield a log's frames in order, up to where it is cut or damaged."""
     try:
-        with can.BLFReader(path) as frames:
-            yield from frames
+        with path.open("rb") as file:
+            yield from can.BLFReader(file)
     except (BLFParseError, struct.error, zlib.error, ValueError):
         return
 

@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.errors import DataError
+from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.raw_log import Frame, FramePacker, container, file_header
 from hardware.roles import Pulse
@@ -116,7 +116,7 @@ class RunRecorder:
         self._closed = True
         try:
             self._hand_over()
-        except (DataError, OSError):
+        except PmmError:
             pass  # the journal knows, and nothing is to hide what ended the block
         finally:
             self._journal.close()

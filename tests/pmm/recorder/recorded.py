@@ -1,5 +1,6 @@
 """Runs of simulated rigs, recorded as run control does it, with what truly happened beside."""
 
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -17,6 +18,7 @@ from hardware.raw_log import Frame
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from hardware.roles import Pulse, Reading
+from pmm.recorder.disk import DiskFullError
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import LivePath, Taken, as_record
 from pmm.recorder.run_recorder import RunRecorder
@@ -58,6 +60,18 @@ def fed(recorder: RunRecorder, numbers: range, tick_s: float = 0.01) -> np.ndarr
             recorder.pulse(Pulse(first // 100, first / 100.0 + 0.0123))
         recorder.tick(first * tick_s)
     return truth(numbers)
+
+
+def until_full(recorder: RunRecorder) -> tuple[int, DiskFullError]:
+    """Record until the disk is full; return the first SYNC not taken whole, and the error."""
+    for first in range(1, 100_001, 100):
+        try:
+            fed(recorder, range(first, first + 100))
+        except DiskFullError as error:
+            return first, error
+        while recorder._journal.behind:
+            time.sleep(1e-4)
+    raise AssertionError("the disk never filled")
 
 
 def truth(numbers: range) -> np.ndarray:
