@@ -16,9 +16,9 @@ _LAST_CYCLES: Final = 5  # for the drives to show that they have obeyed
 def come_to_rest(rig: "Rig") -> None:
     """Stop the axes along their profile, take their power off, and wait for both.
 
-    A fault on the way makes it a quick stop; a lost bus ends it at once, because its drives stop by
-    themselves as soon as the heartbeat stays away. Nothing is raised: closing is often what an
-    error has led to, and that error is the one to be told. The time is bounded in cycles.
+    A severe fault on the way makes it a quick stop; a lost bus ends it at once, because its drives
+    stop by themselves as soon as the heartbeat stays away. Nothing is raised: closing is often what
+    an error has led to, and that error is the one to be told. The time is bounded in cycles.
     """
     if not rig.powered() or _is_lost(rig):
         return
@@ -28,8 +28,9 @@ def come_to_rest(rig: "Rig") -> None:
     for one in rig.powered():
         one.disable()
     for _ in range(_LAST_CYCLES):
-        if _cycle(rig) is Reaction.END_RUN:
+        if _is_lost(rig):
             return
+        _cycle(rig)
 
 
 def _obeyed(rig: "Rig", command: Callable[[], None], cycles: int) -> bool:
@@ -38,18 +39,18 @@ def _obeyed(rig: "Rig", command: Callable[[], None], cycles: int) -> bool:
     for _ in range(cycles):
         if not any(one.moving for one in rig.powered()):
             return True
-        if _cycle(rig) is not Reaction.REFUSE:
+        if _is_lost(rig) or not _cycle(rig):
             return False
     return False
 
 
-def _cycle(rig: "Rig") -> Reaction:
-    """Run a cycle; return what its fault asks for."""
+def _cycle(rig: "Rig") -> bool:
+    """Run a cycle; tell whether it went without a fault that asks for a quick stop."""
     try:
         rig.cycle()
     except HardwareError as error:
-        return error.reaction
-    return Reaction.REFUSE
+        return error.reaction < Reaction.QUICK_STOP
+    return True
 
 
 def _is_lost(rig: "Rig") -> bool:

@@ -15,7 +15,8 @@ from hardware.errors import HardwareError
 from hardware.master import Master
 from hardware.sdo import Sdo
 
-STATES: Final = {0: "booting", 4: "stopped", 5: "operational", 127: "pre-operational"}
+# 0 is the boot-up message, with which a node enters pre-operational (CiA 301).
+STATES: Final = {0: "pre-operational", 4: "stopped", 5: "operational", 127: "pre-operational"}
 _REQUEST, _RESPONSE, _HEARTBEAT = 0x600, 0x580, 0x700
 _ASK_DEVICE_TYPE: Final = bytes.fromhex("4000100000000000")
 _APART_S, _ANSWER_S, _GUARD_S = 0.002, 0.3, 0.05

@@ -164,6 +164,21 @@ def test_an_amplifiers_type_follows_its_eds_and_scale_its_configuration(index, r
         assert block.values == pytest.approx(-2.0 * raw)
 
 
+@pytest.mark.parametrize(
+    ("source", "written"),
+    [
+        (1, ["2bb8600000000000", "2bb8600013000000"]),
+        # The drive is told its source by 60D0, and by bit 3 of the function to look there.
+        (6, ["2bb8600000000000", "2bd0600106000000", "2bb860001b000000"]),
+    ],
+)
+def test_the_touch_probe_is_armed_after_a_zero(source: int, written: list[str]) -> None:
+    tables = {"shaft": SHAFT, "photocell": {"driver": "touch-probe", "source": source}}
+    with logged(tables, lambda n: Drive(n, 1)) as (_, _double, log):
+        probe = [one for one in frames(log, 0x601) if one[2:6] in ("b860", "d060")]
+    assert probe == written
+
+
 def test_an_emergency_carries_code_and_register() -> None:
     with on_bus({"shaft": SHAFT}, lambda n: Drive(n, 1)) as (rig, double):
         rig.cycle()

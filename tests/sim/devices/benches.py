@@ -14,7 +14,7 @@ from typing import Any
 import can
 from can.interfaces.udp_multicast import UdpMulticastBus
 
-from hardware.pacing import FreeRunning
+from hardware.pacing import FreeRunning, RealTime
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
@@ -109,13 +109,18 @@ def turning(rig: Rig, eccentricity_m: float, phase_rad: float, frequency_hz: flo
 class Hosted:
     """A simulated rig in another process; start it once and reset it for each test."""
 
-    def __init__(self, tables: Mapping[str, Any], folder: Path, interface: str) -> None:
+    def __init__(
+        self, tables: Mapping[str, Any], folder: Path, interface: str, *, real_time: bool = False
+    ) -> None:
         file = folder / "simulated.toml"
         bus = {"interface": interface, "channel": "as the host says"}
-        file.write_text(_toml({"bus": bus, **tables}), encoding="utf-8")
-        command = [sys.executable, "-m", "sim.devices", str(file), "--free-running"]
+        text = "eccentricity_m = 0.001\n\n" + toml({"bus": bus, **tables}, "rig.")
+        file.write_text(text, encoding="utf-8")
+        command = [sys.executable, "-m", "sim.devices", str(file)]
+        command += [] if real_time else ["--free-running"]
         command += ["--interface", interface, "--port", str(_free_port())]
         self.tables = tables
+        self.real_time = real_time
         self._process = subprocess.Popen(
             command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
@@ -132,7 +137,7 @@ class Hosted:
 
     @contextmanager
     def rig(self, *parts: str) -> Iterator[Rig]:
-        """A prepared rig of some of the parts."""
+        """A prepared rig of some of the parts; serial ones are on their pseudo-terminals."""
         assert self.say("reset") == "done"
         bus = dict(self.said["bus"])
         interface, channel = bus.pop("interface"), bus.pop("channel")
@@ -144,11 +149,19 @@ class Hosted:
             "options": bus,
             "allowed_gap_cycles": 30,
         }
-        tables = {part: self.tables[part] for part in parts}
-        configuration = read_rig({"bus": table, **tables}, DRIVERS)
-        with Rig(configuration, time.monotonic, FreeRunning(), nobody) as rig:
+        tables = {part: self._plugged(part) for part in parts}
+        whole = tables if set(parts) <= set(self.said["ports"]) else {"bus": table, **tables}
+        configuration = read_rig(whole, DRIVERS)
+        period_s = 1.0 / configuration.sample_rate_hz
+        pacer = RealTime(period_s, time.monotonic, time.sleep) if self.real_time else FreeRunning()
+        with Rig(configuration, time.monotonic, pacer, nobody) as rig:
             rig.prepare()
             yield rig
+
+    def _plugged(self, part: str) -> Any:
+        if part not in self.said["ports"]:
+            return self.tables[part]
+        return {**self.tables[part], "port": {"url": self.said["ports"][part]}}
 
     def close(self) -> None:
         self._process.communicate("quit\n", timeout=5)
@@ -207,12 +220,13 @@ def _free_port() -> int:
         return int(one.getsockname()[1])
 
 
-def _toml(tables: Mapping[str, Any]) -> str:
-    """Write the tables of a rig under ``rig``; values as JSON, which TOML reads in this case."""
-    lines = ["eccentricity_m = 0.001", ""]
+def toml(tables: Mapping[str, Any], within: str = "") -> str:
+    """Write the tables of a rig; values as JSON, which TOML reads in this case."""
+    lines = []
     for name, table in tables.items():
         for one in table if isinstance(table, list) else [table]:
-            lines.append(f"[[rig.{name}]]" if isinstance(table, list) else f"[rig.{name}]")
+            head = f"{within}{name}"
+            lines.append(f"[[{head}]]" if isinstance(table, list) else f"[{head}]")
             lines += [f"{key} = {_value(value)}" for key, value in one.items()]
     return "\n".join(lines) + "\n"
 

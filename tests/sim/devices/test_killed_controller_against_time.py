@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from can.interfaces.udp_multicast import UdpMulticastBus
 
-from tests.sim.devices.benches import ROOT, WHOLE, _free_port, _toml, multicast_works
+from tests.sim.devices.benches import ROOT, WHOLE, _free_port, multicast_works, toml
 
 CONTROLLER = """
 import json, sys, time
@@ -39,7 +39,7 @@ def test_the_drive_stops_quickly_after_its_controller_was_killed(tmp_path: Path)
     bus = {"interface": "udp_multicast", "channel": "239.74.163.2", "options": options}
     bus |= {"allowed_gap_cycles": 50}
     tables = {"bus": bus, "shaft": WHOLE["shaft"]}
-    (tmp_path / "simulated.toml").write_text(_toml(tables))
+    (tmp_path / "simulated.toml").write_text(toml(tables, "rig."))
     host_command = [sys.executable, "-m", "sim.devices", str(tmp_path / "simulated.toml")]
     controller = [sys.executable, "-c", CONTROLLER]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": ROOT}

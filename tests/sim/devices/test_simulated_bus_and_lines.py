@@ -30,7 +30,7 @@ from sim.devices.terminal import Terminal
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
-from tests.sim.devices.benches import ROOT, WHOLE, _toml, amplifier, in_process
+from tests.sim.devices.benches import ROOT, WHOLE, amplifier, in_process, toml
 
 TABLES = {"shaft": WHOLE["shaft"], "forces": [amplifier(4, "force_aft")]}
 
@@ -47,8 +47,7 @@ def file(tmp_path: Path) -> Path:
     path = tmp_path / "simulated.toml"
     bus = {"interface": "pmm-simulated", "channel": str(path), "receive_thread": False}
     cell = {"driver": "timestamper", "port": {"url": f"sim://{path}/photocell"}}
-    text = _toml({"bus": bus, **TABLES, "photocell": cell}).replace("rig.", "", 100)
-    (tmp_path / "rig.toml").write_text(text.replace("eccentricity_m = 0.001\n", "", 1))
+    (tmp_path / "rig.toml").write_text(toml({"bus": bus, **TABLES, "photocell": cell}))
     path.write_text('rig = "rig.toml"\nseed = 3\neccentricity_m = 0.01\n')
     return path
 

@@ -85,9 +85,31 @@ class TestTouchProbe(PhotocellContract):
             yield bench(rig, slotted(rig, send))
 
 
+LINES = {
+    "shaft": PARTS["shaft"],
+    "photocell": {"driver": "timestamper", "port": {"url": "as the host says"}},
+    "inclinometer": {"driver": "serial-inclinometer", "port": {"url": "as the host says"}},
+}
+
+
+@pytest.fixture(scope="module", params=["sim", "pty"])
+def far_end(request, tmp_path_factory) -> Iterator[Hosted | None]:
+    """``None`` where the serial lines are ``sim://``; else the process behind their terminals."""
+    if request.param == "sim":
+        yield None
+        return
+    one = Hosted(LINES, tmp_path_factory.mktemp("lines"), "slcan", real_time=True)
+    yield one
+    one.close()
+
+
 class TestTimestamper(PhotocellContract):
     @pytest.fixture
-    def bench(self) -> Iterator[Bench]:
+    def bench(self, far_end) -> Iterator[Bench]:
+        if far_end is not None:
+            with far_end.rig("shaft", "photocell") as rig:
+                yield bench(rig, slotted(rig, far_end.say))
+            return
         tables = {"shaft": PARTS["shaft"], "photocell": {"driver": "timestamper"}}
         with in_process(tables, serial=("photocell",)) as (rig, world):
             yield bench(rig, slotted(rig, by_word(world)))
@@ -95,7 +117,11 @@ class TestTimestamper(PhotocellContract):
 
 class TestInclinometer(InclinometerContract):
     @pytest.fixture
-    def bench(self) -> Iterator[Bench]:
+    def bench(self, far_end) -> Iterator[Bench]:
+        if far_end is not None:
+            with far_end.rig("inclinometer") as rig:
+                yield bench(rig, lambda angle: far_end.say(f"tilt inclinometer {angle!r}") and None)
+            return
         tables = {"inclinometer": {"driver": "serial-inclinometer"}}
         with in_process(tables, on_bus=False, serial=("inclinometer",)) as (rig, world):
             yield bench(rig, lambda angle: by_word(world)(f"tilt inclinometer {angle!r}"))
