@@ -49,13 +49,23 @@ def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
             yield Fault(place, unknown(place, HANDED_ON))
     own: list[Fault] = []
     take_uncertainty(campaign, own)  # of the copy; the campaign's file gets it as it is
-    if "analysis" in campaign:
-        from analysis.resolver.analyse import Settings
-
-        inner: list[Fault] = []
-        validate(Settings, campaign["analysis"], inner)
-        own += [Fault(("analysis", *one.place), one.message) for one in inner]
+    analysis = campaign.get("analysis", {})
+    if isinstance(analysis, dict):
+        own += _analysis_faults(analysis)
     yield from (Fault(("campaign", *one.place), one.message) for one in own)
+
+
+def _analysis_faults(table: dict[str, Any]) -> Iterator[Fault]:
+    """Yield what the analysis would refuse, while there is time to change it."""
+    from analysis.resolver.analyse import Settings
+
+    known = tuple(Settings.__dataclass_fields__)
+    yield from (
+        Fault(("analysis", key), unknown((key,), known)) for key in table if key not in known
+    )
+    inner: list[Fault] = []
+    validate(Settings, table, inner)
+    yield from (Fault(("analysis", *one.place), one.message) for one in inner)
 
 
 def _more_limits(table: Any, place: tuple[str | int, ...] = ()) -> Iterator[Fault]:
