@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final, TextIO
+from typing import TYPE_CHECKING, Any, Final, TextIO
 
 import click
 
@@ -16,6 +16,9 @@ from hardware.rig import Rig
 from hardware.rig_configuration import RigConfiguration
 from pmm.cli.screen import messages, output
 from pmm.devices.opening import SIMULATED
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 JSON_SCHEMA: Final = "pmm-devices-1"
 
@@ -101,7 +104,9 @@ def print_table(headings: Sequence[str], rows: Sequence[Sequence[str]], numbers:
     output().print(plain_table(headings, rows, numbers))
 
 
-def plain_table(headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = "") -> Any:
+def plain_table(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = ""
+) -> "Table":
     """Return such a table."""
     from rich.table import Table
 

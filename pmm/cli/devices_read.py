@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from hardware.listening import Heard, listen
 from hardware.master import Master
@@ -16,6 +17,9 @@ from pmm.cli.devices_scan import Request as Named
 from pmm.cli.screen import error_line, output
 from pmm.devices.live import Live, Row
 from pmm.devices.opening import RigTables
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 _REFRESH_S = 0.25
 _ONCE_S = 0.5
@@ -118,7 +122,7 @@ def _live(look: Look, request: Request) -> _Shown:
     return shown
 
 
-def _table(rows: Sequence[Row]) -> object:
+def _table(rows: Sequence[Row]) -> "Table":
     lines = []
     before = ""
     for one in rows:

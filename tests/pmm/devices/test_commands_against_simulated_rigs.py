@@ -1,4 +1,4 @@
-"""``pmm devices`` from the command line: on the bus in process, over multicast, slcan and a port."""
+"""``pmm devices`` as typed: on the bus in process, over multicast, over slcan, on a port."""
 
 import json
 from pathlib import Path

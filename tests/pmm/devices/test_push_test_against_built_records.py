@@ -1,4 +1,4 @@
-"""The push test names the gauge and the sign that a record was built with, or says why it cannot."""
+"""The push test names the gauge and the sign that a record was built with, or says why not."""
 
 import numpy as np
 import pytest
