@@ -5,7 +5,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -28,7 +28,7 @@ from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.run_recorder import Outcome
-from pmm.run.campaign_folder import chosen_runs, folder_of, keep_sources, recordings
+from pmm.run.campaign_folder import chosen_runs, finished_runs, folder_of, keep_sources
 from pmm.run.journal import Taps
 from pmm.run.recording import Recording
 from pmm.run.run_control import RunControl
@@ -88,7 +88,8 @@ def work(request: Request) -> None:
         outcomes, interrupted, fault = _carry_out(job, quiet=request.as_json)
     _report(request, job, outcomes, fault)
     if fault:
-        resume = pasted("run", request.plan, "--resume")
+        where = ("--output", request.output) if request.output else ()
+        resume = pasted("run", request.plan, "--resume", *where)
         raise RunFailedError(
             f"{fault}\nall axes are told to stop and the fault is latched; when its cause is "
             f"gone: {resume}"
@@ -152,14 +153,12 @@ def _loop(
 
 
 def _interrupt(control: RunControl, command: Command) -> None:
-    try:
+    with suppress(RunStateError):  # it is stopping already, or has stopped
         control.request(command)
-    except RunStateError:
-        pass  # it is stopping already, or has stopped
 
 
 def _write(job: Job) -> None:
-    write_campaign(job.folder, job.plan, job.rig_file, recordings(job.folder, job.plan.runs))
+    write_campaign(job.folder, job.plan, job.rig_file, finished_runs(job.folder, job.plan.runs))
 
 
 @contextmanager

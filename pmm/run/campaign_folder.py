@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Final
 
 from hardware.description.errors import ConfigurationError
+from pmm.plan.campaign_writer import FinishedRun
 from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.files import MARKER, RECORDING, is_run
+from pmm.recorder.files import HEADER, MARKER, RECORDING, is_run
+from pmm.recorder.header import RunHeader
 from pmm.recorder.run_recorder import Outcome
 
 KEPT: Final = "made-from"  # copies of plan and rig, as they were
@@ -64,10 +66,17 @@ def keep_sources(plan: Plan, folder: Path) -> None:
         shutil.copyfile(path, copy)
 
 
-def recordings(folder: Path, runs: Sequence[RunPlan]) -> dict[str, Path]:
-    """Return the recordings of the runs that are there, by the runs' names."""
-    paths = {one.name: folder / one.name / RECORDING for one in runs}
-    return {name: path for name, path in paths.items() if path.exists()}
+def finished_runs(folder: Path, runs: Sequence[RunPlan]) -> tuple[FinishedRun, ...]:
+    """Return the runs that have a recording, in the order in which they were made."""
+    found = []
+    for number, run in enumerate(runs):
+        own = folder / run.name
+        if not (own / RECORDING).exists():
+            continue
+        header = RunHeader.from_json((own / HEADER).read_text(encoding="utf-8"), str(own / HEADER))
+        one = FinishedRun(run, f"{run.name}/{RECORDING}", header.readings, _outcome(own))
+        found.append((header.started_utc, number, one))
+    return tuple(one for *_, one in sorted(found, key=lambda each: each[:2]))
 
 
 def _outcome(folder: Path) -> str:

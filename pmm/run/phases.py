@@ -174,7 +174,7 @@ def _by_pulses(c: Conduct) -> bool:
 
 def _check_overdue(c: Conduct, what: str) -> None:
     """End a run whose pulses have stopped; the resolver would keep all samples for ever."""
-    if not _by_pulses(c):
+    if not _by_pulses(c) or c.recording.gate.state is GateState.HELD:
         return
     gate, frequency_hz = c.recording.gate, c.present.set_point.frequency_hz
     last_s = gate.last_s if gate.state is GateState.OPEN else c.since / c.rate_hz

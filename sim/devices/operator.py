@@ -18,7 +18,8 @@ class SimulatedOperator:
     """Answers questions and does what they ask for, at once.
 
     Carriage, medium, masses and loads need no person. A dial is read by the person, if there is
-    one who answers; what was read is then where the linkage stands.
+    one who answers; what was read is then where the linkage stands. Whatever else is to be done and
+    confirmed is taken for done where nobody is there to confirm it.
 
     Parameters
     ----------
@@ -38,17 +39,22 @@ class SimulatedOperator:
             return self._dial(question)
         doing = _DOING.get(question.part)
         if doing is None or question.value is None:
-            return self._person(question)
+            answer = self._person(question)
+            return "" if answer is None and self._nobody else answer
         doing(self._world, question)
         return str(question.value)
 
     def _dial(self, question: Demand) -> str | None:
         answer = self._person(question)
-        if answer is None and getattr(self._person, "absent", False):
+        if answer is None and self._nobody:
             answer = str(self._wanted(question) * question.per_unit)
         if answer is not None:
             self._set(question, answer)
         return answer
+
+    @property
+    def _nobody(self) -> bool:
+        return bool(getattr(self._person, "absent", False))
 
     def _wanted(self, question: Demand) -> float:
         """Return what is asked for; where something is only to be read, where it stands."""
