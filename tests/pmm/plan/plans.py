@@ -1,6 +1,7 @@
 """Plans and rigs in memory and on disk, for the tests of this folder."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,7 @@ def write_plan(folder: Path, text: str, rig: str = RIG_TEXT) -> Path:
     return path
 
 
+@cache
 def devices() -> RigConfiguration:
     """Three drives on a bus that nobody opens."""
     bus = {"interface": "virtual", "channel": "nowhere"}
