@@ -91,7 +91,7 @@ class Session:
     hear: list[Callable[[int, str, bytes], None]] = field(default_factory=list)
 
     def record(
-        self, folder: Path, cycles: int, live: LiveSettings, **options: Any
+        self, folder: Path, cycles: int, live: LiveSettings, *, readings: bool = True
     ) -> tuple[RunRecorder, list[Taken]]:
         """Record some cycles; the recorder is not closed."""
         first = self.rig.number + 1
@@ -105,30 +105,30 @@ class Session:
             opening=opening_of(self.rig),
             live=live,
         )
-        recorder = RunRecorder(folder, about, **options)
+        recorder = RunRecorder(folder, about)
         self.observe[:], self.hear[:] = [recorder.frame], [recorder.line]
-        taken = [self._cycle(recorder, path) for _ in range(cycles)]
+        taken = [self._cycle(recorder, path, readings) for _ in range(cycles)]
         taken.append(path.finish())
-        _keep(recorder, taken[-1])
+        _keep(recorder, taken[-1], readings)
         self.observe.clear()
         self.hear.clear()
         return recorder, taken
 
-    def _cycle(self, recorder: RunRecorder, path: LivePath) -> Taken:
+    def _cycle(self, recorder: RunRecorder, path: LivePath, readings: bool) -> Taken:
         cycle = self.rig.cycle()
         taken = path.step(cycle.number)
-        _keep(recorder, taken)
+        _keep(recorder, taken, readings)
         recorder.cycle_statistics(cycle.lateness_s)
         recorder.tick(cycle.time_s)
         return taken
 
 
-def _keep(recorder: RunRecorder, taken: Taken) -> None:
+def _keep(recorder: RunRecorder, taken: Taken, readings: bool) -> None:
     for first, values in taken.samples:
         recorder.samples(first, values)
     for pulse in taken.pulses:
         recorder.pulse(pulse)
-    for reading in taken.readings:
+    for reading in taken.readings if readings else ():
         recorder.harmonic(as_record(reading))
 
 

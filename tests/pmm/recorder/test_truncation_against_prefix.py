@@ -68,7 +68,7 @@ def _said_where(error: DataError, folder: Path) -> None:
     assert str(folder) in str(error)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(share=st.floats(0.0, 1.0))
 def test_samples_cut_anywhere(left: Path, share: float) -> None:
     with tempfile.TemporaryDirectory() as place:
@@ -81,7 +81,7 @@ def test_samples_cut_anywhere(left: Path, share: float) -> None:
         assert found >= (share - 0.35) * 400
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_every_file_cut_anywhere(left: Path, data: st.DataObject) -> None:
     with tempfile.TemporaryDirectory() as place:
@@ -94,7 +94,7 @@ def test_every_file_cut_anywhere(left: Path, data: st.DataObject) -> None:
         check(folder)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(junk=st.binary(max_size=300), name=st.sampled_from(STREAMS))
 def test_junk_behind_what_is_whole(left: Path, junk: bytes, name: str) -> None:
     """A disk that loses its power may leave zeros or anything in the last block."""

@@ -1,0 +1,68 @@
+"""``pmm recover`` and ``pmm replay`` say what the functions find, by status, table and JSON."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from pmm.recorder.header import LiveSettings
+from pmm.recorder.run_recorder import Outcome, RunRecorder
+from tests.pmm.recorder.recorded import fed, header, session
+
+
+def pmm(*words: str | Path) -> Result:
+    return CliRunner().invoke(cli, [str(one) for one in words])
+
+
+def test_a_campaign_is_recovered_run_by_run(tmp_path: Path) -> None:
+    with RunRecorder(tmp_path / "a closed", header()) as recorder:
+        fed(recorder, range(1, 101))
+        recorder.close(Outcome.COMPLETE)
+    with RunRecorder(tmp_path / "b killed", header()) as recorder:
+        fed(recorder, range(1, 101))
+    said = pmm("recover", tmp_path, "--json")
+    assert said.exit_code == 0
+    closed, killed = json.loads(said.stdout)
+    assert (closed["was_whole"], killed["was_whole"]) == (True, False)
+    assert [one["samples"] for one in (closed, killed)] == [100, 100]
+    assert Path(killed["path"]).exists()
+    table = pmm("recover", tmp_path)
+    assert "nothing: it was closed" in table.stdout
+    assert "run.nc is there" in table.stdout
+    assert "[recovered]" in table.stdout
+
+
+def test_a_run_with_nothing_in_it_fails_and_the_others_do_not(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        with RunRecorder(tmp_path / name, header()) as recorder:
+            if name == "b":
+                fed(recorder, range(1, 51))
+    said = pmm("recover", tmp_path)
+    assert said.exit_code == 1
+    assert "a: holds no whole sample" in said.stderr.replace("\n", "")
+    assert (tmp_path / "b" / "run.nc").exists()
+
+
+@pytest.mark.parametrize("command", ["recover", "replay"])
+def test_a_folder_that_is_not_there_is_wrong_usage(tmp_path: Path, command: str) -> None:
+    said = pmm(command, tmp_path / "nowhere")
+    assert said.exit_code == 2
+    assert "no such folder" in said.stderr
+
+
+def test_replay_prints_both_and_their_difference(tmp_path: Path) -> None:
+    with session() as rig:
+        recorder, _ = rig.record(tmp_path / "run", 400, LiveSettings(periods=2))
+        with recorder:
+            recorder.close(Outcome.COMPLETE)
+    said = pmm("replay", tmp_path / "run")
+    assert said.exit_code == 0, said.output
+    assert "samples    400, 0 values differ" in said.stdout
+    assert "force_fore" in said.stdout
+    document = json.loads(pmm("replay", tmp_path / "run", "--json").stdout)
+    assert document["same"] is True
+    assert document["readings"] == document["recorded_readings"]
+    (tmp_path / "run" / "pulses.jsonl").write_text("[1,7.5,null]\n")
+    assert pmm("replay", tmp_path / "run").exit_code == 1
