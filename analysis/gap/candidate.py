@@ -1,0 +1,163 @@
+"""An effect of the catalogue as a hypothesis: free parameters with priors, and where to start.
+
+A parameter that can be zero has a normal prior about zero (no effect) whose width is a few typical
+values; one that has to be positive (a stiffness, a frequency) a log-normal one about the typical
+value. A whole number is a choice, not a parameter: each choice is a start of its own.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.effects.effect import Effect, Parameter
+
+FloatArray = NDArray[np.float64]
+
+_EVEN = math.pi / math.sqrt(3.0)  # standard deviation of an even distribution on the circle
+_TYPICAL = 3.0  # a prior's standard deviation, in typical values
+_CHOICES: Final[Mapping[str, tuple[float, ...]]] = {
+    "order": (1.0, 2.0, 3.0),
+    "poles": (1.0,),
+    "every": (5.0, 10.0, 20.0),
+    "cycles": (10.0,),
+}
+_SPREAD = 0.35  # of the range's logarithm, but at most two
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One free parameter in units of its prior.
+
+    Attributes
+    ----------
+    centre, deviation
+        Of the prior; of the logarithm where ``is_log``.
+    start
+        Where a fit begins, in prior units.
+    """
+
+    parameter: Parameter
+    centre: float
+    deviation: float
+    is_log: bool
+    start: float
+
+    def value(self, unit: float) -> float:
+        """Return the parameter's value, kept within its plausible range."""
+        raw = self.centre + self.deviation * unit
+        raw = math.exp(raw) if self.is_log else raw
+        return min(max(raw, self.parameter.low), self.parameter.high)
+
+    def unit(self, value: float) -> float:
+        """Return a value of the parameter in units of its prior."""
+        raw = math.log(value) if self.is_log else value
+        return (raw - self.centre) / self.deviation
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect with its free parameters and the choices that are held."""
+
+    kind: type[Effect]
+    axes: tuple[Axis, ...]
+    held: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.kind.name
+
+    @property
+    def start(self) -> FloatArray:
+        """Where a fit begins, shape ``(p,)``, in prior units."""
+        return np.array([one.start for one in self.axes])
+
+    def effect(self, units: FloatArray) -> Effect:
+        """Return the effect with its parameters at ``units`` prior deviations."""
+        values = {
+            one.parameter.name: one.value(float(unit))
+            for one, unit in zip(self.axes, units, strict=True)
+        }
+        return self.kind(**values, **self.held)
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Plausible range of each parameter in prior units, shape ``(2, p)``."""
+        pairs = [[one.unit(one.parameter.low), one.unit(one.parameter.high)] for one in self.axes]
+        return np.array(pairs).reshape(-1, 2).T
+
+
+def candidates(kind: type[Effect], frequencies_hz: Sequence[float]) -> Iterator[Candidate]:
+    """Yield an effect's starts: one for each choice, and resonances among the runs.
+
+    Parameters
+    ----------
+    frequencies_hz
+        Of the runs; a parameter that is a resonance starts among them as well.
+    """
+    parameters = kind.parameters()
+    options = [list(_options(kind, one, frequencies_hz)) for one in parameters]
+    for chosen in product(*options):
+        axes = tuple(one for one in chosen if isinstance(one, Axis))
+        held = {name: value for one in chosen if not isinstance(one, Axis) for name, value in [one]}
+        yield Candidate(kind, axes, held)
+
+
+def _options(
+    kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
+) -> Iterator[Axis | tuple[str, float]]:
+    magnitude = one.low <= 0.0 and not is_phase(one)
+    if one.name in _CHOICES:
+        yield from ((one.name, value) for value in _CHOICES[one.name])
+    elif magnitude:
+        scale = _TYPICAL * _size(one, kind.parameters())
+        yield Axis(one, 0.0, scale, False, (one.typical or 0.1 * scale) / scale)
+    elif not kind.repeats:  # of what does not keep step only the size shows, and in which band
+        yield from ((one.name, value) for value in _held(one, frequencies_hz))
+    elif is_phase(one):
+        yield Axis(one, 0.0, _EVEN, False, 0.0)
+    else:
+        yield from _positive(one, frequencies_hz)
+
+
+def _held(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
+    if one.name == "frequency_hz":
+        inside = (0.45 * min(frequencies_hz), 3.3 * max(frequencies_hz))
+        return (one.typical, *(value for value in inside if one.low <= value <= one.high))
+    return (1.0,) if is_phase(one) else (one.typical,)
+
+
+def is_phase(one: Parameter) -> bool:
+    """Tell whether a parameter is an angle on the whole circle."""
+    return one.unit == "rad" and math.isclose(one.high, math.pi) and math.isclose(one.low, -math.pi)
+
+
+def turned(candidate: Candidate) -> Iterator[FloatArray]:
+    """Yield starts a third of a turn to either side, for an effect with a phase."""
+    for at, axis in enumerate(candidate.axes):
+        if is_phase(axis.parameter):
+            for turn in (-2.0 * math.pi / 3.0, 2.0 * math.pi / 3.0):
+                start = candidate.start
+                start[at] = turn / _EVEN
+                yield start
+
+
+def _positive(one: Parameter, frequencies_hz: Sequence[float]) -> Iterator[Axis]:
+    deviation = min(_SPREAD * math.log(one.high / one.low), 2.0)
+    starts = [one.typical]
+    if one.name == "slosh_hz":
+        starts += [1.15 * max(frequencies_hz), math.sqrt(max(frequencies_hz) * min(frequencies_hz))]
+    centre = math.log(one.typical)
+    for start in starts:
+        yield Axis(one, centre, deviation, True, (math.log(start) - centre) / deviation)
+
+
+def _size(one: Parameter, siblings: tuple[Parameter, ...]) -> float:
+    """Return a parameter's usual size; that of its siblings of the same unit where it is zero."""
+    alike = [abs(other.typical) for other in siblings if other.unit == one.unit]
+    return abs(one.typical) or max(alike) or max(abs(one.low), abs(one.high)) / 10.0

@@ -1,0 +1,121 @@
+"""What is compared between rig and simulation, component by component."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
+
+FloatArray = NDArray[np.float64]
+
+
+class Part(StrEnum):
+    """Which number of a channel a component is."""
+
+    MEAN = "mean"
+    IN_PHASE = "in phase"
+    QUADRATURE = "quadrature"
+    FREQUENCY = "frequency"  # log of the measured over the set frequency
+    PULSES = "pulses"  # share of the photocell's pulses that are missing
+    TREND = "trend"  # change of the mean per period
+    PERIOD_SCATTER = "period scatter"  # log of the standard deviation of the pulses' intervals
+    CYCLE_SCATTER = "cycle scatter"  # log of that of a harmonic from cycle to cycle
+    BETWEEN = "between the harmonics"  # log of the power in a band
+    LINE = "line"  # log of the strongest line over the band's usual power
+
+
+STEADY_PARTS = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, Part.FREQUENCY)
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """One number of one run.
+
+    Attributes
+    ----------
+    order
+        Harmonic, or number of the band; 0 for what has neither.
+    """
+
+    channel: str
+    part: Part
+    order: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.channel} n={self.order} {self.part}" if self.channel else str(self.part)
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """What one run shows.
+
+    Attributes
+    ----------
+    values, uncertainty
+        Of each component, and one standard deviation, shape ``(components,)``. Harmonics and trends
+        are in the channel's SI unit, the rest are logarithms.
+    """
+
+    components: tuple[Component, ...]
+    values: FloatArray
+    uncertainty: FloatArray
+
+    def value(self, channel: str, part: Part, order: int = 0) -> float:
+        """Return one component; NaN where the run does not have it."""
+        wanted = Component(channel, part, order)
+        if wanted not in self.components:
+            return float("nan")
+        return float(self.values[self.components.index(wanted)])
+
+
+@dataclass(frozen=True, eq=False)
+class GapRun:
+    """One run of a campaign as the diagnosis sees it.
+
+    Attributes
+    ----------
+    place
+        Where it stands in its campaign, for effects that build up or die out.
+    periods, sample_rate_hz
+        Of the stretch that was analysed: what a simulated record has to match.
+    """
+
+    name: str
+    set_point: SetPoint
+    place: CampaignRun
+    observed: Observation
+    periods: int
+    sample_rate_hz: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """All runs' components one after the other.
+
+    Attributes
+    ----------
+    run
+        Number of the run of each component, shape ``(observations,)``.
+    """
+
+    runs: tuple[GapRun, ...]
+    components: tuple[Component, ...]
+    run: NDArray[np.intp]
+    values: FloatArray
+    uncertainty: FloatArray
+
+    @classmethod
+    def of(cls, runs: Sequence[GapRun]) -> "Stack":
+        """Put runs together."""
+        seen = [one.observed for one in runs]
+        return cls(
+            tuple(runs),
+            tuple(part for one in seen for part in one.components),
+            np.repeat(np.arange(len(runs)), [len(one.components) for one in seen]),
+            np.concatenate([one.values for one in seen]),
+            np.concatenate([one.uncertainty for one in seen]),
+        )

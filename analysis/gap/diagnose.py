@@ -1,0 +1,241 @@
+"""The whole diagnosis of a campaign: where, which, how far, unknown, next."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import GapRun, Stack
+from analysis.gap.fit import Fit, Problem
+from analysis.gap.forward import Simulator
+from analysis.gap.free import Free, columns, free_numbers
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.hypotheses import Named, Odds, Weighed, weigh
+from analysis.gap.noise import pooled
+from analysis.gap.priors import Priors
+from analysis.gap.propose import Choices, Proposal, proposals
+from analysis.gap.regimes import Regime, regimes
+from analysis.gap.verdict import (
+    COEFFICIENTS,
+    NONE,
+    UNKNOWN,
+    Probabilities,
+    answer_of,
+    coefficient_shift,
+    equivalents,
+    probabilities,
+    stage_probabilities,
+)
+from analysis.gap.where import Walk, remaining, unknown_stage, walk
+from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
+from hardware.description.errors import DataError
+from hardware.description.setpoint import Medium
+from sim.effects.effect import Effect
+from sim.rig import SimulatedRig
+
+FloatArray = NDArray[np.float64]
+
+SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a campaign is diagnosed.
+
+    Attributes
+    ----------
+    catalogue
+        Effects to consider, by name.
+    on
+        Effects that are known already and always on.
+    withheld
+        Regimes to judge by; found from the runs if empty.
+    choices
+        What the rig can do next; ``None`` proposes nothing.
+    """
+
+    catalogue: Mapping[str, type[Effect]]
+    priors: Priors = field(default_factory=Priors)
+    odds: Odds = field(default_factory=Odds)
+    on: tuple[Effect, ...] = ()
+    withheld: tuple[Regime, ...] = ()
+    choices: Choices | None = None
+    reference_channel: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """Everything that was found.
+
+    Attributes
+    ----------
+    best
+        The most probable named hypothesis; ``None`` where the answer names no effect.
+    rival
+        The next best one of another class: the control of the withheld runs.
+    classes
+        What these runs cannot tell from each effect of ``best``, with sigma left.
+    shift
+        Prior deviations by which each coefficient and setting moves.
+    before, after
+        Withheld runs predicted without and with the best hypothesis.
+    """
+
+    problem: Problem
+    walk: Walk
+    weighed: Weighed
+    probabilities: Probabilities
+    stages: Mapping[str, float]
+    best: Named | None
+    rival: Named | None
+    classes: Mapping[str, tuple[tuple[str, float], ...]]
+    shift: Mapping[str, float]
+    before: tuple[Predicted, ...]
+    after: tuple[Predicted, ...]
+    shrinkage: Shrinkage | None
+    rival_shrinkage: Shrinkage | None
+    proposals: tuple[Proposal, ...]
+
+
+def diagnose(
+    rig: SimulatedRig,
+    runs: Sequence[GapRun],
+    settings: Settings,
+    executor: Executor | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Diagnosis:
+    """Diagnose a campaign.
+
+    Parameters
+    ----------
+    rig
+        As the simulation believes it to be.
+    runs
+        At least three, observed by :func:`analysis.gap.observe.observe`.
+
+    Raises
+    ------
+    DataError
+        If there are fewer than three runs.
+    ConfigurationError
+        If the rig cannot run what was recorded.
+    """
+    if len(runs) < 3:
+        raise DataError(f"{len(runs)} runs: a diagnosis needs 3 or more")
+    free = free_numbers(rig, settings.priors)
+    problem = _problem(rig, runs, settings, free)
+    progress("walking along the chain")
+    walked = walk(problem)
+    weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress)
+    found = _with_coefficients(probabilities(weighed), problem, free)
+    return _concluded(problem, walked, weighed, found, settings, free, progress)
+
+
+def _problem(
+    rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
+) -> Problem:
+    stack = Stack.of(pooled(runs))
+    simulator = Simulator(rig, stack, settings.on, settings.reference_channel)
+    nuisances = Nuisances(columns(simulator, free, settings.priors))
+    return Problem(simulator, nuisances, tuple(one.name for one in free))
+
+
+def _with_coefficients(
+    found: Probabilities, problem: Problem, free: Sequence[Free]
+) -> Probabilities:
+    """Say "coefficients" in place of "none" where they are what differs."""
+    shift = coefficient_shift(problem, problem.residual)
+    off = [abs(shift[one.name]) for one in free if one.is_coefficient]
+    share = max(off, default=0.0) / SHIFTED
+    moved = found.by_answer[NONE] * min(1.0, share**4 / (1.0 + share**4) if share else 0.0)
+    answers = {**found.by_answer, NONE: found.by_answer[NONE] - moved, COEFFICIENTS: moved}
+    return Probabilities(answers)
+
+
+def _concluded(
+    problem: Problem,
+    walked: Walk,
+    weighed: Weighed,
+    found: Probabilities,
+    settings: Settings,
+    free: tuple[Free, ...],
+    progress: Callable[[str], None],
+) -> Diagnosis:
+    best, rival = _best(weighed, found)
+    fits = [one.fit for one in weighed.looked if one.fit is not None]
+    withheld = settings.withheld or regimes(problem.simulator.stack.runs)
+    before = predict_withheld(problem, None, withheld)
+    after = before if best is None else predict_withheld(problem, best.fit, withheld)
+    other = before if rival is None else predict_withheld(problem, rival.fit, withheld)
+    named = best is not None and bool(before)
+    progress("choosing the next run")
+    return Diagnosis(
+        problem,
+        walked,
+        weighed,
+        found,
+        stage_probabilities(found, settings.catalogue, _unknown_stage(problem, weighed)),
+        best,
+        rival,
+        {} if best is None else _classes(problem, best.fit, fits),
+        coefficient_shift(problem, _explained(problem, best)),
+        before,
+        after,
+        shrinkage(before, after) if named else None,
+        shrinkage(before, other) if named and rival is not None else None,
+        _next(problem, weighed, found, settings, free),
+    )
+
+
+def _explained(problem: Problem, best: Named | None) -> FloatArray:
+    return problem.residual if best is None else problem.residual - best.fit.signature
+
+
+def _best(weighed: Weighed, found: Probabilities) -> tuple[Named | None, Named | None]:
+    """Return the most probable named hypothesis, if naming one is right, and its first rival."""
+    ranked = sorted(
+        (*weighed.singles, *weighed.pairs), key=lambda one: -found.by_answer[answer_of(one.fit)]
+    )
+    if found.best in (NONE, COEFFICIENTS) or not ranked:
+        return None, ranked[0] if ranked else None
+    first = ranked[0]
+    rivals = [one for one in ranked[1:] if not set(one.fit.names) & set(first.fit.names)]
+    return first, rivals[0] if rivals else None
+
+
+def _classes(
+    problem: Problem, fit: Fit, others: Sequence[Fit]
+) -> dict[str, tuple[tuple[str, float], ...]]:
+    if len(fit.candidates) > 1:
+        return dict.fromkeys(fit.names, ())
+    return {fit.names[0]: equivalents(problem, fit, others)}
+
+
+def _unknown_stage(problem: Problem, weighed: Weighed) -> str:
+    stack = problem.simulator.stack
+    air = np.array([run.set_point.medium is Medium.AIR for run in stack.runs])[stack.run]
+    left = remaining(problem, problem.residual)
+    stays = (
+        None if not air.any() else bool(np.mean(left[air] ** 2) > 0.3 * np.mean(left[~air] ** 2))
+    )
+    return unknown_stage(list(weighed.unknown.sizes), stays).value
+
+
+def _next(
+    problem: Problem,
+    weighed: Weighed,
+    found: Probabilities,
+    settings: Settings,
+    free: tuple[Free, ...],
+) -> tuple[Proposal, ...]:
+    if settings.choices is None:
+        return ()
+    shares = found.by_answer
+    ranked = sorted((*weighed.singles, *weighed.pairs), key=lambda one: -shares[answer_of(one.fit)])
+    leading: list[tuple[Fit | None, float]] = [
+        (one.fit, max(shares[answer_of(one.fit)], 1e-3)) for one in ranked[:4]
+    ]
+    leading.append((None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), 1e-3)))
+    return proposals(problem, leading, settings.choices, free, settings.priors)

@@ -1,0 +1,205 @@
+"""Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.candidate import Candidate
+from analysis.gap.forward import Simulator
+from analysis.gap.gaussian import Nuisances, Posterior, misfit, posterior
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+
+FloatArray = NDArray[np.float64]
+
+_STEP = 0.02  # of a prior deviation, at least
+_STEPS = 6
+_SETTLED = 0.05  # change of the log posterior at which a fit ends
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What every hypothesis is held against.
+
+    Attributes
+    ----------
+    simulator
+        The nominal rig and the runs.
+    nuisances
+        Free coefficients and noise levels.
+    free
+        Names of the nuisances' first columns: coefficients and settings.
+    """
+
+    simulator: Simulator
+    nuisances: Nuisances
+    free: tuple[str, ...]
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus nominal in sigma, shape ``(observations,)``."""
+        return self.whitened(self.simulator.stack.values - self.simulator.nominal)
+
+    def whitened(self, change: FloatArray) -> FloatArray:
+        """Return a change of the observations in sigma."""
+        return change / self.simulator.stack.uncertainty
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """One hypothesis, fitted.
+
+    Attributes
+    ----------
+    candidates
+        One for a single effect, two for a pair.
+    units
+        The parameters in units of their priors, shape ``(p,)``.
+    columns
+        Change of the observations per prior unit there, in sigma, shape ``(observations, p)``.
+    signature
+        What the effect changes there, in sigma.
+    cost
+        Chi-square that is left, coefficients fitted too, and that of the parameters' priors.
+    shared
+        Log determinant of the nuisances.
+    """
+
+    candidates: tuple[Candidate, ...]
+    units: FloatArray
+    columns: FloatArray
+    signature: FloatArray
+    cost: float
+    posterior: Posterior
+    shared: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The effects' names."""
+        return tuple(one.name for one in self.candidates)
+
+    @property
+    def log_evidence(self) -> float:
+        """Natural log of the density of the data by Laplace, but for a constant that all share."""
+        return -0.5 * (self.cost + self.shared) + self.posterior.log_volume
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects with the fitted parameters."""
+        return built(self.candidates, self.units)
+
+    def linearised(self, residual: FloatArray) -> FloatArray:
+        """Return the residual that belongs to the effect linearised where it was fitted."""
+        return residual - self.signature + self.columns @ self.units
+
+
+def built(parts: Sequence[Candidate], units: FloatArray) -> tuple[Effect, ...]:
+    """Return the effects at some parameters."""
+    cuts = np.cumsum([len(one.axes) for one in parts])[:-1]
+    pieces = np.split(units, cuts)
+    return tuple(one.effect(piece) for one, piece in zip(parts, pieces, strict=True))
+
+
+def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+    """Return parameters drawn back into their plausible ranges."""
+    low, high = _bounds(parts)
+    return np.asarray(np.clip(units, low, high), np.float64)
+
+
+def _bounds(parts: Sequence[Candidate]) -> FloatArray:
+    return np.concatenate([one.bounds for one in parts], axis=1)
+
+
+def most_probable(fit: Fit) -> FloatArray:
+    """Return the most probable parameters within the plausible ranges, to first order.
+
+    A parameter that would leave its range is held at its end, and the others are found anew.
+    """
+    low, high = _bounds(fit.candidates)
+    precision = np.linalg.inv(fit.posterior.covariance)
+    target = precision @ fit.posterior.mean
+    units, free = fit.posterior.mean.copy(), np.ones(len(fit.units), dtype=bool)
+    for _ in range(len(units)):
+        outside = free & ((units < low) | (units > high))
+        if not outside.any():
+            break
+        free &= ~outside
+        units = np.where(free, units, np.clip(units, low, high))
+        pull = target[free] - precision[np.ix_(free, ~free)] @ units[~free]
+        units[free] = np.linalg.solve(precision[np.ix_(free, free)], pull)
+    return np.asarray(np.clip(units, low, high), np.float64)
+
+
+def at(problem: Problem, parts: tuple[Candidate, ...], units: FloatArray) -> Fit:
+    """Linearise a hypothesis at some parameters and weigh it.
+
+    Raises
+    ------
+    PmmError
+        If the simulator cannot run it.
+    """
+    simulator = problem.simulator
+    base = simulator.predict(built(parts, units))
+    signature = problem.whitened(base - simulator.nominal)
+    slopes = [_slope(problem, parts, units, base, axis) for axis in range(len(units))]
+    columns = np.column_stack(slopes) if slopes else np.zeros((len(base), 0))
+    left = problem.residual - signature
+    found = posterior(left + columns @ units, columns, problem.nuisances)
+    cost = misfit(left, problem.nuisances) + float(units @ units)
+    shared = problem.nuisances.log_determinant
+    return Fit(parts, units, columns, signature, cost, found, shared)
+
+
+def _slope(
+    problem: Problem, parts: tuple[Candidate, ...], units: FloatArray, base: FloatArray, axis: int
+) -> FloatArray:
+    step = max(_STEP, 0.1 * abs(float(units[axis])))
+    for sign in (1.0, -1.0):
+        moved = units.copy()
+        moved[axis] += sign * step
+        kept = inside(parts, moved)
+        if abs(kept[axis] - units[axis]) > 0.5 * step:
+            change = problem.simulator.predict(built(parts, kept)) - base
+            return problem.whitened(change) / (kept[axis] - units[axis])
+    return np.zeros_like(base)
+
+
+def expected_evidence(problem: Problem, fit: Fit) -> float:
+    """Return the evidence that one step from here promises, kept within the plausible ranges.
+
+    For a first look at many effects: it takes no further simulation.
+    """
+    units = most_probable(fit)
+    left = fit.linearised(problem.residual) - fit.columns @ units
+    cost = misfit(left, problem.nuisances) + float(units @ units)
+    return -0.5 * (cost + fit.shared) + fit.posterior.log_volume
+
+
+def refine(problem: Problem, fit: Fit, steps: int = _STEPS) -> Fit:
+    """Improve a fit by damped Gauss-Newton steps through the simulator."""
+    best = fit
+    for _ in range(steps):
+        better = _step(problem, best)
+        if better is None:
+            break
+        gain, best = best.cost - better.cost, better
+        if gain < _SETTLED:
+            break
+    return best
+
+
+def _step(problem: Problem, fit: Fit) -> Fit | None:
+    """Return a better fit along the Gauss-Newton step; ``None`` if there is none."""
+    towards = most_probable(fit) - fit.units
+    for share in (1.0, 0.4, 0.1, 0.02):
+        units = fit.units + share * towards
+        try:
+            change = problem.simulator.predict(built(fit.candidates, units))
+        except PmmError:
+            continue
+        left = problem.residual - problem.whitened(change - problem.simulator.nominal)
+        if misfit(left, problem.nuisances) + float(units @ units) < fit.cost:
+            return at(problem, fit.candidates, units)
+    return None

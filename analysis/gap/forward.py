@@ -1,0 +1,169 @@
+"""The simulator asked for what the recordings show, with any effects on.
+
+What repeats with the shaft comes from the exact periodic steady state, at about half a millisecond
+a run. What does not (jitter, missed pulses, hum, drift) is simulated in time and observed as a
+recording is; only what such effects change is taken from there, with and without them on the same
+noise.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import STEADY_PARTS, Component, GapRun, Observation, Part, Stack
+from analysis.gap.observe import observe
+from hardware.description.setpoint import SetPoint
+from sim.effects.applied import switch_on
+from sim.effects.effect import Effect
+from sim.periodic import SteadyState, steady_run
+from sim.rig import SimulatedRig
+
+FloatArray = NDArray[np.float64]
+
+_ORDERS: Final = 8
+_POINTS: Final = 64
+_SEED: Final = 20091
+_SETTLING: Final = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Simulator:
+    """A rig as it is believed to be, asked for the runs of a campaign.
+
+    Attributes
+    ----------
+    on
+        Effects that are known and always on.
+    reference_channel
+        The channel whose fundamental is phase 0; ``None`` for the photocell.
+    frequency_ratio
+        At which every run is made, over the frequency that was set.
+    """
+
+    rig: SimulatedRig
+    stack: Stack
+    on: tuple[Effect, ...] = ()
+    reference_channel: str | None = None
+    frequency_ratio: float = 1.0
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """What the simulation says without any further effect, shape ``(observations,)``."""
+        return self.predict(())
+
+    def with_rig(self, rig: SimulatedRig) -> "Simulator":
+        """Return the simulator of another rig."""
+        return replace(self, rig=rig)
+
+    def predict(self, effects: Sequence[Effect]) -> FloatArray:
+        """Return every component of every run, shape ``(observations,)``.
+
+        Raises
+        ------
+        ConfigurationError
+            If an effect cannot act on this rig.
+        """
+        alike = all(one.repeats for one in effects)
+        found = []
+        for number, run in enumerate(self.stack.runs):
+            steady = self._steady(run, (*self.on, *effects))
+            in_time = self._in_time_nominal[number]
+            if not alike:
+                changed = self._in_time(run, (*self.on, *effects))
+                quiet = tuple(one for one in effects if one.repeats)
+                base = self._in_time(run, (*self.on, *quiet)) if quiet else in_time
+                steady = np.where(self._is_steady(run), steady + changed - base, changed)
+            found.append(np.where(self._is_steady(run), steady, in_time) if alike else steady)
+        return np.concatenate(found)
+
+    def steady(self, effects: Sequence[Effect]) -> FloatArray:
+        """Return the components that repeat with the shaft; 0 for all others."""
+        on = (*self.on, *effects)
+        return np.concatenate([self._steady(run, on) for run in self.stack.runs])
+
+    @cached_property
+    def _in_time_nominal(self) -> tuple[FloatArray, ...]:
+        return tuple(self._in_time(run, self.on) for run in self.stack.runs)
+
+    def _is_steady(self, run: GapRun) -> NDArray[np.bool_]:
+        return np.array([one.part in STEADY_PARTS for one in run.observed.components])
+
+    def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
+        told = replace(
+            run.set_point, frequency_hz=run.set_point.frequency_hz * self.frequency_ratio
+        )
+        rig, set_point = switch_on(effects, self.rig, told, run.place)
+        state = steady_run(rig, set_point, orders=_ORDERS, points=_POINTS)
+        return read_steady(state, run.observed.components, run.set_point, self.reference_channel)
+
+    def _in_time(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
+        from analysis.readers.dataset import from_dataset
+        from sim.run import simulate
+
+        rig, set_point = switch_on(effects, self.rig, run.set_point, run.place)
+        # The run has been made: whatever the strut may carry, it did.
+        oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
+        dataset = simulate(
+            replace(rig, oscillator=oscillator),
+            set_point,
+            periods=run.periods,
+            settling_periods=_SETTLING,
+            sample_rate_hz=run.sample_rate_hz,
+            seed=_SEED + run.place.index,
+            name=run.name,
+        )
+        record = replace(from_dataset(dataset), set_point=run.set_point)
+        return align(observe(record).observation, run.observed.components)
+
+
+def align(observation: Observation, components: Sequence[Component]) -> FloatArray:
+    """Return an observation's values in the order of other components; 0 where it has none."""
+    at = dict(zip(observation.components, observation.values, strict=True))
+    return np.array([at.get(one, 0.0) for one in components])
+
+
+def read_steady(
+    state: SteadyState,
+    components: Sequence[Component],
+    set_point: SetPoint,
+    reference_channel: str | None,
+) -> FloatArray:
+    """Return a steady state's components as the resolver would find them; 0 for what has none.
+
+    Parameters
+    ----------
+    set_point
+        What the run was told to do: its frequency is what the measured one is held against.
+    """
+    turn = _turn(state, reference_channel)
+    spectra = {
+        name: state.spectra[f"recorded_{name}"] * turn
+        for name in {one.channel for one in components if one.channel}
+    }
+    ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
+    return np.array([_component(one, spectra, ratio) for one in components])
+
+
+def _turn(state: SteadyState, reference_channel: str | None) -> NDArray[np.complex128]:
+    if reference_channel is None:
+        return np.exp(state.period.s * state.reference_s)
+    first = state.spectra[f"recorded_{reference_channel}"][1]
+    # A sin(theta + phi) has X_1 = -i A exp(i phi): turned back by phi it is in phase.
+    phase = float(np.angle(first * 1j))
+    orders: NDArray[np.complex128] = np.exp(-1j * phase * np.arange(len(state.period.s)))
+    return orders
+
+
+def _component(
+    one: Component, spectra: dict[str, NDArray[np.complex128]], frequency_ratio: float
+) -> float:
+    if one.part is Part.FREQUENCY:
+        return frequency_ratio
+    if one.part not in STEADY_PARTS:
+        return 0.0
+    harmonic = complex(spectra[one.channel][one.order])
+    return -harmonic.imag if one.part is Part.IN_PHASE else harmonic.real

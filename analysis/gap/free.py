@@ -1,0 +1,171 @@
+"""What is left free in every hypothesis: coefficients, settings and noise, within their priors.
+
+Nobody knows added mass and damping beforehand: that is what the test is for. And nobody sets a
+gain, a phase or an eccentricity without a tolerance. A difference that these explain is no gap, and
+no effect may take credit for it.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Part, Stack
+from analysis.gap.forward import Simulator
+from analysis.gap.priors import Priors
+from sim.effects.a3_photocell_angle import PhotocellAngle
+from sim.effects.effect import Effect
+from sim.effects.h11_carriage_speed import CarriageSpeedError
+from sim.effects.k3_eccentricity_error import EccentricityError
+from sim.effects.k4_strut_phase_error import StrutPhaseError
+from sim.effects.m1_gain_error import GainError
+from sim.effects.m5_zero_offset import ZeroOffset
+from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.hull_coefficients import Matrix
+
+FloatArray = NDArray[np.float64]
+Change = Callable[[SimulatedRig, float], SimulatedRig]
+
+_TERMS: Final = {"added_mass": "a", "damping": "b", "restoring": "c"}
+_STEP = 0.1  # of a prior deviation
+
+
+@dataclass(frozen=True)
+class Free:
+    """One free number.
+
+    Attributes
+    ----------
+    deviation
+        One standard deviation of its prior, in its own unit.
+    change
+        Returns a rig with that much added; ``None`` where ``effect`` does it.
+    effect
+        Returns the effect of the catalogue that amounts to that much.
+    """
+
+    name: str
+    deviation: float
+    change: Change | None = None
+    effect: Callable[[float], Effect] | None = None
+
+    @property
+    def is_coefficient(self) -> bool:
+        """Whether it belongs to the model and the water."""
+        return self.change is not None
+
+    def steady(self, simulator: Simulator, units: float) -> FloatArray:
+        """Return what repeats with the shaft when it is off by some prior deviations."""
+        value = units * self.deviation
+        if self.effect is not None:
+            return simulator.steady((self.effect(value),))
+        return simulator.with_rig(self.applied(simulator.rig, value)).steady(())
+
+    def applied(self, rig: SimulatedRig, value: float) -> SimulatedRig:
+        """Return the rig with a coefficient changed; as it was for a setting."""
+        return rig if self.change is None else self.change(rig, value)
+
+
+def free_numbers(rig: SimulatedRig, priors: Priors) -> tuple[Free, ...]:
+    """Return what is left free for a rig; what has no tolerance is not."""
+    every = (*_coefficients(rig, priors), *_settings(rig, priors))
+    return tuple(one for one in every if one.deviation > 0.0)
+
+
+def _coefficients(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
+    for term in _TERMS:
+        yield from _of_matrix(rig, term, priors)
+    yield _of_body("mass_kg", priors.mass_relative * rig.body.mass_kg)
+    yield _of_body("inertia_kg_m2", priors.inertia_relative * rig.body.inertia_kg_m2)
+    yield _of_body("cg_x_m", priors.cg_m)
+    yield _of_body("cg_z_m", priors.cg_m)
+
+
+def _of_matrix(rig: SimulatedRig, term: str, priors: Priors) -> Iterator[Free]:
+    matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
+    if not matrix.any() and rig.radiation is not None and term != "restoring":
+        matrix = np.diag([rig.body.mass_kg, rig.body.inertia_kg_m2])
+    for row in range(2):
+        for column in range(2):
+            scale = float(np.sqrt(matrix[row, row] * matrix[column, column]))
+            own = getattr(priors, f"{term}_relative")
+            weight = own if row == column else priors.coupling_relative
+            name = f"{_TERMS[term]}{row + 1}{column + 1}"
+            yield Free(name, weight * scale, _adding(term, row, column))
+
+
+def _adding(term: str, row: int, column: int) -> Change:
+    def change(rig: SimulatedRig, value: float) -> SimulatedRig:
+        old: Matrix = getattr(rig.water, term)
+        rows = [list(one) for one in old]
+        rows[row][column] += value
+        new = ((rows[0][0], rows[0][1]), (rows[1][0], rows[1][1]))
+        return replace(rig, water=replace(rig.water, **{term: new}))
+
+    return change
+
+
+def _of_body(field: str, deviation: float) -> Free:
+    def change(rig: SimulatedRig, value: float) -> SimulatedRig:
+        body = replace(rig.body, **{field: getattr(rig.body, field) + value})
+        return replace(rig, body=body)
+
+    return Free(field, deviation, change)
+
+
+def _settings(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
+    gain, zero, arm = priors.gain_relative, priors.zero_n, priors.eccentricity_m
+    yield Free("gain aft", gain, effect=lambda x: GainError(aft=x, fore=0.0))
+    yield Free("gain fore", gain, effect=lambda x: GainError(aft=0.0, fore=x))
+    yield Free("zero aft", zero, effect=lambda x: ZeroOffset(aft_n=x, fore_n=0.0))
+    yield Free("zero fore", zero, effect=lambda x: ZeroOffset(aft_n=0.0, fore_n=x))
+    yield Free("eccentricity aft", arm, effect=lambda x: EccentricityError(x, 0.0))
+    yield Free("eccentricity fore", arm, effect=lambda x: EccentricityError(0.0, x))
+    yield Free("strut phase", priors.strut_phase_rad, effect=StrutPhaseError)
+    speed = priors.carriage_speed_relative
+    yield Free("carriage speed", speed, effect=CarriageSpeedError)
+    if rig.photocell is not None:
+        yield Free("photocell", priors.photocell_angle_rad, effect=PhotocellAngle)
+
+
+def with_coefficients(
+    rig: SimulatedRig, free: Sequence[Free], units: Sequence[float]
+) -> SimulatedRig:
+    """Return the rig with the free coefficients changed by some prior deviations each."""
+    for one, unit in zip(free, units, strict=True):
+        rig = one.applied(rig, float(unit) * one.deviation)
+    return rig
+
+
+def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
+    """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
+
+    After those of ``free`` there is a column for each run's frequency and one for each channel's
+    noise: a rig that is noisier than believed has no gap for that.
+    """
+    base, sigma = simulator.steady(()), simulator.stack.uncertainty
+    found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
+    runs = _frequencies(simulator, base, priors.frequency_relative)
+    return np.column_stack([*found, *runs, *_noise_levels(simulator.stack)])
+
+
+def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> Iterator[FloatArray]:
+    """Yield what a run's own frequency changes, a column for each run."""
+    stack = simulator.stack
+    step = 0.01 * relative
+    moved = replace(simulator, frequency_ratio=1.0 + step).steady(())
+    change = (moved - base) / 0.01 / stack.uncertainty
+    for number in range(len(stack.runs)):
+        yield np.where(stack.run == number, change, 0.0)
+
+
+def _noise_levels(stack: Stack) -> Iterator[FloatArray]:
+    """Yield a column for each channel's noise, with a prior of a factor of e."""
+    loud = {Part.BETWEEN: 2.0, Part.CYCLE_SCATTER: 1.0, Part.PERIOD_SCATTER: 1.0}
+    for channel in sorted({one.channel for one in stack.components if one.part in loud}):
+        own = [loud.get(one.part, 0.0) * (one.channel == channel) for one in stack.components]
+        yield np.array(own) / stack.uncertainty

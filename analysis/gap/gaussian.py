@@ -1,0 +1,118 @@
+"""Gaussian evidence with nuisances integrated out: the one mechanism behind every hypothesis.
+
+A hypothesis says that the whitened difference r between measurement and simulation is
+
+    r = N b + J t + e,      b ~ N(0, 1),  t ~ N(m, 1),  e ~ N(0, 1)
+
+with the nuisances' columns N and the effect's columns J both in units of their prior. Integrating
+over b and t leaves a Gaussian, whose density at the measured r is the evidence.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Nuisances:
+    """Columns that every hypothesis has, with unit normal priors.
+
+    Attributes
+    ----------
+    columns
+        Shape ``(observations, nuisances)``, whitened.
+    """
+
+    columns: FloatArray
+
+    @cached_property
+    def _gain(self) -> FloatArray:
+        gram = self.columns.T @ self.columns
+        return np.asarray(np.linalg.solve(np.eye(len(gram)) + gram, self.columns.T), np.float64)
+
+    @cached_property
+    def log_determinant(self) -> float:
+        """Log of the determinant of ``1 + N N^T``."""
+        gram = self.columns.T @ self.columns
+        return float(np.linalg.slogdet(np.eye(len(gram)) + gram)[1])
+
+    def whiten(self, columns: FloatArray) -> FloatArray:
+        """Return ``(1 + N N^T)^-1`` times columns: what the nuisances leave of them."""
+        left: FloatArray = columns - self.columns @ (self._gain @ columns)
+        return left
+
+    def fitted(self, residual: FloatArray) -> FloatArray:
+        """Return the nuisances' most probable values, in units of their prior."""
+        return self._gain @ residual
+
+    def among(self, rows: NDArray[np.bool_]) -> "Nuisances":
+        """Return the nuisances over some of the observations."""
+        return Nuisances(self.columns[rows])
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """What the data say of an effect's parameters, to first order about where it was linearised.
+
+    Attributes
+    ----------
+    mean, covariance
+        Of the parameters in units of their prior, shapes ``(p,)`` and ``(p, p)``.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+
+    @property
+    def log_volume(self) -> float:
+        """Half the log of the covariance's determinant: what is left of the prior's volume."""
+        return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
+
+
+def posterior(residual: FloatArray, columns: FloatArray, nuisances: Nuisances) -> Posterior:
+    """Return the posterior of an effect's parameters, whose priors are unit normals.
+
+    Parameters
+    ----------
+    residual
+        Whitened difference that is to be explained, shape ``(observations,)``.
+    columns
+        Change of the simulation per prior unit of each parameter, shape ``(observations, p)``.
+    """
+    weighted = nuisances.whiten(columns)
+    precision = np.eye(columns.shape[1]) + columns.T @ weighted
+    covariance = np.asarray(np.linalg.inv(precision), np.float64)
+    return Posterior(covariance @ (weighted.T @ residual), covariance)
+
+
+def null_evidence(residual: FloatArray, nuisances: Nuisances) -> float:
+    """Return the log evidence of the nuisances alone, but for a constant that all share."""
+    return -0.5 * (misfit(residual, nuisances) + nuisances.log_determinant)
+
+
+def misfit(residual: FloatArray, nuisances: Nuisances) -> float:
+    """Return the chi-square of what the nuisances leave of a whitened difference."""
+    return float(residual @ nuisances.whiten(residual))
+
+
+def cosine(a: FloatArray, b: FloatArray, nuisances: Nuisances) -> float:
+    """Return the largest cosine between what the nuisances leave of two effects' columns."""
+    first, second = (np.linalg.qr(_root(nuisances, one))[0] for one in (a, b))
+    return float(min(1.0, np.linalg.svd(first.T @ second, compute_uv=False)[0]))
+
+
+def left_over(columns: FloatArray, nuisances: Nuisances) -> float:
+    """Return the norm of a signature after the nuisances have taken what they can, in sigma."""
+    return float(np.sqrt(max(float(np.sum(columns * nuisances.whiten(columns))), 0.0)))
+
+
+def _root(nuisances: Nuisances, columns: FloatArray) -> FloatArray:
+    """Return ``(1 + N N^T)^(-1/2)`` times columns."""
+    u, s, _ = np.linalg.svd(nuisances.columns, full_matrices=False)
+    shrink = 1.0 - 1.0 / np.sqrt(1.0 + s**2)
+    rooted: FloatArray = columns - u @ (shrink[:, None] * (u.T @ columns))
+    return rooted

@@ -1,0 +1,252 @@
+"""Weigh what could explain a gap: nothing, each effect, pairs, or something unknown."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.candidate import candidates, turned
+from analysis.gap.fit import Fit, Problem, at, expected_evidence, most_probable, refine
+from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
+from analysis.gap.unknown import Deviation, find_deviation
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+
+FloatArray = NDArray[np.float64]
+
+# What these change are the coefficients, and those are free in every hypothesis.
+COEFFICIENTS: Final = ("added-mass-error", "damping-error")
+T = TypeVar("T")
+R = TypeVar("R")
+
+LEADERS: Final = 8  # effects that are refined in full
+_NAMED = 4  # hypotheses of each kind that are given a remainder
+_HOPELESS = 50.0
+PARTNERS: Final = 6  # second effects that are refined for each leader
+HIDDEN: Final = (
+    2.0  # sigma of a typical signature below which an effect cannot be seen in these runs
+)
+
+
+@dataclass(frozen=True)
+class Odds:
+    """Prior probabilities; the catalogue's share is spread evenly over its effects.
+
+    They are those of a rig of which nothing is known: one in five has no gap, and one in six has
+    one that no catalogue knows.
+    """
+
+    none: float = 0.20
+    single: float = 0.50
+    pair: float = 0.13
+    unknown: float = 0.17
+
+
+_NOTHING = Deviation({}, np.zeros(0), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """What a first look at one effect gave: a linearised fit, or why there is none."""
+
+    name: str
+    fit: Fit | None
+    expected: float = -math.inf
+    visible: float = 0.0
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """A named hypothesis with what it leaves.
+
+    No rig has an effect in the very form of a catalogue. So beside each leading hypothesis a
+    remainder of no particular form is allowed (:mod:`analysis.gap.unknown`); how large it is
+    against what the effect explains tells whether the name is deserved.
+
+    Attributes
+    ----------
+    log_evidence
+        With the remainder.
+    remainder
+        Its size over that of the effect's own signature, after the nuisances have taken their part.
+    """
+
+    fit: Fit
+    log_evidence: float
+    remainder: float
+    deviation: Deviation
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """All hypotheses with their log evidence.
+
+    Attributes
+    ----------
+    singles, pairs
+        The refined ones, most probable first.
+    hidden
+        Effects that these runs and sensors cannot show, with the typical signature's size in sigma
+        after the free coefficients have taken their part.
+    refused
+        Effects that this rig cannot have, with the reason.
+    """
+
+    problem: Problem
+    none: float
+    singles: tuple[Named, ...]
+    pairs: tuple[Named, ...]
+    unknown: Deviation
+    looked: tuple[Looked, ...]
+    odds: Odds
+
+    @property
+    def hidden(self) -> Mapping[str, float]:
+        """Effects that cannot be seen, by name."""
+        return {one.name: one.visible for one in self.looked if one.fit and one.visible < HIDDEN}
+
+    @property
+    def refused(self) -> Mapping[str, str]:
+        """Effects that cannot act here, by name."""
+        return {one.name: one.reason for one in self.looked if one.fit is None}
+
+
+def weigh(
+    problem: Problem,
+    catalogue: Mapping[str, type[Effect]],
+    executor: Executor | None = None,
+    odds: Odds = Odds(),
+    progress: Callable[[str], None] = lambda _: None,
+) -> Weighed:
+    """Fit and weigh every hypothesis.
+
+    Parameters
+    ----------
+    executor
+        Where effects are looked at side by side; ``None`` does them one by one.
+    progress
+        Told what is being done.
+    """
+    kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
+    progress(f"looking at {len(kinds)} effects")
+    looked = list(_each(executor, look, problem, kinds))
+    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
+    leaders = sorted(seen, key=lambda one: -one.expected)[:LEADERS]
+    progress(f"fitting the best {len(leaders)}")
+    fits = [one.fit for one in leaders if one.fit is not None]
+    singles = sorted(_each(executor, _refined, problem, fits), key=lambda one: -one.log_evidence)
+    progress("fitting pairs")
+    pairs = _pairs(problem, singles, [one.fit for one in seen if one.fit], executor)
+    unknown = find_deviation(problem.simulator.stack, problem.residual, problem.nuisances)
+    none = null_evidence(problem.residual, problem.nuisances)
+    ones, twos = (_named_all(problem, fits, none) for fits in (singles, pairs))
+    return Weighed(problem, none, ones, twos, unknown, tuple(looked), odds)
+
+
+def _named_all(problem: Problem, fits: Sequence[Fit], none: float) -> tuple[Named, ...]:
+    """Allow the leading hypotheses a remainder; the others are worth what they are without."""
+    floor = none - _HOPELESS
+    found = [
+        with_remainder(problem, fit)
+        if number < _NAMED
+        else Named(fit, max(fit.log_evidence, floor), 0.0, _NOTHING)
+        for number, fit in enumerate(fits)
+    ]
+    return tuple(sorted(found, key=lambda one: -one.log_evidence))
+
+
+def with_remainder(problem: Problem, fit: Fit) -> Named:
+    """Return a hypothesis with whatever it leaves as a deviation of no particular form."""
+    left = problem.residual - fit.signature
+    wider = Nuisances(np.hstack((problem.nuisances.columns, fit.columns)))
+    deviation = find_deviation(problem.simulator.stack, left, wider)
+    own = left_over(fit.signature, problem.nuisances)
+    size = left_over(deviation.mean, problem.nuisances)
+    gain = deviation.log_evidence - null_evidence(left, wider)
+    return Named(fit, fit.log_evidence + max(gain, 0.0), size / max(own, 1.0), deviation)
+
+
+def _each(
+    executor: Executor | None,
+    work: Callable[[Problem, T], R],
+    problem: Problem,
+    items: Sequence[T],
+) -> Iterable[R]:
+    if executor is None:
+        return [work(problem, one) for one in items]
+    return executor.map(work, [problem] * len(items), items)
+
+
+def look(problem: Problem, kind: type[Effect]) -> Looked:
+    """Linearise an effect at its typical values, from each of its starts, and keep the best."""
+    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.runs]
+    best, most, reason = None, -math.inf, ""
+    for one in candidates(kind, sorted(set(frequencies))):
+        try:
+            fit = at(problem, (one,), one.start)
+        except PmmError as error:
+            reason = str(error)
+            continue
+        expected = expected_evidence(problem, fit)
+        if best is None or expected > most:
+            best, most = fit, expected
+    if best is None:
+        return Looked(kind.name, None, reason=reason)
+    visible = left_over(best.signature, problem.nuisances)
+    return Looked(kind.name, best, most, visible)
+
+
+def _refined(problem: Problem, fit: Fit) -> Fit:
+    """Refine a single effect, from a third of a turn to either side too if it has a phase."""
+    found = [refine(problem, fit)]
+    for start in turned(fit.candidates[0]):
+        try:
+            found.append(refine(problem, at(problem, fit.candidates, start)))
+        except PmmError:
+            continue
+    return max(found, key=lambda one: one.log_evidence)
+
+
+def _pairs(
+    problem: Problem, singles: Sequence[Fit], looked: Sequence[Fit], executor: Executor | None
+) -> list[Fit]:
+    """Add to the leading effects whatever promises most beside them; greedy, by linear steps."""
+    chances: dict[frozenset[str], tuple[float, Fit]] = {}
+    for first in singles[:3]:
+        for second in looked:
+            if second.names != first.names:
+                key = frozenset((*first.names, *second.names))
+                joined = _joined(problem, first, second)
+                score = expected_evidence(problem, joined)
+                if key not in chances or score > chances[key][0]:
+                    chances[key] = (score, joined)
+    best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
+    found = _each(executor, _refined_pair, problem, [one for _, one in best])
+    return sorted(found, key=lambda one: -one.log_evidence)
+
+
+def _joined(problem: Problem, first: Fit, second: Fit) -> Fit:
+    """Put two linearised effects together as if they did not act on each other."""
+    columns = np.hstack((first.columns, second.columns))
+    units = np.concatenate((first.units, second.units))
+    signature = first.signature + second.signature
+    left = problem.residual - signature
+    found = posterior(left + columns @ units, columns, problem.nuisances)
+    cost = misfit(left, problem.nuisances) + float(units @ units)
+    return Fit(
+        first.candidates + second.candidates, units, columns, signature, cost, found, first.shared
+    )
+
+
+def _refined_pair(problem: Problem, fit: Fit) -> Fit:
+    for units in (most_probable(fit), fit.units):
+        try:
+            return refine(problem, at(problem, fit.candidates, units))
+        except PmmError:
+            continue
+    return fit

@@ -1,0 +1,81 @@
+"""How well each component is known: the scatter of one run is few numbers, that of all is not.
+
+A run of six periods knows its own scatter to 30 %; taken at its word it calls small deviations
+large or large ones small. The noise of a channel is much the same in all runs, so each run's own
+variance is drawn towards that of all runs, scaled to the run's length.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import STEADY_PARTS, GapRun, Part
+from hardware.description.channels import SHAFT_ANGLE
+
+FloatArray = NDArray[np.float64]
+
+# Of the first harmonic of the channel: what a simulation by harmonics does not promise to hold.
+SIMULATION: Final = 2e-5
+# An encoder's steps do not average out of a shaft that turns evenly.
+ENCODER_RAD: Final = 3e-5
+_POOLED_FREEDOM = 12.0
+# What is simulated in time has noise of its own, as large as the record's.
+TWO_RECORDS: Final = 2.0**0.5
+
+
+def pooled(runs: Sequence[GapRun]) -> tuple[GapRun, ...]:
+    """Return the runs with uncertainties that borrow strength from each other."""
+    densities: dict[tuple[str, int], list[float]] = defaultdict(list)
+    for run in runs:
+        for key, density in _densities(run):
+            densities[key].append(density)
+    usual = {key: float(np.median(values)) for key, values in densities.items()}
+    return tuple(_with(run, usual) for run in runs)
+
+
+def _kind(part: Part, order: int) -> int:
+    """Return the class within which noise is alike: the mean, low orders, high orders."""
+    return -1 if part is Part.MEAN else min(order, 2)
+
+
+def _densities(run: GapRun) -> list[tuple[tuple[str, int], float]]:
+    seen = run.observed
+    duration_s = run.periods / run.set_point.frequency_hz
+    return [
+        ((one.channel, _kind(one.part, one.order)), float(sigma**2) * duration_s)
+        for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
+        if one.part in STEADY_PARTS and one.channel and np.isfinite(sigma)
+    ]
+
+
+def _with(run: GapRun, usual: dict[tuple[str, int], float]) -> GapRun:
+    seen = run.observed
+    duration_s = run.periods / run.set_point.frequency_hz
+    own_freedom = max(run.periods - 2.0, 0.0)
+    uncertainty = seen.uncertainty.copy()
+    for at, one in enumerate(seen.components):
+        if one.part not in STEADY_PARTS:
+            uncertainty[at] *= TWO_RECORDS
+            continue
+        key = (one.channel, _kind(one.part, one.order))
+        if key in usual:
+            own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
+            freedom = own_freedom if own else 0.0
+            variance = (freedom * own + _POOLED_FREEDOM * usual[key] / duration_s) / (
+                freedom + _POOLED_FREEDOM
+            )
+            uncertainty[at] = np.sqrt(variance + _floor(run, one.channel) ** 2)
+    return replace(run, observed=replace(seen, uncertainty=uncertainty))
+
+
+def _floor(run: GapRun, channel: str) -> float:
+    if channel == SHAFT_ANGLE.name:
+        return ENCODER_RAD
+    seen = run.observed
+    parts = [seen.value(channel, part, 1) for part in (Part.IN_PHASE, Part.QUADRATURE)]
+    return SIMULATION * math.hypot(*parts) if np.isfinite(parts).all() else 0.0

@@ -1,0 +1,212 @@
+"""A recording in, everything that the diagnosis compares out.
+
+Harmonics come from the resolver. What does not repeat with the shaft shows in the rest: trends of
+the mean, scatter of the photocell's intervals and of the harmonics from cycle to cycle, and power
+between the harmonics.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Component, Observation, Part
+from analysis.recording import Recording
+from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.estimate import solve_periods
+from analysis.resolver.reference import ReferenceSource
+from hardware.description import channels
+from hardware.description.errors import DataError
+
+FloatArray = NDArray[np.float64]
+Found = Iterator[tuple[Component, float, float]]
+
+ORDERS: Final = 6
+FORCES: Final = (channels.FORCE_AFT.name, channels.FORCE_FORE.name)
+STRUTS: Final = (channels.DISPLACEMENT_AFT.name, channels.DISPLACEMENT_FORE.name)
+COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES)
+
+# Bands between the harmonics, in multiples of the fundamental: below it, among the orders that are
+# compared, and above them.
+BANDS: Final = ((0.0, 0.8), (1.2, ORDERS + 0.8), (ORDERS + 1.2, np.inf))
+_BESIDE = 2.5  # bins on either side of a harmonic that its own leakage may reach
+_FEW_PERIODS = 3
+_FEW_LINES = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One recording's observation and what it was made of."""
+
+    observation: Observation
+    analysis: Analysis
+
+    @property
+    def reference_channel(self) -> str | None:
+        """The channel whose fundamental is phase 0; ``None`` with a photocell."""
+        reference = self.analysis.reference
+        return None if reference.source is ReferenceSource.PHOTOCELL else reference.channel
+
+
+def observe(recording: Recording, latency_s: float = 0.0) -> Observed:
+    """Return what a recording shows.
+
+    The photocell is the reference where there is one; else the aft strut's displacement, else the
+    aft strut's force.
+
+    Parameters
+    ----------
+    latency_s
+        Known delay of the photocell.
+
+    Raises
+    ------
+    DataError
+        If the recording has no force, or too few whole periods.
+    """
+    names = tuple(one for one in COMPARED if one in recording.channel_names)
+    if not set(names) & set(FORCES):
+        raise DataError(
+            f"{recording.name}: no channel {' or '.join(FORCES)}; the diagnosis compares forces"
+        )
+    choice = _choice(recording, latency_s)
+    kept = tuple(one for one in names if one != choice.channel or one in FORCES)
+    settings = Settings(channels=kept, harmonics=_orders(recording))
+    analysis = analyse(recording, choice, settings)
+    found = [*_harmonics(analysis), *_frequency(analysis, recording)]
+    found += _pulses(recording)
+    if analysis.stretch.period_count >= _FEW_PERIODS:
+        found += [*_trends(analysis), *_scatter(analysis), *_between(analysis)]
+    parts, values, uncertainty = zip(*found, strict=True)
+    return Observed(Observation(parts, np.array(values), np.array(uncertainty)), analysis)
+
+
+def _choice(recording: Recording, latency_s: float) -> ReferenceChoice:
+    edges = recording.photocell_edges_s
+    if edges is not None and len(edges) > 1:
+        return ReferenceChoice(latency_s=latency_s)
+    for name in (STRUTS[0], FORCES[0], FORCES[1]):
+        if name in recording.channel_names:
+            return ReferenceChoice(channel=name)
+    raise DataError(f"{recording.name}: nothing in it tells the phase")
+
+
+def _orders(recording: Recording) -> int:
+    """Return as many orders as the sampling resolves, at most ORDERS."""
+    if recording.set_point is None:
+        return ORDERS
+    return max(
+        1, min(ORDERS, int(0.4 * recording.sample_rate_hz / recording.set_point.frequency_hz))
+    )
+
+
+def _harmonics(analysis: Analysis) -> Found:
+    reading = analysis.readings[0]
+    deviation = reading.standard_uncertainty
+    for row, name in enumerate(reading.channel_names):
+        values, own = reading.coefficients[row], deviation[row]
+        if name != channels.SHAFT_ANGLE.name:  # its mean is a matter of counting turns
+            yield Component(name, Part.MEAN), values[0], own[0]
+        for order in range(1, reading.order + 1):
+            for part, at in ((Part.IN_PHASE, 2 * order - 1), (Part.QUADRATURE, 2 * order)):
+                yield Component(name, part, order), values[at], own[at]
+
+
+def _frequency(analysis: Analysis, recording: Recording) -> Found:
+    if recording.set_point is None:
+        return
+    reading = analysis.readings[0]
+    ratio = float(np.log(reading.frequency_hz / recording.set_point.frequency_hz))
+    # Pulses and samples are timed far better than this; it is the drive that does not keep time.
+    yield Component("", Part.FREQUENCY), ratio, 2e-5
+
+
+def _pulses(recording: Recording) -> Found:
+    edges = recording.photocell_edges_s
+    if edges is not None and len(edges) > _FEW_PERIODS:
+        intervals = np.diff(edges)
+        turns = float(np.sum(np.round(intervals / np.median(intervals))))
+        yield Component("", Part.PULSES), 1.0 - len(intervals) / max(turns, 1.0), 0.02
+
+
+def _trends(analysis: Analysis) -> Found:
+    means = solve_periods(analysis.steady_sums).coefficients[:, :, 0]
+    count = len(means)
+    turn = np.arange(count) - (count - 1) / 2.0
+    weight = turn / (turn @ turn)
+    for row, name in enumerate(analysis.steady_sums.channel_names):
+        if name in FORCES:
+            slope = float(weight @ means[:, row])
+            left = means[:, row] - means[:, row].mean() - slope * turn
+            spread = np.sqrt(left @ left / max(count - 2, 1))
+            yield Component(name, Part.TREND), slope, float(spread * np.sqrt(weight @ weight))
+
+
+def _scatter(analysis: Analysis) -> Found:
+    sums = analysis.steady_sums
+    freedom = max(sums.period_count - 2, 1)
+    sure = float(np.sqrt(0.5 / freedom))
+    if analysis.reference.source is ReferenceSource.PHOTOCELL:
+        intervals = sums.closed_s - sums.opened_s
+        spread = float(np.std(intervals, ddof=1) / np.mean(intervals))
+        yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), sure
+    solved = solve_periods(sums).coefficients
+    for row, name in enumerate(sums.channel_names):
+        if name in FORCES:
+            for order in (1, 2):
+                parts = solved[:, row, 2 * order - 1 : 2 * order + 1]
+                power = float(np.var(parts, axis=0, ddof=1).sum())
+                part = Component(name, Part.CYCLE_SCATTER, order)
+                yield part, 0.5 * float(np.log(power + 1e-12)), sure / np.sqrt(2.0)
+
+
+def _between(analysis: Analysis) -> Found:
+    sums, recording = analysis.steady_sums, analysis.recording
+    part = recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    frequency = analysis.readings[0].frequency_hz
+    count = part.sample_count
+    taper = np.hanning(count)
+    lines_hz = np.arange(count // 2 + 1) * recording.sample_rate_hz / count
+    free = _free_of_harmonics(lines_hz, frequency, recording.sample_rate_hz / count)
+    repeats = _repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()))
+    for name in FORCES:
+        if name in part.channel_names:
+            values = part.values(name)
+            values = values - repeats @ (repeats.T @ values)
+            power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
+            for number, (low, high) in enumerate(BANDS):
+                inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
+                inside[0] = False
+                yield from _band(name, number, power[inside])
+
+
+def _repeating(angle_rad: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of what repeats with the shaft, and of a trend."""
+    turn = np.linspace(-1.0, 1.0, len(angle_rad))
+    waves = [wave(n * angle_rad) for n in range(1, 2 * ORDERS + 1) for wave in (np.sin, np.cos)]
+    basis = np.column_stack((np.ones_like(turn), turn, *waves))
+    return np.asarray(np.linalg.qr(basis)[0])
+
+
+def _free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> NDArray[np.bool_]:
+    nearest = np.round(lines_hz / frequency) * frequency
+    return np.asarray(np.abs(lines_hz - nearest) > _BESIDE * bin_hz)
+
+
+def _band(name: str, number: int, power: FloatArray) -> Found:
+    if power.size < _FEW_LINES:
+        return
+    # Noise makes exponentially distributed powers; under a Hann taper two lines in three count.
+    count = 0.66 * power.size
+    middle = float(np.median(power)) / np.log(2.0) + 1e-15
+    yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
+    highest = np.log(count) + np.euler_gamma
+    strongest = float(np.log(power.max() / middle / highest))
+    yield (
+        Component(name, Part.LINE, number),
+        strongest,
+        float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count))),
+    )

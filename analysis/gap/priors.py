@@ -1,0 +1,56 @@
+"""What the nominal simulation and the rig's settings may be wrong by without anybody's fault."""
+
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+from hardware.description.errors import ConfigurationError
+
+
+@dataclass(frozen=True)
+class Priors:
+    """Standard deviations, Gaussian about what the campaign states.
+
+    Attributes
+    ----------
+    added_mass_relative, damping_relative, restoring_relative
+        Of the water's matrices; a coupling has ``coupling_relative`` times the root of the product
+        of the two diagonal terms.
+    mass_relative, inertia_relative, cg_m
+        Of the model's mass, inertia and centre of gravity.
+    gain_relative, zero_n
+        Of each dynamometer.
+    eccentricity_m, strut_phase_rad
+        Of each strut's eccentricity and of the phase between them, the same in all runs.
+    photocell_angle_rad
+        Of the photocell's mark.
+    frequency_relative
+        Of each run's frequency, which is measured besides.
+    carriage_speed_relative
+        Of the carriage's mean speed.
+    """
+
+    added_mass_relative: float = 0.2
+    damping_relative: float = 0.3
+    restoring_relative: float = 0.02
+    coupling_relative: float = 0.1
+    mass_relative: float = 0.002
+    inertia_relative: float = 0.01
+    cg_m: float = 0.001
+    gain_relative: float = 0.001
+    zero_n: float = 0.05
+    eccentricity_m: float = 2e-5
+    strut_phase_rad: float = 1e-3
+    photocell_angle_rad: float = 1e-3
+    frequency_relative: float = 1e-4
+    carriage_speed_relative: float = 1e-3
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    def __post_init__(self) -> None:
+        faults = [
+            f"priors.{one.name} = {getattr(self, one.name):g} must not be negative"
+            for one in fields(self)
+            if not getattr(self, one.name) >= 0.0
+        ]
+        if faults:
+            raise ConfigurationError("; ".join(faults))
