@@ -24,6 +24,8 @@ NAMES = (
     "simulator",
     "devices",
     "inertia",
+    "recorder",
+    "kill",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 
