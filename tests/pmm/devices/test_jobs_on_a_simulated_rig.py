@@ -21,7 +21,15 @@ from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
-from tests.sim.devices.benches import DRIVERS, WHOLE, amplifier, by_word, in_process, read_rig
+from tests.sim.devices.benches import (
+    DRIVERS,
+    WHOLE,
+    Hosted,
+    amplifier,
+    by_word,
+    in_process,
+    read_rig,
+)
 
 GAUGES = {"forces": [amplifier(4, "force_aft", "force_fore")]}
 
@@ -79,6 +87,30 @@ def test_wrong_wiring_is_refused_with_its_fix(wiring, signs, said) -> None:
         found = push_test(rig)
     assert [(one.push.channel, one.push.sign) for one in found] == signs
     assert any(said in text for one in found for text in one.wrong)
+
+
+@pytest.mark.parametrize("pull", [1.0, -1.0])
+def test_a_push_in_another_process_is_seen_over_slcan(tmp_path, pull: float) -> None:
+    host = Hosted(GAUGES, tmp_path, "slcan", real_time=True)
+    try:
+        with host.rig("forces") as rig:
+            last = []
+
+            def hand(question):
+                if [question] != last:
+                    last[:] = [question]
+                    host.say(f"push {question.channel} {pull * question.value}")
+
+            rig.prompt = hand
+            found = push_test(rig, within_s=5.0)
+    finally:
+        host.close()
+    assert [(one.push.channel, one.push.sign) for one in found] == [
+        ("force_aft", pull),
+        ("force_fore", pull),
+    ]
+    wrong = [text for one in found for text in one.wrong]
+    assert [bool(wrong), len(wrong)] == ([False, 0] if pull > 0.0 else [True, 2])
 
 
 def test_a_gauge_that_nobody_pushes_is_told_after_its_time() -> None:
