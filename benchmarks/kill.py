@@ -2,9 +2,11 @@
 
 The process runs a simulated rig in real time and records it; through a pipe it says of each sample
 when it was taken and what it was. So what recovery gives is held against the truth, bit by bit.
-``python -m benchmarks kill``; one process alone: ``python -m benchmarks.kill FOLDER SECONDS``.
+``python -m benchmarks kill`` kills a plain loop over the rig's cycle, and then ``pmm run``. One
+process alone: ``python -m benchmarks.kill FOLDER SECONDS``, or ``... FOLDER PLAN.toml RUN``.
 """
 
+import os
 import signal
 import struct
 import subprocess
@@ -17,6 +19,7 @@ from typing import IO, TYPE_CHECKING, Any, cast
 
 import can
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.machine import ROOT
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
@@ -27,10 +30,13 @@ if TYPE_CHECKING:
 
 _RECORD_S = 3.0  # then the run is closed
 _LATEST_S = 3.5  # kills come up to then, so that some of them strike while it is closed
+_LATEST_PLAN_S = 6.0
+_PLAN, _RUN = "examples/vertical/plan.toml", "heave-f0.83-a20"
 _RATE_HZ = 100.0
 _NAME = "killed"
 _SAID = struct.Struct("<qd3d")  # SYNC, wall time, shaft angle and two forces
 _FIRST_WORD = b"opening\n"
+_OUTPUT = 1  # where a recording process says its samples
 
 
 @dataclass(frozen=True)
@@ -133,10 +139,39 @@ def record(folder: Path, seconds: float) -> None:
             recorder.close(RunOutcome.COMPLETE)
 
 
-def kill_once(folder: Path, after_s: float, seconds: float = _RECORD_S) -> Kill:
-    """Start a recording process, kill it after a time, recover and compare."""
-    command = [sys.executable, "-m", "benchmarks.kill", str(folder), str(seconds)]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE) as process:
+def carry_out(folder: Path, plan: str, run: str) -> None:
+    """Carry out one run of a plan with ``pmm run`` in real time; say every sample on the output."""
+    from pmm.cli import cli
+    from pmm.recorder.run_recorder import RunRecorder
+
+    keep, begin = RunRecorder.samples, RunRecorder.__init__
+
+    def told(self: RunRecorder, first_sync: int, values: NDArray[np.float64]) -> None:
+        keep(self, first_sync, values)
+        for i, sample in enumerate(values[:3].T):
+            _say(_SAID.pack(first_sync + i, time.monotonic(), *sample))
+
+    def begun(self: RunRecorder, *arguments: Any, **options: Any) -> None:
+        _say(_FIRST_WORD)
+        begin(self, *arguments, **options)
+
+    RunRecorder.samples, RunRecorder.__init__ = told, begun  # type: ignore[method-assign]
+    words = ["run", plan, "--only", run, "--output", str(folder.parent), "--real-time"]
+    cli.main(words, prog_name="pmm")
+
+
+def kill_once(folder: Path, after_s: float, *what: str) -> Kill:
+    """Start a recording process, kill it after a time, recover and compare.
+
+    Parameters
+    ----------
+    what
+        Seconds to record in a plain loop, or the plan and the run that ``pmm run`` carries out.
+    """
+    command = [sys.executable, "-m", "benchmarks.kill", str(folder), *what]
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as process:
         output = cast("IO[bytes]", process.stdout)
         if output.readline() != _FIRST_WORD:
             raise RuntimeError("the recording process ended before it began to record")
@@ -163,7 +198,7 @@ def judge(folder: Path, said: list[Any], after_s: float, killed: float) -> Kill:
         loss_s = killed - said[0][1] if said else 0.0
         return Kill(after_s, 0, loss_s, loss_s <= 1.0, False)
     recording = read_recording(found.path)
-    values = recording.samples[:, 0 : recording.sample_count]
+    values = recording.samples[0:3, 0 : recording.sample_count]
     first = round(recording.start_s * _RATE_HZ)
     numbers = range(first, first + recording.sample_count)
     # The very last sample may have been written and not yet said.
@@ -178,15 +213,40 @@ def judge(folder: Path, said: list[Any], after_s: float, killed: float) -> Kill:
 
 
 def run(quick: bool, report: Report) -> Outcome:
-    """Kill at 50 seeded moments."""
+    """Kill at 50 seeded moments, and ``pmm run`` at 10 more."""
     moments = np.random.default_rng(1963)
-    kills = []
+    loop, plan = [], []
     with tempfile.TemporaryDirectory() as folder:
-        for k in range(3 if quick else 50):
+        for k in range(2 if quick else 50):
             report(f"kill {k + 1}")
             after_s = moments.uniform(0.0, _LATEST_S)
-            kills.append(kill_once(Path(folder) / f"run {k}", after_s))
-    rows: list[Row] = [
+            loop.append(kill_once(Path(folder) / f"run {k}", after_s, str(_RECORD_S)))
+        for k in range(0 if quick else 10):
+            report(f"kill {k + 1} of pmm run")
+            after_s = moments.uniform(0.0, _LATEST_PLAN_S)
+            place = Path(folder) / f"campaign {k}" / _RUN
+            plan.append(kill_once(place, after_s, str(ROOT / _PLAN), _RUN))
+    kills = [*loop, *plan]
+    return Outcome(
+        {
+            "Recording processes, killed at random moments and recovered": _rows(loop),
+            **({"The same, pmm run": _rows(plan)} if plan else {}),
+        },
+        {
+            "valid": sum(one.valid for one in kills) / len(kills),
+            "worst_loss_s": max(one.loss_s for one in kills),
+        },
+        (
+            "A simulated rig in real time at 100 Hz: shaft, two amplifiers, touch probe; moments "
+            f"uniform over {_LATEST_S:g} s from the recorder's opening, the run is closed after "
+            f"{_RECORD_S:g} s; every recovered sample compared bit by bit with what the process "
+            f"had said of it. pmm run: {_RUN} of {_PLAN}, the first {_LATEST_PLAN_S:g} s.",
+        ),
+    )
+
+
+def _rows(kills: list[Kill]) -> list[Row]:
+    return [
         {
             "kill": k,
             "after, s": one.after_s,
@@ -197,26 +257,18 @@ def run(quick: bool, report: Report) -> Outcome:
         }
         for k, one in enumerate(kills, 1)
     ]
-    return Outcome(
-        {"Recording processes, killed at random moments and recovered": rows},
-        {
-            "valid": sum(one.valid for one in kills) / len(kills),
-            "worst_loss_s": max(one.loss_s for one in kills),
-        },
-        (
-            "A simulated rig in real time at 100 Hz: shaft, two amplifiers, touch probe; moments "
-            "uniform over 3.5 s from the recorder's opening, the run is closed after 3 s; every "
-            "recovered sample compared bit by bit with what the process had said of it.",
-        ),
-    )
 
 
 def _say(data: bytes) -> None:
-    sys.stdout.buffer.write(data)
-    sys.stdout.buffer.flush()
+    os.write(_OUTPUT, data)
 
 
 BENCHMARK = Benchmark("kill", "Recordings of killed processes", run)
 
 if __name__ == "__main__":
-    record(Path(sys.argv[1]), float(sys.argv[2]))
+    _OUTPUT = os.dup(1)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what pmm run prints is for nobody here
+    if len(sys.argv) == 3:
+        record(Path(sys.argv[1]), float(sys.argv[2]))
+    else:
+        carry_out(Path(sys.argv[1]), *sys.argv[2:])

@@ -12,13 +12,13 @@ MOMENTS = np.random.default_rng(7).uniform(0.6, 2.0, 2).round(3)
 
 @pytest.mark.parametrize("after_s", [0.02, *MOMENTS])
 def test_killed_while_it_records(tmp_path: Path, after_s: float) -> None:
-    found = kill_once(tmp_path / "run", after_s, seconds=60.0)
+    found = kill_once(tmp_path / "run", after_s, "60")
     assert found.valid
     assert not found.closed
     assert found.loss_s <= 1.0
 
 
 def test_killed_about_when_it_closes(tmp_path: Path) -> None:
-    found = kill_once(tmp_path / "run", 1.13, seconds=1.0)
+    found = kill_once(tmp_path / "run", 1.13, "1")
     assert found.valid
     assert found.loss_s <= 1.0
