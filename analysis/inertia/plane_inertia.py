@@ -44,8 +44,15 @@ class PlaneInertia:
     @property
     def principal_angle_rad(self) -> float:
         """Angle ``psi`` of the principal x axis, from body x towards body z."""
+        return self.principal_angle.value
+
+    @property
+    def principal_angle(self) -> Estimate:
+        """The same with its standard uncertainty."""
         xx, zz, xz = self.values
-        return float(0.5 * np.arctan(2.0 * xz / (zz - xx)))
+        slope = np.array([xz, -xz, zz - xx]) / ((zz - xx) ** 2 + 4.0 * xz**2)
+        spread = float(np.sqrt(slope @ self.covariance @ slope))
+        return Estimate(float(0.5 * np.arctan(2.0 * xz / (zz - xx))), spread, "rad")
 
 
 def plane_inertia(

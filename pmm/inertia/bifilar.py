@@ -9,6 +9,7 @@ from analysis.inertia.spread import Geometry, compare_geometries
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
+from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.bifilar_workflow import workflow
@@ -43,6 +44,7 @@ def run(path: str) -> Outcome:
     periods = [runs for one in hung for runs in one.periods]
     notes: list[str] = []
     gyradii, used = _results(table, hung, findings, flags, notes)
+    notes += _air_notes(table, gyradii)
     axes = _tilts(job, gyradii, used, findings, periods, flags)
     step = workflow(job, hung, findings, flags, periods)
     body, missing = properties(
@@ -69,6 +71,13 @@ def run(path: str) -> Outcome:
         step,
         axes=axes,
     )
+
+
+def _air_notes(table: BifilarTable, gyradii: Mapping[str, Estimate]) -> Iterator[str]:
+    """Say which gyradii still have their air in them."""
+    left = [axis for axis in ("pitch", "roll") if axis in gyradii]
+    if table.entrained_air is not None and left:
+        yield f"entrained air is taken off yaw only; {' and '.join(left)} still have theirs"
 
 
 def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:
@@ -163,7 +172,8 @@ def _tilts(
             given(one if getattr(one, key) is not None else at, key)
             for key in ("half_spacing_m", "line_m")
         )
-        gyradius = yaw_from_period(runs.period, spacing, line, gravity_of(table)).result
+        own = yaw_from_period(runs.period, spacing, line, gravity_of(table))
+        gyradius = without_air(table, own).result
         angle = given(one, "angle_deg" if one.angle_deg is not None else "angle_rad")
         tests.append((angle, gyradius))
     found, axes = plane_axes(level, gyradii.get("roll"), tests, table.monte_carlo_seed + 30)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
 
 from hardware.description.oscillator import Plane
+from pmm.inertia.air import AirTable, air_rules
 from pmm.inertia.bifilar_axes import TiltedTable
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
@@ -21,12 +22,30 @@ class YawTable(PeriodSource):
 
 @dataclass(frozen=True)
 class BeatsTable:
-    """Counted beats of yaw and sway."""
+    """Beats of yaw and sway: counted by a person, or in records.
 
-    oscillations: float
-    beats: float
-    counting_error: float = 0.5
+    Attributes
+    ----------
+    counting_error
+        Largest error of the oscillations over all beats, as counted; records tell their own.
+    """
+
+    oscillations: float | None = None
+    beats: float | None = None
+    records: tuple[str, ...] = ()
+    channel: str | None = None
+    sample_rate_hz: float | None = None
+    counting_error: float | None = None
     yaw_slower: bool = True
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """Counted, or to be counted."""
+        yield from one_of(table, "beats", "records")
+        if "records" in table:
+            yield from one_of(table, "records", "counting_error", needed=False)
+        else:
+            yield from together(table, "beats", "oscillations")
 
 
 @dataclass(frozen=True)
@@ -102,6 +121,7 @@ class BifilarTable:
     body_density_kg_m3: float | None = None
     method: Literal["period", "ratio", "beats"] | None = None
     tilted: tuple[TiltedTable, ...] = ()
+    entrained_air: AirTable | None = None
     tare: FrameTable | None = None
     check: KnownTable | None = None
     tare_again: FrameTable | None = None
@@ -116,6 +136,7 @@ class BifilarTable:
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """At least one suspension, each with a name of its own; the workflow's order is kept."""
+        yield from air_rules(table)
         yield from _workflow_rules(table)
         rows = table.get("suspensions")
         if rows == []:

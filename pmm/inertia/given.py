@@ -15,6 +15,7 @@ _ENDINGS = {
     "_kg_m3": ("kg/m3", 1.0),
     "_kg_m2": ("kg m2", 1.0),
     "_kg_m": ("kg m", 1.0),
+    "_n_m_rad": ("N m/rad", 1.0),
     "_m_s2": ("m/s2", 1.0),
     "_deg": ("rad", math.pi / 180.0),
     "_rad": ("rad", 1.0),

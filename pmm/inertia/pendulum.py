@@ -1,16 +1,29 @@
-"""``pmm inertia pendulum``: a body swinging about one axis, or about two a known distance apart."""
+"""``pmm inertia pendulum``: a body swinging about one axis or two, or on a torsion rod."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
 
 from analysis.inertia.compound import compound_pendulum, lamboley
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value, sqrt
 from hardware.description.oscillator import Plane
-from pmm.inertia.given import flags_of, given, gravity_of
-from pmm.inertia.outcome import Outcome, TargetTable, assessed, compare, once
+from pmm.inertia.air import AirTable, air_rules, without_air
+from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
+from pmm.inertia.outcome import (
+    Finding,
+    Outcome,
+    PlaneAxes,
+    TargetTable,
+    assessed,
+    compare,
+    once,
+)
 from pmm.inertia.properties import ModelTable, PartTable, properties
-from pmm.inertia.reading import one_of, read_job
-from pmm.inertia.sources import PeriodSource, read_period
+from pmm.inertia.reading import Job, one_of, read_job
+from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
+from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
 
 
 @dataclass(frozen=True)
@@ -30,11 +43,11 @@ class PendulumJob:
     ----------
     depth_m
         Of the centre of gravity below the axis.
-    pendulum
-        Whether the channel is the pendulum's own angle, whose period must lengthen with amplitude.
+    period
+        Not where ``torsion`` has axes with periods of their own.
     """
 
-    period: PeriodSource
+    period: PeriodSource | None = None
     name: str = "pendulum"
     gravity_m_s2: float | None = None
     u_gravity_m_s2: float = 0.0
@@ -44,6 +57,8 @@ class PendulumJob:
     depth_m: float | None = None
     u_depth_m: float = 0.0
     second: SecondAxis | None = None
+    torsion: TorsionTable | None = None
+    entrained_air: AirTable | None = None
     model: ModelTable = field(default_factory=ModelTable)
     take_off: tuple[PartTable, ...] = ()
     targets: tuple[TargetTable, ...] = ()
@@ -54,8 +69,17 @@ class PendulumJob:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """The depth, or a second axis that gives it."""
-        yield from one_of(table, "depth_m", "second")
+        """The depth, a second axis that gives it, or a torsion rod."""
+        yield from one_of(table, "depth_m", "second", "torsion")
+        yield from air_rules(table)
+        rod = table.get("torsion")
+        several = isinstance(rod, dict) and rod.get("axes")
+        if several and "period" in table:
+            yield "period", "and torsion.axes are both given; each axis has its own"
+        elif not several and "period" not in table:
+            yield "period", "is missing"
+        if rod is not None and "entrained_air" in table:
+            yield "entrained_air", "is for swings; it is not taken off a torsion rod's inertia"
 
 
 def run(path: str) -> Outcome:
@@ -68,37 +92,107 @@ def run(path: str) -> Outcome:
     """
     job = read_job(path, PendulumJob)
     table = job.table
-    gravity, seed = gravity_of(table), table.monte_carlo_seed
-    periods = [read_period(job, table.period, "period", pendulum=True)]
-    name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
-    if table.second is None:
-        depth = given(table, "depth_m")
-        own = compound_pendulum(periods[0].period, depth, gravity, seed=seed)
-        findings = [assessed(name, words, own)]
-    else:
-        periods.append(read_period(job, table.second.period, "second.period", pendulum=True))
-        apart = given(table.second, "apart_m")
-        below, own = lamboley(periods[0].period, periods[1].period, apart, gravity, seed=seed)
-        findings = [assessed("depth_m", "CG below the first axis", below)]
-        findings.append(assessed(name, words, own))
+    periods: list[PeriodRuns] = []
+    swung = _on_rod(job, periods) if table.torsion is not None else _on_axis(job, periods)
     flags = once([*flags_of(table), *(flag for one in periods for flag in one.flags)])
+    gyradii: dict[str, Estimate] = (
+        {} if swung.gyradius is None else {table.axis: swung.gyradius.result}
+    )
     body, missing = properties(
         table.name,
         table.model,
-        {table.axis: own.result},
+        gyradii,
         take_off=table.take_off,
-        budgets=[own.budget],
+        budgets=[swung.gyradius.budget] if swung.gyradius else [],
         flags=flags,
     )
     planes = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
     return Outcome(
         "pendulum",
         table.name,
-        tuple(findings),
+        swung.findings,
         flags,
         tuple(periods),
         body,
         missing,
         table.plane or planes.get(table.axis),
-        compare(findings, table.targets),
+        compare(swung.findings, table.targets),
+        axes=swung.axes,
     )
+
+
+@dataclass(frozen=True)
+class _Swung:
+    """What a test gave: the gyradius about the file's axis, if it follows."""
+
+    findings: tuple[Finding, ...]
+    gyradius: Assessment | None = None
+    axes: PlaneAxes | None = None
+
+
+def _on_axis(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+    """About one axis at a known depth, or about two."""
+    table = job.table
+    gravity, seed = gravity_of(table), table.monte_carlo_seed
+    first = _period(job, periods)
+    findings: list[Finding] = []
+    if table.second is None:
+        depth = given(table, "depth_m")
+        own = compound_pendulum(first, depth, gravity, seed=seed)
+    else:
+        second = read_period(job, table.second.period, "second.period", pendulum=True)
+        periods.append(second)
+        apart = given(table.second, "apart_m")
+        below, own = lamboley(first, second.period, apart, gravity, seed=seed)
+        depth = below.result
+        findings.append(assessed("depth_m", "CG below the first axis", below))
+    name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
+    if table.entrained_air is not None:
+        findings.append(assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own))
+        own = without_air(table, own, depth=depth, seed=seed + 2)
+    findings.append(assessed(name, words, own))
+    mass = given_or_none(table.model, "mass_kg")
+    if mass is not None:
+        inputs = {"mass_kg": mass, "gyradius_m": own.result}
+        about = assess("I", _inertia, inputs, unit="kg m2", seed=seed + 3)
+        findings.append(_about(table, about))
+    return _Swung(tuple(findings), own)
+
+
+def _on_rod(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+    """On a torsion rod: about the file's axis, or about several in the centre plane."""
+    table, seed = job.table, job.table.monte_carlo_seed
+    assert table.torsion is not None  # noqa: S101 - the caller's condition, for the type
+    rod, findings = stiffness(job, table.torsion, periods, seed)
+    mass = given_or_none(table.model, "mass_kg")
+    if table.torsion.axes:
+        plane = in_plane(job, table.torsion.axes, rod, periods)
+        found = (*findings, *plane.findings())
+        return _Swung(found, axes=None if mass is None else plane.ellipse(mass))
+    about = about_rod(rod, _period(job, periods, pendulum=False), seed + 1)
+    findings.append(_about(table, about))
+    if mass is None:
+        return _Swung(tuple(findings))
+    inputs = {"inertia_kg_m2": about.result, "mass_kg": mass}
+    own = assess("k", _gyradius, inputs, unit="m", seed=seed + 2)
+    findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", own))
+    return _Swung(tuple(findings), own)
+
+
+def _period(job: Job[PendulumJob], periods: list[PeriodRuns], *, pendulum: bool = True) -> Estimate:
+    source = job.table.period or PeriodSource()
+    periods.append(read_period(job, source, "period", pendulum=pendulum))
+    return periods[-1].period
+
+
+def _about(table: PendulumJob, about: Assessment) -> Finding:
+    words = f"{table.axis} inertia about the CG"
+    return assessed(f"i_{table.axis}_kg_m2", words, about)
+
+
+def _inertia(mass_kg: Value, gyradius_m: Value) -> Value:
+    return mass_kg * gyradius_m * gyradius_m
+
+
+def _gyradius(inertia_kg_m2: Value, mass_kg: Value) -> Value:
+    return sqrt(inertia_kg_m2 / mass_kg)

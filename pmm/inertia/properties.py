@@ -1,15 +1,18 @@
 """From gyradii and what the file says of the model to the mass properties campaigns need."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Any
 
 from analysis.inertia.budget import Budget, Correlations
+from analysis.inertia.corrections import square_frame
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.parts import Part, combine, part
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag
 from pmm.inertia.given import given, given_or_none
+from pmm.inertia.reading import one_of
 
 AXES = ("roll", "pitch", "yaw")
 _PLACES = {"cg_x_m": "x_m", "cg_z_m": "z_m"}  # a result's name -> a part's
@@ -21,6 +24,7 @@ class PartTable:
 
     ``x_m`` is forward, ``y_m`` to starboard and ``z_m`` down; a gyradius of 0 is a point mass's.
     Products of inertia are sums, ``ixy = sum m x y``, about the own centre of gravity.
+    ``square_half_side_m`` makes it a level square frame of thin bars, in place of gyradii.
     """
 
     name: str
@@ -38,16 +42,37 @@ class PartTable:
     u_k_pitch_m: float = 0.0
     k_yaw_m: float = 0.0
     u_k_yaw_m: float = 0.0
+    square_half_side_m: float | None = None
+    u_square_half_side_m: float = 0.0
     ixy_kg_m2: float = 0.0
     ixz_kg_m2: float = 0.0
     iyz_kg_m2: float = 0.0
 
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """A square frame's gyradii follow from its side."""
+        for axis in AXES:
+            yield from one_of(table, "square_half_side_m", f"k_{axis}_m", needed=False)
+
     def part(self) -> Part:
         """Return it with its covariance."""
         x, y, z = (given(self, f"{axis}_m") for axis in "xyz")
-        roll, pitch, yaw = (given(self, f"k_{axis}_m") for axis in AXES)
         products = (self.ixy_kg_m2, self.ixz_kg_m2, self.iyz_kg_m2)
-        return part(self.name, given(self, "mass_kg"), (x, y, z), (roll, pitch, yaw), products)
+        gyradii, tied = self._gyradii()
+        mass = given(self, "mass_kg")
+        return part(self.name, mass, (x, y, z), gyradii, products, correlations=tied)
+
+    def _gyradii(self) -> tuple[tuple[Estimate, Estimate, Estimate], Correlations]:
+        side = given_or_none(self, "square_half_side_m")
+        if side is None:
+            roll, pitch, yaw = (given(self, f"k_{axis}_m") for axis in AXES)
+            return (roll, pitch, yaw), {}
+        level, upright = (
+            replace(side, value=value, uncertainty=value * side.relative)
+            for value in square_frame(side.value, 0.0)
+        )
+        pairs = (("roll", "pitch"), ("roll", "yaw"), ("pitch", "yaw"))
+        return (level, level, upright), {(f"k_{a}_m", f"k_{b}_m"): 1.0 for a, b in pairs}
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,9 @@ _ABOVE_0 = (
     "apart_m",
     "beats",
     "body_density_kg_m3",
+    "coefficient",
     "depth_m",
+    "diameter_m",
     "duration_s",
     "gravity_m_s2",
     "known_inertia_kg_m2",
@@ -34,12 +36,21 @@ _ABOVE_0 = (
     "period_scatter_relative",
     "pivot_distance_m",
     "reaction_s",
+    "square_half_side_m",
+    "stiffness_n_m_rad",
     "tolerance",
     "tolerance_kg",
     "tolerance_m",
     "weight_kg",
 )
-_NOT_BELOW_0 = ("air_density_kg_m3", "counting_error", "k_pitch_m", "k_roll_m", "k_yaw_m")
+_NOT_BELOW_0 = (
+    "air_density_kg_m3",
+    "counting_error",
+    "k_pitch_m",
+    "k_roll_m",
+    "k_yaw_m",
+    "sway_coefficient",
+)
 
 
 @dataclass(frozen=True)

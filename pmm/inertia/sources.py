@@ -6,19 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from analysis.inertia.checks import strongest_axis
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import Passages, passages, read_gate_events
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
 from analysis.inertia.repeats import Repeated, combine_runs
-from analysis.inertia.series import Series, series_from_recording
+from analysis.inertia.series import Series
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.readers import read_recording
-from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
+from pmm.inertia.channels import chosen_series, true_angles
 from pmm.inertia.reading import Job, one_of
 
 _PARTS = 6  # of a single light gates' run
@@ -32,6 +31,9 @@ class PeriodSource:
     ----------
     records, channel, sample_rate_hz
         Recordings of the same set-up, one per release, and which channel of them swings.
+    inclinometer_radius_m
+        Depth below the pivot of the gravity-referenced inclinometer that the records are of: it
+        feels the motion too and reads ``alpha (1 - omega^2 r/g)``, which is put right.
     gates, gate_columns, time_column
         Text files of light gates' edges, one per release, and their columns.
     remove_modulation
@@ -48,6 +50,7 @@ class PeriodSource:
     records: tuple[str, ...] = ()
     channel: str | None = None
     sample_rate_hz: float | None = None
+    inclinometer_radius_m: float | None = None
     gates: tuple[str, ...] = ()
     gate_columns: tuple[str, ...] = ("State at A", "State at B")
     time_column: str = "Time"
@@ -63,6 +66,8 @@ class PeriodSource:
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """Exactly one way; a period known otherwise has an uncertainty."""
+        if "inclinometer_radius_m" in table and "records" not in table:
+            yield "inclinometer_radius_m", "is for records; there are none"
         yield from one_of(table, "records", "gates", "stopwatch", "period_s")
         if "period_s" in table and not table.get("u_period_s"):
             yield (
@@ -162,7 +167,10 @@ def _from_records(
         recording = read_recording(
             job.beside(name), job.columns, sample_rate_hz=source.sample_rate_hz
         )
-        series, own = _series(job, recording, source.channel, where)
+        series, own = chosen_series(job, recording, source.channel, where)
+        if source.inclinometer_radius_m is not None:
+            series, more = true_angles(job, series, source.inclinometer_radius_m, where)
+            own = (*own, *more)
         run = analyse_record(series, modes=modes, pendulum=pendulum)
         runs.append(run)
         whole.append(series)
@@ -179,21 +187,6 @@ def _from_records(
         tuple(whole),
         flags=tuple(flags),
     )
-
-
-def _series(
-    job: Job[Any], recording: Recording, channel: str | None, where: str
-) -> tuple[Series, tuple[Flag, ...]]:
-    names = recording.channel_names
-    if channel is None and len(names) > 1:
-        raise ConfigurationError(
-            f"{job.path}: {where}.channel is missing: {recording.name} holds {', '.join(names)}"
-        )
-    chosen = series_from_recording(recording, channel or names[0])
-    unit = {one.name: one.unit for one in recording.channels}
-    others = [name for name in names if name != chosen.channel and unit[name] == chosen.unit]
-    beside = tuple(series_from_recording(recording, name) for name in others)
-    return chosen, strongest_axis(chosen, beside)
 
 
 def _undamped(

@@ -3,7 +3,9 @@
 import math
 from dataclasses import dataclass, replace
 
-from analysis.inertia.beats import BeatCount
+import numpy as np
+
+from analysis.inertia.beats import BeatCount, count_beats
 from analysis.inertia.bifilar import (
     resonance_flags,
     sway_period,
@@ -15,9 +17,19 @@ from analysis.inertia.checks import check_sway_axis, check_yaw_axis
 from analysis.inertia.double_pendulum import pitch_from_periods
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment
-from hardware.description.errors import ConfigurationError
+from analysis.inertia.series import usable_part
+from analysis.readers import read_recording
+from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
-from pmm.inertia.bifilar_tables import BifilarTable, PendulumTable, SuspensionTable
+from pmm.inertia.air import without_air
+from pmm.inertia.bifilar_tables import (
+    BeatsTable,
+    BifilarTable,
+    PendulumTable,
+    SuspensionTable,
+    YawTable,
+)
+from pmm.inertia.channels import chosen_series
 from pmm.inertia.given import given, gravity_of
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
@@ -25,19 +37,21 @@ from pmm.inertia.sources import PeriodRuns, read_period
 
 @dataclass(frozen=True)
 class Suspended:
-    """What one suspension gave: assessments by axis (or ``depth``), and for yaw by method too."""
+    """What one suspension gave.
+
+    Attributes
+    ----------
+    yaw
+        The yaw period, where it was measured.
+    found
+        Assessments by axis (or ``depth``), and for yaw by method too.
+    """
 
     table: SuspensionTable
+    yaw: Estimate | None
     found: dict[str, Assessment]
     periods: tuple[PeriodRuns, ...]
     flags: tuple[Flag, ...]
-
-    @property
-    def yaw(self) -> Estimate | None:
-        """The yaw period, where it was measured."""
-        by_period = self.found.get("yaw by period")
-        lines = by_period.budget.shares if by_period else ()
-        return next((one.input for one in lines if one.name == "period_s"), None)
 
 
 def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
@@ -52,7 +66,7 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
     found: dict[str, Assessment] = {}
     periods: list[PeriodRuns] = []
     flags: list[Flag] = []
-    sway = None
+    yaw, sway = None, None
     if table.sway is not None:
         runs = read_period(job, table.sway, f"{where}.sway")
         gravity = gravity_of(job.table).value
@@ -60,30 +74,50 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
         periods.append(runs)
         sway = runs.period
     if table.yaw is not None:
-        sway = _yaw(job, table, where, sway, found, periods, flags)
+        yaw, sway = _yaw(job, table.yaw, table, sway, found, periods, flags)
     if table.beats is not None:
-        count = BeatCount(table.beats.oscillations, table.beats.beats, table.beats.counting_error)
-        found["yaw by beats"] = yaw_from_beats(
+        count = _beats(job, table.beats, f"{where}.beats")
+        by_beats = yaw_from_beats(
             count, given(table, "half_spacing_m"), yaw_slower=table.beats.yaw_slower
         )
-    _double_pendulum(job, table, where, sway, found, periods, flags)
+        found["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
+    _double_pendulum(job, table, where, (yaw, sway), found, periods, flags)
     flags += [flag for runs in periods for flag in runs.flags]
-    return Suspended(table, found, tuple(periods), tuple(flags))
+    return Suspended(table, yaw, found, tuple(periods), tuple(flags))
+
+
+def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
+    """Return what was counted, or count it in the records, whose errors are alike."""
+    if not table.records:
+        return BeatCount(table.oscillations or 0.0, table.beats or 0.0, table.counting_error or 0.5)
+    counts = []
+    for name in table.records:
+        recording = read_recording(
+            job.beside(name), job.columns, sample_rate_hz=table.sample_rate_hz
+        )
+        series, _ = chosen_series(job, recording, table.channel, where)
+        part = usable_part(series).series
+        if not np.isfinite(part.values).all():
+            raise DataError(f"{part.where}: beats are not counted over gaps; choose another record")
+        counts.append(count_beats(part.time_s, part.values))
+    return BeatCount(
+        sum(one.oscillations for one in counts),
+        sum(one.beats for one in counts),
+        sum(one.counting_error for one in counts),
+    )
 
 
 def _yaw(
     job: Job[BifilarTable],
+    source: YawTable,
     table: SuspensionTable,
-    where: str,
     sway: Estimate | None,
     found: dict[str, Assessment],
     periods: list[PeriodRuns],
     flags: list[Flag],
-) -> Estimate | None:
-    """Yaw by its period and by the ratio; return the sway period, if it is known."""
-    source, seed = table.yaw, job.table.monte_carlo_seed
-    if source is None:
-        return sway
+) -> tuple[Estimate, Estimate | None]:
+    """Yaw by its period and by the ratio; return the periods of yaw and, if known, of sway."""
+    seed, where = job.table.monte_carlo_seed, f'suspensions["{table.name}"]'
     gravity, spacing = gravity_of(job.table), given(table, "half_spacing_m")
     runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations)
     periods.append(runs)
@@ -95,14 +129,13 @@ def _yaw(
         yaw, sway = runs.periods[1 - place], sway or own
         ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
     flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
-    found["yaw by period"] = yaw_from_period(
-        yaw, spacing, given(table, "line_m"), gravity, seed=seed
-    )
-    if ratio is not None:
-        found["yaw by ratio"] = yaw_from_ratio(ratio, exactly(1.0), spacing, seed=seed + 1)
-    elif sway is not None:
-        found["yaw by ratio"] = yaw_from_ratio(yaw, sway, spacing, seed=seed + 1)
-    return sway
+    by_period = yaw_from_period(yaw, spacing, given(table, "line_m"), gravity, seed=seed)
+    found["yaw by period"] = without_air(job.table, by_period, seed=seed + 2)
+    both = (ratio, exactly(1.0)) if ratio is not None else (yaw, sway)
+    if both[1] is not None:
+        by_ratio = yaw_from_ratio(both[0], both[1], spacing, seed=seed + 1)
+        found["yaw by ratio"] = without_air(job.table, by_ratio, by_sway=True, seed=seed + 3)
+    return yaw, sway
 
 
 def _sway_mode(runs: PeriodRuns, line_m: float, gravity_m_s2: float) -> int:
@@ -123,12 +156,19 @@ def _double_pendulum(
     job: Job[BifilarTable],
     table: SuspensionTable,
     where: str,
-    sway: Estimate | None,
+    known: tuple[Estimate | None, Estimate | None],
     found: dict[str, Assessment],
     periods: list[PeriodRuns],
     flags: list[Flag],
 ) -> None:
-    """Pitch (or roll) and depth, from both modes and the lines' own period."""
+    """Pitch (or roll) and depth, from both modes and the lines' own period.
+
+    Parameters
+    ----------
+    known
+        Periods of yaw and sway, as far as they were measured.
+    """
+    yaw, sway = known
     for axis in ("pitch", "roll"):
         source: PendulumTable | None = getattr(table, axis)
         if source is None:
@@ -140,10 +180,8 @@ def _double_pendulum(
             slow, fast, lines, gravity, seed=job.table.monte_carlo_seed + 20
         )
         found[axis], found["depth"] = result.gyradius, result.depth
-        if axis == "pitch" and table.yaw is not None:
-            yaw = found["yaw by period"].budget.shares
-            period = next(one.input for one in yaw if one.name == "period_s")
-            flags += resonance_flags(period.value, slow.value)
+        if axis == "pitch" and yaw is not None:
+            flags += resonance_flags(yaw.value, slow.value)
 
 
 def _both(

@@ -23,6 +23,7 @@ from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.inertia.air import without_air
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
 from pmm.inertia.properties import correlation, properties
@@ -190,10 +191,18 @@ def _model(
     )
     axis = model.axis
     flags += found.flags
+    own = without_air(table, found.gyradius, depth=found.cg_below_pivot.result)
+    in_air = "_in_air" if table.entrained_air is not None else ""
+    with_air = ", with its air" if in_air else ""
     findings += [
         assessed("cg_below_pivot_m", "model: CG below the pivot", found.cg_below_pivot),
-        assessed(f"i_{axis}_kg_m2", f"model: {axis} inertia about its CG", found.about_cg),
-        assessed(f"k_{axis}_m", f"model: {axis} gyradius", found.gyradius),
+        assessed(
+            f"i_{axis}{in_air}_kg_m2",
+            f"model: {axis} inertia about its CG{with_air}",
+            found.about_cg,
+        ),
+        assessed(f"k_{axis}{in_air}_m", f"model: {axis} gyradius{with_air}", found.gyradius),
+        *([assessed(f"k_{axis}_m", f"model: {axis} gyradius", own)] if in_air else []),
         Finding("share", "model's part of the total inertia", Estimate(found.share, 0.0)),
     ]
     cg_z = None
@@ -207,7 +216,7 @@ def _model(
     return properties(
         table.name,
         model,
-        {axis: found.gyradius.result},
+        {axis: own.result},
         take_off=table.take_off,
         budgets=[one.budget for one in parts],
         flags=found.flags,

@@ -9,6 +9,7 @@ import numpy as np
 
 from analysis.inertia.swing_static import LeverSeries
 from hardware.description.oscillator import Plane
+from pmm.inertia.air import AirTable, air_rules
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
 from pmm.inertia.reading import one_of, together
@@ -122,6 +123,7 @@ class SwingTable:
     u_gravity_m_s2: float = 0.0
     air_density_kg_m3: float = 0.0
     body_density_kg_m3: float | None = None
+    entrained_air: AirTable | None = None
     loaded: StateTable | None = None
     model: OnSwing = field(default_factory=OnSwing)
     second_pivot: SecondPivotTable | None = None
@@ -137,6 +139,7 @@ class SwingTable:
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """A loaded swing needs the model's mass; the workflow's order is kept."""
+        yield from air_rules(table)
         model = table.get("model", {})
         if "loaded" in table and isinstance(model, dict) and "mass_kg" not in model:
             yield "model", "needs mass_kg, for the inertia of what is on the swing"

@@ -1,0 +1,86 @@
+"""Air that swings along: what it adds to a gyradius, and taking that off."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from analysis.inertia.corrections import without_entrained_air
+from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value, sqrt
+from pmm.inertia.given import given, given_or_none
+
+
+@dataclass(frozen=True)
+class AirTable:
+    """The air's added mass.
+
+    Attributes
+    ----------
+    coefficient
+        Added mass over displaced mass in the rotation, by shape: 0.2 to 1 and more across.
+    sway_coefficient
+        The same athwartships; only yaw by ratio or beats needs it.
+    gyradius_m
+        Of the displaced volume about the axis; the body's own where left out.
+    """
+
+    coefficient: float
+    u_coefficient: float = 0.0
+    sway_coefficient: float = 0.0
+    u_sway_coefficient: float = 0.0
+    gyradius_m: float | None = None
+    u_gyradius_m: float = 0.0
+
+
+def air_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the keys without which the displaced air is not known."""
+    if "entrained_air" in table:
+        for key in ("air_density_kg_m3", "body_density_kg_m3"):
+            if not table.get(key):
+                yield key, "is missing beside entrained_air: both give the displaced air"
+
+
+def without_air(
+    table: Any,
+    found: Assessment,
+    *,
+    depth: Estimate | None = None,
+    by_sway: bool = False,
+    seed: int = 0,
+) -> Assessment:
+    """Take the entrained air of a job's file off a gyradius; it stays where the file has none.
+
+    Parameters
+    ----------
+    depth
+        Of the centre of gravity below the axis of the swing, which the air swings about too.
+    by_sway
+        Whether the gyradius comes from a ratio to sway, which the air delays as well.
+    """
+    air: AirTable | None = table.entrained_air
+    if air is None:
+        return found
+    ratio = table.air_density_kg_m3 / table.body_density_kg_m3
+    inputs = {
+        "gyradius_in_air_m": found.result,
+        "coefficient": given(air, "coefficient"),
+        "depth_m": depth or exactly(0.0, "m"),
+    }
+    if by_sway:
+        inputs["sway_coefficient"] = given(air, "sway_coefficient")
+    own = given_or_none(air, "gyradius_m")
+    if own is not None:
+        inputs["air_gyradius_m"] = own
+
+    def gyradius(
+        gyradius_in_air_m: Value, coefficient: Value, depth_m: Value, **more: Value
+    ) -> Any:
+        square = gyradius_in_air_m * gyradius_in_air_m
+        square = square * (1.0 + ratio * more.get("sway_coefficient", 0.0))
+        volume = more.get("air_gyradius_m", gyradius_in_air_m)
+        about = sqrt(volume * volume + depth_m * depth_m)
+        # of 1 kg of body, so the displaced air is the ratio and the inertia the square
+        return sqrt(without_entrained_air(square, ratio, coefficient, about))
+
+    return assess(found.budget.name, gyradius, inputs, unit="m", seed=seed)

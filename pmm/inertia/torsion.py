@@ -1,0 +1,176 @@
+"""A body on a torsion rod: inertia about one axis, or in a plane from several."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from analysis.inertia.compound import torsional_inertia, torsional_stiffness
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value
+from analysis.inertia.plane_inertia import PlaneInertia, plane_inertia
+from hardware.description.errors import DataError
+from pmm.inertia.given import given
+from pmm.inertia.outcome import Finding, PlaneAxes, assessed
+from pmm.inertia.reading import Job, one_of
+from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
+
+
+@dataclass(frozen=True)
+class BarTable:
+    """A round bar whose inertia across its length calibrates the rod."""
+
+    mass_kg: float
+    length_m: float
+    period: PeriodSource
+    u_mass_kg: float = 0.0
+    u_length_m: float = 0.0
+    diameter_m: float = 0.0
+    u_diameter_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class TorsionAxis(PeriodSource):
+    """The body hung with the rod at an angle to its z axis, towards x."""
+
+    angle_deg: float | None = None
+    u_angle_deg: float = 0.0
+    angle_rad: float | None = None
+    u_angle_rad: float = 0.0
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """One angle, one way to the period."""
+        yield from PeriodSource.rules(table)
+        yield from one_of(table, "angle_deg", "angle_rad")
+
+    @property
+    def angle(self) -> Estimate:
+        """The angle in radians."""
+        return given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
+
+
+@dataclass(frozen=True)
+class TorsionTable:
+    """The rod, by its stiffness or by a bar on it; ``axes`` for inertia in the x-z plane."""
+
+    stiffness_n_m_rad: float | None = None
+    u_stiffness_n_m_rad: float = 0.0
+    bar: BarTable | None = None
+    axes: tuple[TorsionAxis, ...] = ()
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """One way to the stiffness; in a plane, three axes or more."""
+        yield from one_of(table, "stiffness_n_m_rad", "bar")
+        axes = table.get("axes")
+        if isinstance(axes, list) and len(axes) < 3:
+            yield "axes", f"are {len(axes)}; roll, yaw and their product need three or more"
+
+
+def stiffness(
+    job: Job[Any], table: TorsionTable, periods: list[PeriodRuns], seed: int
+) -> tuple[Estimate, list[Finding]]:
+    """Return the rod's stiffness, as given or by its bar."""
+    if table.bar is None:
+        return given(table, "stiffness_n_m_rad"), []
+    runs = read_period(job, table.bar.period, "torsion.bar.period")
+    periods.append(runs)
+    inputs = {key: given(table.bar, key) for key in ("mass_kg", "length_m", "diameter_m")}
+    inputs["period_s"] = runs.period
+
+    def rod(mass_kg: Value, length_m: Value, diameter_m: Value, period_s: Value) -> Value:
+        square = length_m * length_m / 12.0 + diameter_m * diameter_m / 16.0
+        return torsional_stiffness(mass_kg * square, period_s)
+
+    found = assess("c", rod, inputs, unit="N m/rad", seed=seed)
+    return found.result, [assessed("stiffness_n_m_rad", "torsion rod: stiffness", found)]
+
+
+def about_rod(rod: Estimate, period: Estimate, seed: int) -> Assessment:
+    """Return the inertia of what hangs, about the rod."""
+    inputs = {"stiffness_n_m_rad": rod, "period_s": period}
+    return assess("I", torsional_inertia, inputs, unit="kg m2", seed=seed)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Inertia in the x-z plane, and about the axes that it comes from.
+
+    Attributes
+    ----------
+    axes
+        Angle of each axis to body z, and the inertia about it with the period's uncertainty.
+    scale_relative
+        Standard uncertainty of the stiffness, which all axes share.
+    """
+
+    inertia: PlaneInertia
+    axes: tuple[tuple[float, Estimate], ...]
+    scale_relative: float
+
+    def findings(self) -> Iterator[Finding]:
+        """Yield roll, yaw and product of inertia, and the principal axis."""
+        for k, (name, what) in enumerate(_IN_PLANE.items()):
+            own = self.inertia.estimate(k)
+            spread = math.hypot(own.uncertainty, own.value * self.scale_relative)
+            yield Finding(name, what, Estimate(own.value, spread, own.unit))
+        yield Finding("psi_rad", "principal x axis, from body x", self.inertia.principal_angle)
+
+    def ellipse(self, mass: Estimate) -> PlaneAxes:
+        """Return the principal gyradii of a body of that mass, with the measured axes.
+
+        Raises
+        ------
+        DataError
+            If a principal inertia is not above zero.
+        """
+        xx, zz, xz = (float(value) for value in self.inertia.values)
+        psi = self.inertia.principal_angle_rad
+        s, c = math.sin(psi), math.cos(psi)
+        first = xx * c * c + zz * s * s - 2.0 * xz * s * c
+        second = xx * s * s + zz * c * c + 2.0 * xz * s * c
+        if min(first, second) <= 0.0:
+            raise DataError(
+                f"principal inertias of {first:.3g} and {second:.3g} kg m2 cannot be: check the "
+                "axes' angles (from body z towards body x)"
+            )
+        measured = tuple((angle, _gyradius(about, mass)) for angle, about in self.axes)
+        roll, yaw = (math.sqrt(one / mass.value) for one in (first, second))
+        return PlaneAxes(roll, yaw, psi, measured)
+
+
+_IN_PLANE = {
+    "ixx_kg_m2": "roll inertia",
+    "izz_kg_m2": "yaw inertia",
+    "ixz_kg_m2": "product of inertia, sum m x z",
+}
+
+
+def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
+    value = math.sqrt(inertia.value / mass.value)
+    return Estimate(value, 0.5 * value * inertia.relative, "m")
+
+
+def in_plane(
+    job: Job[Any], axes: Sequence[TorsionAxis], rod: Estimate, periods: list[PeriodRuns]
+) -> Plane:
+    """Return the inertia in the x-z plane from several axes.
+
+    Raises
+    ------
+    DataError
+        If the axes are too near to each other.
+    """
+    about = []
+    for number, one in enumerate(axes, 1):
+        runs = read_period(job, one, f"torsion.axes[{number}]")
+        periods.append(runs)
+        value = torsional_inertia(rod.value, runs.period.value)
+        spread = 2.0 * value * runs.period.relative
+        about.append(Estimate(value, spread, "kg m2", runs.period.degrees_of_freedom))
+    angles = [one.angle.value for one in axes]
+    spread = math.sqrt(sum(one.angle.uncertainty**2 for one in axes) / len(axes))
+    found = plane_inertia(about, angles, angle_uncertainty_rad=spread)
+    return Plane(found, tuple(zip(angles, about, strict=True)), rod.relative)
