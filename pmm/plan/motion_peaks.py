@@ -86,7 +86,7 @@ def _mass(run: RunPlan, model: Ship, plane: Plane) -> NDArray[np.float64]:
     if added is not None:
         coupling += sign * added.mass_kg * added.x_m
         mass += added.mass_kg
-        inertia += added.inertia_kg_m2 + added.mass_kg * added.x_m**2
+        inertia += added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
     return np.array([[mass, coupling], [coupling, inertia]])
 
 

@@ -92,6 +92,9 @@ def _number_faults(entry: Entry, place: Place) -> Iterator[Fault]:
                 if key == "loads_n":
                     asked += "; the sign of a load is that of its channel"
                 yield Fault((*place, key), f"has {value:g}, which should be {asked}")
+    if entry.known_mass is not None and entry.known_mass.mass_kg <= 0.0:
+        mass = entry.known_mass.mass_kg
+        yield Fault((*place, "known_mass", "mass_kg"), f"= {mass:g} should be above 0")
     if entry.kind is RunKind.PUSH and len(entry.loads_n) > 1:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
     if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:

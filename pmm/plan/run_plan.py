@@ -44,13 +44,13 @@ class KnownMass:
         What is added.
     x_m
         Where its centre lies, forward of the midpoint between the struts.
-    inertia_kg_m2
+    own_inertia_kg_m2
         About its own centre.
     """
 
     mass_kg: float
     x_m: float = 0.0
-    inertia_kg_m2: float = 0.0
+    own_inertia_kg_m2: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,7 @@ PLANS = [
         "[[runs]]\nkind = 'known-mass'\nmotion = 'heave'",
         "runs[1] needs known_mass for a run of kind",
     ),
+    (HEAVE + "known_mass = { mass_kg = 0.0 }", "known_mass.mass_kg = 0 should be above 0"),
     (HEAVE + HEAVE, "2 runs would be called 'heave-f0.8-a20'"),
     (HEAVE + "name = 'a/b'", "= 'a/b' cannot be the name of a file"),
     ("[zero]\nevery = 0\n" + HEAVE, "zero.every = 0 should be above 0"),
