@@ -1,13 +1,21 @@
 """The period fit beside its peers, for success from poor starts and for accuracy.
 
-``curve_fit`` is the peer: five parameters of one damped cosine with offset, iterated together from
-the same start. A start is the truth times a factor from 0.1 to 10, evenly in its logarithm, for the
-period, and as far off for amplitude and decay; the phase is anything.
+``curve_fit``: five parameters of one damped cosine with offset, iterated together from the same
+start. A start is the truth times a factor from 0.1 to 10, evenly in its logarithm, for the period,
+and as far off for amplitude and decay; the phase is anything.
+
+``BicycleParameters``: the period fit of its ``period`` module, the same curve by ``leastsq``; once
+from that start in place of its own guess, and once as it is used, from its own guess of a record in
+volts. The figure that it draws of each fit is left out.
 """
 
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any, TypeAlias
+from unittest.mock import MagicMock, patch
 
 import numpy as np
 from numpy.random import Generator
@@ -61,22 +69,69 @@ class Truth:
         return t, clean + self.noise_rms * generator.standard_normal(t.size)
 
 
+Fit: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], float]
+"""Takes times, values and a poor start; returns a period, infinite where it found none."""
+
+
 def compare_rivals(starts: int = 1000, *, seed: int = 0, truth: Truth | None = None) -> list[Rival]:
-    """Fit the same records from the same poor starts with both methods."""
+    """Fit the same records from the same poor starts with every method; ours is the first."""
     truth = truth or Truth()
     generator = np.random.default_rng(seed)
-    outcomes: dict[str, list[tuple[float, float]]] = {"projection": [], "curve_fit": []}
+    methods = {"projection": _own_period, "curve_fit": _curve_fit_period, **_bicycle()}
+    outcomes: dict[str, list[tuple[float, float]]] = {name: [] for name in methods}
     for _ in range(starts):
         t, y = truth.record(generator)
         start = _poor_start(truth, generator)
-        began = time.perf_counter()
-        own = fit_damped(t, y, start_periods_s=(start[0],)).modes[0].period_s
-        middle = time.perf_counter()
-        peer = _curve_fit_period(t, y, start)
-        ended = time.perf_counter()
-        outcomes["projection"].append((own / truth.period_s - 1.0, middle - began))
-        outcomes["curve_fit"].append((peer / truth.period_s - 1.0, ended - middle))
+        for name, fit in methods.items():
+            began = time.perf_counter()
+            period = fit(t, y, start)
+            took = time.perf_counter() - began
+            outcomes[name].append((period / truth.period_s - 1.0, took))
     return [_rival(name, np.array(rows)) for name, rows in outcomes.items()]
+
+
+def _own_period(t: FloatArray, y: FloatArray, start: FloatArray) -> float:
+    return fit_damped(t, y, start_periods_s=(float(start[0]),)).modes[0].period_s
+
+
+def _bicycle() -> dict[str, Fit]:
+    """Return the rival's fits, where it is installed (extra ``bench``)."""
+    try:
+        from bicycleparameters import period as module
+    except ImportError:
+        return {}
+    return {
+        "BicycleParameters": partial(_bicycle_period, module, None),
+        "BicycleParameters, its own guess": partial(_bicycle_period, module, module.make_guess),
+    }
+
+
+def _bicycle_period(
+    module: Any, guess: Any, t: FloatArray, y: FloatArray, start: FloatArray
+) -> float:
+    """Fit as the rival does, from its own guess, or from the poor start in place of it."""
+    period, decay, amplitude, phase, offset = start
+    omega = 2.0 * np.pi / period
+    sine, cosine = -amplitude * np.sin(phase), amplitude * np.cos(phase)
+    undamped = np.hypot(omega, decay)
+    poor = np.array([offset, sine, cosine, decay / undamped, undamped])
+    # its guess leaves out what is within 0.1: it expects volts
+    values = y if guess is None else 20.0 * y
+    chosen = guess or (lambda data, rate: poor)  # noqa: ARG005
+    with (
+        warnings.catch_warnings(),
+        np.errstate(all="ignore"),
+        patch.object(module, "plt", MagicMock()),
+        patch.object(module, "plot_osfit"),
+        patch.object(module, "make_guess", chosen),
+    ):
+        module.plt.subplots.return_value = (MagicMock(), MagicMock())
+        warnings.simplefilter("ignore")
+        try:
+            found = module.get_period(values, t, "")
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError):
+            return float("inf")
+    return abs(float(found.nominal_value))
 
 
 def _rival(name: str, rows: FloatArray) -> Rival:

@@ -1,0 +1,96 @@
+"""What whole inertia tests show on simulated records: coverage, largest errors, the bound."""
+
+import math
+
+import numpy as np
+
+from analysis.inertia.bifilar import yaw_period
+from analysis.inertia.damped import fit_damped
+from analysis.inertia.record import from_runs
+from benchmarks.inertia_campaigns import (
+    HULL,
+    RUNS,
+    bifilar_campaign,
+    bifilar_run,
+    pitch_campaign,
+    series_of,
+    swing_campaign,
+)
+from benchmarks.outcome import Report, Row
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.pendulum.effects import make_effect
+from sim.pendulum.simulate import simulate_swing
+
+_CAMPAIGNS, _TESTS, _RECORDS = 400, 40, 1000
+
+
+def bound_ratio(records: int, seed: int) -> float:
+    """Return the scatter of the period of simulated swings over its Cramer-Rao bound.
+
+    One swing, viscous damping, the noise new in each record.
+    """
+    noise = 2e-4
+    damping = make_effect("viscous_damping", damping_ratio=0.004)
+    body = {"upper_pivot": True, "duration_s": 60.0, "sample_rate_hz": 10.0}
+    clean = series_of(simulate_swing(effects=[damping], seed=seed, **body), "angle")
+    generator = np.random.default_rng(seed)
+    truth = fit_damped(clean.time_s, clean.values).modes[0]
+    found = []
+    for _ in range(records):
+        values = clean.values + noise * generator.standard_normal(clean.values.size)
+        found.append(fit_damped(clean.time_s, values).modes[0].period_s)
+    t = clean.time_s - clean.time_s[0]
+    angle, fall = 2.0 * np.pi * t / truth.period_s + truth.phase_rad, np.exp(-truth.decay_1_s * t)
+    slopes = (
+        truth.amplitude * fall * np.sin(angle) * 2.0 * np.pi * t / truth.period_s**2,
+        -t * truth.amplitude * fall * np.cos(angle),
+        fall * np.cos(angle),
+        -truth.amplitude * fall * np.sin(angle),
+        np.ones(t.size),
+    )
+    information = np.stack(slopes) @ np.stack(slopes).T / noise**2
+    bound = math.sqrt(float(np.linalg.inv(information)[0, 0]))
+    return float(np.std(found, ddof=1)) / bound
+
+
+def run_simulated(quick: bool, report: Report) -> tuple[dict[str, list[Row]], dict[str, float]]:
+    """Return the tables of the simulated tests, and what the thresholds judge."""
+    rows: list[Row] = []
+    measured: dict[str, float] = {"over_bound": bound_ratio(50 if quick else _RECORDS, 1)}
+    for name, campaign in (("bifilar", bifilar_campaign), ("swing", swing_campaign)):
+        report(f"{name} campaigns")
+        generator = np.random.default_rng(2014)
+        all_of = [campaign(generator) for _ in range(2 if quick else _CAMPAIGNS)]
+        off = np.array([one.found.value / one.truth - 1.0 for one in all_of])
+        covered = float(np.mean([one.covered for one in all_of]))
+        width = float(np.median([one.width for one in all_of]))
+        measured |= {f"{name}_covered": covered, f"{name}_not_too_often": covered}
+        if name == "bifilar":
+            measured["bifilar_width"] = width
+        rows.append(
+            {
+                "test": name,
+                "campaigns": len(all_of),
+                "covered": covered,
+                "width over ideal": width,
+                "mean error": float(off.mean()),
+                "RMS error": float(np.sqrt(np.mean(off**2))),
+            }
+        )
+    report("records")
+    measured |= worst_errors(2 if quick else _TESTS)
+    return {"Simulated campaigns, gyradius and its 95 % interval": rows}, measured
+
+
+def worst_errors(tests: int) -> dict[str, float]:
+    """Return the largest errors of gyradius and depth where tape and scale are exact."""
+    generator = np.random.default_rng(7)
+    gyradius, depth = [], []
+    for _ in range(tests):
+        runs = [bifilar_run(HULL, int(generator.integers(2**31)), []) for _ in range(RUNS)]
+        ideal = yaw_period(
+            HULL.yaw_gyradius_m, HULL.half_spacing_m, HULL.line_length_m, STANDARD_GRAVITY_M_S2
+        )
+        gyradius.append(abs(from_runs(runs).estimate.value / ideal - 1.0))
+        depth.append(abs(pitch_campaign(generator).depth.result.value - HULL.depth_m))
+    return {"gyradius": max(gyradius), "depth_mm": 1e3 * max(depth)}
