@@ -19,6 +19,7 @@ from pmm.recorder.run_recorder import Outcome
 from pmm.run.closing import Closing
 from pmm.run.conduct import Begin, Conduct
 from pmm.run.errors import NotAtRestError, OverspeedError
+from pmm.run.measurement import Measurement
 from pmm.run.phases import ENTER, NEXT, at_rest
 from pmm.run.states import Command, Machine, RunStateError, State
 from pmm.run.status import RunOutcome, Status
@@ -83,7 +84,7 @@ class RunControl:
         self._machine = Machine()
         self._conduct = Conduct(rig, rig_file, begin)
         self._ending = Outcome.COMPLETE
-        self._halting = self._winding_down = False
+        self._halting = self._winding_down = self._mute = False
         self._closing: Closing | None = None
         self._executor = executor
         self.alarm_count = 0
@@ -94,6 +95,11 @@ class RunControl:
     def state(self) -> State:
         """Where run control stands."""
         return self._machine.state
+
+    @property
+    def measurement(self) -> Measurement | None:
+        """The run that is being recorded; ``None`` between runs."""
+        return self._conduct.measurement
 
     @property
     def question(self) -> str:
@@ -167,8 +173,7 @@ class RunControl:
     def _follow(self, lateness_s: float) -> None:
         """Let time pass for recording, closing and the present state."""
         c = self._conduct
-        if c.measurement is not None:
-            c.measurement.cycle(lateness_s, self._clock())
+        self._record(lateness_s)
         if self._closing is not None and self._closing.done():
             self._closed(self._closing)
         if self.state is State.FAULT:
@@ -182,6 +187,18 @@ class RunControl:
             following = NEXT[self.state](c)
             if following is not None:
                 self._go(following)
+
+    def _record(self, lateness_s: float) -> None:
+        """Record a cycle; in a fault a recorder that fails must not keep the axes from stopping."""
+        measurement = self._conduct.measurement
+        if measurement is None or self._mute:
+            return
+        try:
+            measurement.cycle(lateness_s, self._clock())
+        except HardwareError:
+            if self.state is not State.FAULT:
+                raise
+            self._mute = True
 
     def _go(self, state: State) -> None:
         c = self._conduct
@@ -283,7 +300,7 @@ class RunControl:
             self.rig.stop()
         if self.state is State.FAULT:
             return
-        self.fault = error
+        self.fault, self._mute = error, False
         self._conduct.questions.withdraw()
         self._winding_down = True
         self._machine.go(State.FAULT, self.rig.number)
@@ -349,13 +366,15 @@ class RunControl:
         """Stop along the profile; a run whose gate has closed already counts as complete."""
         self._halting = True
         if self.state is State.DONE:
+            for one in self.rig.powered():
+                one.disable()
             self._machine.go(State.STOPPED, self.rig.number)
         elif self.state is not State.STOPPING:
             self._ending = Outcome.STOPPED
             self._go(State.STOPPING)
 
     def _quick_stop(self) -> None:
-        if self.state in NEXT:
+        if self.state in NEXT or self.state is State.DONE:
             self._stop()
         self._halting = True
         self.rig.quick_stop()

@@ -122,6 +122,7 @@ def bench(
     start: bool = True,
     scene: dict[str, float] | None = None,
     view: Any = None,
+    reserve_mb: float = 1.0,
 ) -> Iterator[Bench]:
     """A rig with the runs to do; ``serial`` parts are on ``sim://``."""
     whole = dict(tables or TABLES)
@@ -143,7 +144,7 @@ def bench(
         oscillator=VERTICAL_1963,
         hardware=configuration,
         gauges=gauges,
-        recorder=RecorderSettings(reserve_mb=1.0),
+        recorder=RecorderSettings(reserve_mb=reserve_mb),
         realtime=False,
         hardware_tables=MappingProxyType(whole),
     )
