@@ -24,6 +24,7 @@ from pmm.recorder.files import (
     PULSES,
     RECORDING,
     SAMPLES,
+    sync_folder,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
@@ -106,6 +107,7 @@ def convert(run: RunData, flags: Sequence[Flag] = ()) -> Path:
     for part in run.folder.glob(f".{RECORDING}.*.part"):
         part.unlink()  # of a conversion that was killed
     write_recording(recording, path)
+    sync_folder(run.folder)
     return path
 
 

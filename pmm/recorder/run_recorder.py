@@ -209,6 +209,7 @@ class RunRecorder:
             self._journal.close()
 
     def _close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+        self.frame = _let_go  # the loop may go on while another thread closes
         self._hand_over()
         self._journal.finish()
         self._journal.check()
@@ -238,3 +239,7 @@ class RunRecorder:
             line = as_line([found.cycles, found.p50_s, found.p99_s, found.worst_s, found.late])
             pieces.append((CYCLES, lambda: line))
         self._journal.hand_over(pieces)
+
+
+def _let_go(_frame: Frame) -> None:
+    """Take no notice of a frame after the run."""
