@@ -68,17 +68,24 @@ class Simulator:
             If an effect cannot act on this rig.
         """
         alike = all(one.repeats for one in effects)
-        found = []
-        for number, run in enumerate(self.stack.runs):
-            steady = self._steady(run, (*self.on, *effects))
-            in_time = self._in_time_nominal[number]
-            if not alike:
-                changed = self._in_time(run, (*self.on, *effects))
-                quiet = tuple(one for one in effects if one.repeats)
-                base = self._in_time(run, (*self.on, *quiet)) if quiet else in_time
-                steady = np.where(self._is_steady(run), steady + changed - base, changed)
-            found.append(np.where(self._is_steady(run), steady, in_time) if alike else steady)
-        return np.concatenate(found)
+        parts = [
+            self._run(number, effects) if alike else self._not_repeating(number, effects)
+            for number in range(len(self.stack.runs))
+        ]
+        return np.concatenate(parts)
+
+    def _run(self, number: int, effects: Sequence[Effect]) -> FloatArray:
+        run = self.stack.runs[number]
+        steady, repeats = self._steady(run, (*self.on, *effects)), self._is_steady(run)
+        return steady if repeats.all() else np.where(repeats, steady, self._quiet(number))
+
+    def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
+        run = self.stack.runs[number]
+        quiet = tuple(one for one in effects if one.repeats)
+        changed = self._in_time(run, (*self.on, *effects))
+        base = self._in_time(run, (*self.on, *quiet)) if quiet else self._quiet(number)
+        steady = self._steady(run, (*self.on, *effects)) + changed - base
+        return np.where(self._is_steady(run), steady, changed)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
@@ -86,8 +93,14 @@ class Simulator:
         return np.concatenate([self._steady(run, on) for run in self.stack.runs])
 
     @cached_property
-    def _in_time_nominal(self) -> tuple[FloatArray, ...]:
-        return tuple(self._in_time(run, self.on) for run in self.stack.runs)
+    def _records(self) -> dict[int, FloatArray]:
+        """Runs simulated in time without any further effect, as they are asked for."""
+        return {}
+
+    def _quiet(self, number: int) -> FloatArray:
+        if number not in self._records:
+            self._records[number] = self._in_time(self.stack.runs[number], self.on)
+        return self._records[number]
 
     def _is_steady(self, run: GapRun) -> NDArray[np.bool_]:
         return np.array([one.part in STEADY_PARTS for one in run.observed.components])

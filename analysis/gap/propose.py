@@ -15,15 +15,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
-from analysis.gap.fit import Fit, Problem, at
-from analysis.gap.free import Free, columns
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.components import GapRun, Stack
+from analysis.gap.fit import Fit, Problem
+from analysis.gap.forecast import Forecast, forecast, further, planned
+from analysis.gap.free import Free
 from analysis.gap.priors import Priors
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
-from sim.effects.campaign import CampaignRun
 
 FloatArray = NDArray[np.float64]
 
@@ -104,16 +103,14 @@ def _oscillations(
     free: Sequence[Free],
     priors: Priors,
 ) -> Iterator[Proposal]:
-    runs = [_planned(problem, one, number) for number, one in enumerate(_set_points(choices))]
+    runs = [planned(problem, one, number) for number, one in enumerate(_set_points(choices))]
     runs = [run for run in runs if _bearable(problem, run, choices)]
     if not runs:
         return
-    simulator = replace(problem.simulator, stack=Stack.of(runs))
-    nuisances = Nuisances(columns(simulator, free, priors))
-    there = Problem(simulator, nuisances, problem.free)
-    told = [_forecast(problem, there, fit) for fit, _ in leading]
+    there = further(problem, runs, free, priors)
+    told = [forecast(problem, there, fit) for fit, _ in leading]
     for number, run in enumerate(runs):
-        rows = simulator.stack.run == number
+        rows = there.simulator.stack.run == number
         gain = sum(
             leading[i][1] * leading[j][1] * min(_apart(told[i], told[j], rows), ENOUGH)
             for i, j in combinations(range(len(leading)), 2)
@@ -122,42 +119,7 @@ def _oscillations(
         yield Proposal("oscillation", run.set_point, 0.0, gain / max(share, 1e-12), "")
 
 
-@dataclass(frozen=True, eq=False)
-class _Forecast:
-    """What an answer expects of further runs: mean and the root of its covariance, in sigma."""
-
-    mean: FloatArray
-    root: FloatArray
-
-
-def _forecast(problem: Problem, there: Problem, fit: Fit | None) -> _Forecast:
-    """Return the predictive distribution at further runs, given the campaign."""
-    here = problem.nuisances.columns
-    count = len(problem.free)
-    own, wide = here, there.nuisances.columns
-    mean, effect = np.zeros(len(wide)), np.zeros((len(here), 0))
-    ahead = np.zeros((len(wide), 0))
-    units = np.zeros(0)
-    if fit is not None:
-        try:
-            further = at(there, fit.candidates, fit.units)
-        except PmmError:
-            further = None
-        if further is not None:
-            mean, ahead, effect, units = further.signature, further.columns, fit.columns, fit.units
-    shared = np.hstack((own, effect))
-    covariance = np.linalg.inv(np.eye(shared.shape[1]) + shared.T @ shared)
-    residual = problem.residual - (0.0 if fit is None else fit.signature)
-    fitted = covariance @ (shared.T @ residual)
-    # Coefficients and settings are the same there; frequency and noise are each run's own.
-    kept = np.r_[np.arange(count), own.shape[1] + np.arange(len(units))]
-    ahead_shared = np.hstack((wide[:, :count], ahead))
-    root = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
-    mean = mean + ahead_shared @ fitted[kept]
-    return _Forecast(mean, np.hstack((ahead_shared @ root, wide[:, count:])))
-
-
-def _apart(one: _Forecast, other: _Forecast, rows: NDArray[np.bool_]) -> float:
+def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
     """Return the expected log odds between two answers after a run, by symmetric divergence."""
     difference = one.mean[rows] - other.mean[rows]
     total = 0.0
@@ -180,23 +142,6 @@ def _set_points(choices: Choices) -> Iterator[SetPoint]:
     ):
         if medium is Medium.WATER or not speed:
             yield SetPoint(float(frequency), float(radius), phase, speed, medium)
-
-
-def _planned(problem: Problem, set_point: SetPoint, number: int) -> GapRun:
-    """Return a run that has not been made, with the noise of the nearest one that has."""
-    made = problem.simulator.stack.runs
-    near = min(
-        made, key=lambda run: abs(math.log(run.set_point.frequency_hz / set_point.frequency_hz))
-    )
-    kept = [at for at, one in enumerate(near.observed.components) if one.part in STEADY_PARTS]
-    parts = tuple(near.observed.components[at] for at in kept)
-    longer = set_point.frequency_hz / near.set_point.frequency_hz
-    noise = near.observed.uncertainty[kept] * math.sqrt(longer)
-    place = CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
-    observed = Observation(parts, np.zeros(len(parts)), noise)
-    return GapRun(
-        f"further {number}", set_point, place, observed, near.periods, near.sample_rate_hz
-    )
 
 
 def _bearable(problem: Problem, run: GapRun, choices: Choices) -> bool:

@@ -1,0 +1,1 @@
+"""The gap diagnosis of campaigns: files in, answers out (:mod:`analysis.gap` does the thinking)."""
