@@ -49,9 +49,11 @@ class Kill:
         Seconds from the opening of the recorder to SIGKILL.
     samples
         Recovered samples; 0 if there were none yet.
+    lost
+        Samples that were taken and not recovered.
     loss_s
         Wall time from the last recovered sample to the kill, or from the first one taken if there
-        were none; 0 of a run that was closed.
+        were none; 0 where nothing was lost.
     valid
         Whether every recovered sample is the true one, bit by bit, and a second recovery changes
         nothing.
@@ -59,6 +61,7 @@ class Kill:
 
     after_s: float
     samples: int
+    lost: int
     loss_s: float
     valid: bool
     closed: bool
@@ -196,7 +199,7 @@ def judge(folder: Path, said: list[Any], after_s: float, killed: float) -> Kill:
     except (DataError, OSError):
         # Nothing whole yet: right if nothing older than a second had been taken.
         loss_s = killed - said[0][1] if said else 0.0
-        return Kill(after_s, 0, loss_s, loss_s <= 1.0, False)
+        return Kill(after_s, 0, len(said), loss_s, len(said) <= _RATE_HZ, False)
     recording = read_recording(found.path)
     values = recording.samples[0:3, 0 : recording.sample_count]
     first = round(recording.start_s * _RATE_HZ)
@@ -208,8 +211,8 @@ def judge(folder: Path, said: list[Any], after_s: float, killed: float) -> Kill:
     valid = valid and again.samples == found.samples and found.missing == 0
     closed = (folder / "complete.json").exists()
     last_s = at.get(numbers[-1], killed)
-    lost = bool(said) and int(said[-1][0]) > numbers[-1]
-    return Kill(after_s, len(numbers), killed - last_s if lost else 0.0, valid, closed)
+    lost = sum(n > numbers[-1] for n in truth)
+    return Kill(after_s, len(numbers), lost, killed - last_s if lost else 0.0, valid, closed)
 
 
 def run(quick: bool, report: Report) -> Outcome:
@@ -251,6 +254,7 @@ def _rows(kills: list[Kill]) -> list[Row]:
             "kill": k,
             "after, s": one.after_s,
             "samples": one.samples,
+            "samples lost": one.lost,
             "lost, s": one.loss_s,
             "as it was": "yes" if one.valid else "NO",
             "closed before": "yes" if one.closed else "no",
