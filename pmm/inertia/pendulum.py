@@ -10,6 +10,7 @@ from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.numeric import Value, sqrt
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import AirTable, air_rules, without_air
+from pmm.inertia.free_decay import decay_findings
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.outcome import (
     Finding,
@@ -69,8 +70,8 @@ class PendulumJob:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """The depth, a second axis that gives it, or a torsion rod."""
-        yield from one_of(table, "depth_m", "second", "torsion")
+        """The depth, a second axis that gives it, or a torsion rod; or the period alone."""
+        yield from one_of(table, "depth_m", "second", "torsion", needed=False)
         yield from air_rules(table)
         rod = table.get("torsion")
         several = isinstance(rod, dict) and rod.get("axes")
@@ -93,7 +94,7 @@ def run(path: str) -> Outcome:
     job = read_job(path, PendulumJob)
     table = job.table
     periods: list[PeriodRuns] = []
-    swung = _on_rod(job, periods) if table.torsion is not None else _on_axis(job, periods)
+    swung = _swing(job, periods)
     flags = once([*flags_of(table), *(flag for one in periods for flag in one.flags)])
     gyradii: dict[str, Estimate] = (
         {} if swung.gyradius is None else {table.axis: swung.gyradius.result}
@@ -117,6 +118,7 @@ def run(path: str) -> Outcome:
         missing,
         table.plane or planes.get(table.axis),
         compare(swung.findings, table.targets),
+        swung.notes,
         axes=swung.axes,
     )
 
@@ -128,6 +130,19 @@ class _Swung:
     findings: tuple[Finding, ...]
     gyradius: Assessment | None = None
     axes: PlaneAxes | None = None
+    notes: tuple[str, ...] = ()
+
+
+def _swing(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+    """Do what the file has the geometry for."""
+    table = job.table
+    if table.torsion is not None:
+        return _on_rod(job, table.torsion, periods)
+    if table.depth_m is not None or table.second is not None:
+        return _on_axis(job, periods)
+    _period(job, periods, pendulum=False)
+    note = "no depth_m, second or torsion is given: period and decay are all that follows"
+    return _Swung(tuple(decay_findings(periods[0])), notes=(note,))
 
 
 def _on_axis(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
@@ -159,14 +174,13 @@ def _on_axis(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
     return _Swung(tuple(findings), own)
 
 
-def _on_rod(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+def _on_rod(job: Job[PendulumJob], torsion: TorsionTable, periods: list[PeriodRuns]) -> _Swung:
     """On a torsion rod: about the file's axis, or about several in the centre plane."""
     table, seed = job.table, job.table.monte_carlo_seed
-    assert table.torsion is not None  # noqa: S101 - the caller's condition, for the type
-    rod, findings = stiffness(job, table.torsion, periods, seed)
+    rod, findings = stiffness(job, torsion, periods, seed)
     mass = given_or_none(table.model, "mass_kg")
-    if table.torsion.axes:
-        plane = in_plane(job, table.torsion.axes, rod, periods)
+    if torsion.axes:
+        plane = in_plane(job, torsion.axes, rod, periods)
         found = (*findings, *plane.findings())
         return _Swung(found, axes=None if mass is None else plane.ellipse(mass))
     about = about_rod(rod, _period(job, periods, pendulum=False), seed + 1)
