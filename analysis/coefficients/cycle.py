@@ -4,29 +4,17 @@ Non-linear terms are had from several harmonics at once, and these scatter toget
 holds all of them. Phasors are named ``translation 0``, ``translation 1`` ...; order 0 is real.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from analysis.coefficients.corrections import Response, calibration, response_factors
-from analysis.coefficients.measured import (
-    DISPLACEMENTS,
-    FORCES,
-    MOTION_ASKED,
-    joint_of,
-    reading_phasors,
-)
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source, joined
-from analysis.coefficients.run import LOADS, MOTIONS, Run, strut_matrix
-from analysis.motion import strut_displacements
-from analysis.resolver.analyse import Analysis
+from analysis.coefficients.phasors import FloatArray, Phasors
+from analysis.coefficients.run import LOADS, MOTIONS, Run
 from hardware.description.body import Body
-from hardware.description.channels import FORCE_X
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
-from hardware.description.oscillator import Oscillator, Plane
-from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import Medium
 
 CHANNELS = (*MOTIONS, *LOADS)
 SURGE_FORCE = "surge_force"
@@ -142,171 +130,3 @@ class Cycle:
     def about(self, ahead_m: float) -> "Cycle":
         """Return the cycle with its coefficients wanted about a point ahead of the midpoint."""
         return replace(self, point_ahead_m=ahead_m)
-
-
-@dataclass(frozen=True, eq=False)
-class StrutCycle:
-    """All harmonics of the struts of one run, as they were read; phasors as in :class:`Cycle`."""
-
-    name: str
-    oscillator: Oscillator
-    set_point: SetPoint
-    frequency_hz: float
-    phasors: Phasors
-    orders: int
-    mean_known: bool = False
-    flags: tuple[Flag, ...] = ()
-
-    def calibrated(self, matrix: FloatArray) -> "StrutCycle":
-        """Return it with ``force = matrix @ reading`` at every order, aft and fore.
-
-        Raises
-        ------
-        ConfigurationError
-            As :func:`analysis.coefficients.corrections.calibrated`.
-        """
-        return self._mapped(FORCES, lambda _: calibration(matrix))
-
-    def without_response(self, responses: Mapping[str, Response]) -> "StrutCycle":
-        """Return it with known responses taken out, each order's at its own frequency.
-
-        Raises
-        ------
-        DataError
-            As :func:`analysis.coefficients.corrections.without_response`.
-        """
-        names = tuple(responses)
-
-        def factors(order: int) -> ComplexArray:
-            found = response_factors(self.name, self.frequency_hz, order, responses)
-            return np.diag([found[name] for name in names])
-
-        return self._mapped(names, factors)
-
-    def without_zero(self, offsets: Phasors) -> "StrutCycle":
-        """Return it with the offsets of the zero runs taken off its means."""
-        place = np.zeros((len(self.phasors.names), len(offsets.names)))
-        for k, name in enumerate(offsets.names):
-            place[self.phasors.index(at_order(name, 0)), k] = 1.0
-        taken = offsets.mapped(place, self.phasors.names, self.phasors.units)
-        return replace(self, phasors=self.phasors.minus(taken), mean_known=True)
-
-    def _mapped(
-        self, names: tuple[str, ...], matrix: Callable[[int], ComplexArray | FloatArray]
-    ) -> "StrutCycle":
-        whole = np.eye(len(self.phasors.names), dtype=np.complex128)
-        for n in range(self.orders + 1):
-            places = [self.phasors.index(at_order(name, n)) for name in names]
-            whole[np.ix_(places, places)] = matrix(n)
-        return replace(self, phasors=self.phasors.mapped(whole))
-
-    def model(self, *, drift_rad: float = 0.0) -> Cycle:
-        """Return motion and loads of the model about the midpoint between the struts."""
-        surge = at_order(FORCE_X.name, 0) in self.phasors.names
-        single = strut_matrix(self.oscillator)
-        inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
-        outputs = (*CHANNELS, *((SURGE_FORCE,) if surge else ()))
-        if surge:
-            single = np.block([[single, np.zeros((4, 1))], [np.zeros((1, 4)), np.ones((1, 1))]])
-        orders = range(self.orders + 1)
-        ordered = self.phasors.select([at_order(name, n) for n in orders for name in inputs])
-        units = ("m", "rad", "N", "N m", "N")[: len(outputs)] * len(orders)
-        names = [at_order(name, n) for n in orders for name in outputs]
-        return Cycle(
-            self.name,
-            self.oscillator.plane,
-            self.oscillator.half_spacing_m,
-            self.frequency_hz,
-            self.set_point.carriage_speed_m_s,
-            ordered.mapped(np.asarray(np.kron(np.eye(len(orders)), single)), names, units),
-            self.orders,
-            self.set_point.medium,
-            drift_rad=drift_rad,
-            mean_known=self.mean_known,
-            flags=self.flags,
-        )
-
-
-def measured_cycle(
-    analysis: Analysis,
-    oscillator: Oscillator,
-    *,
-    reading_index: int = 0,
-    set_point: SetPoint | None = None,
-) -> StrutCycle:
-    """Return all harmonics of one reading; a set-point stands in for displacements not measured.
-
-    Raises
-    ------
-    DataError
-        If a force channel is missing, or there is no set-point.
-    """
-    reading = analysis.readings[reading_index]
-    set_point = analysis.recording.set_point if set_point is None else set_point
-    if set_point is None:
-        raise DataError(
-            f"{reading.run}: no set-point; give frequency, eccentricity, strut phase and speed"
-        )
-    joint, flags = joint_of(analysis, reading_index)
-    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
-    channels = (*(DISPLACEMENTS if has_sensors else ()), *FORCES)
-    channels += (FORCE_X.name,) if FORCE_X.name in reading.channel_names else ()
-    count = reading.order
-    single = [reading_phasors(reading, channels, n, joint) for n in range(count + 1)]
-    if joint is None:
-        phasors = _side_by_side(single, channels)
-    else:
-        rows = [reading.channel_names.index(name) for name in channels]
-        phasors = _together(single, channels, reading.run, joint[0][rows][:, :, rows], joint[1])
-    flags = (*reading.flags, *flags)
-    if not has_sensors:
-        phasors = joined(_asked_motion(oscillator, set_point, count), phasors)
-        flags = (*flags, MOTION_ASKED)
-    return StrutCycle(
-        reading.run, oscillator, set_point, reading.frequency_hz, phasors, count, flags=flags
-    )
-
-
-def _labels(single: list[Phasors], channels: tuple[str, ...]) -> tuple[list[str], list[str]]:
-    names = [at_order(name, n) for n in range(len(single)) for name in channels]
-    return names, [unit for one in single for unit in one.units]
-
-
-def _side_by_side(single: list[Phasors], channels: tuple[str, ...]) -> Phasors:
-    """Orders that scatter independently of each other: a reading without its periods."""
-    names, units = _labels(single, channels)
-    size = 2 * len(channels)
-    whole = np.zeros((len(single) * size, len(single) * size))
-    for n, one in enumerate(single):
-        whole[n * size : (n + 1) * size, n * size : (n + 1) * size] = one.covariance
-    source = single[-1].sources[0]
-    values = np.concatenate([one.values for one in single])
-    return Phasors(tuple(names), tuple(units), values, (replace(source, covariance=whole),))
-
-
-def _together(
-    single: list[Phasors],
-    channels: tuple[str, ...],
-    run: str,
-    covariance: FloatArray,
-    freedom: FloatArray,
-) -> Phasors:
-    """All orders with their joint covariance, (channel, A0 S1 C1 S2 ...) twice."""
-    names, units = _labels(single, channels)
-    count, size = len(channels), covariance.shape[1]
-    place = np.zeros((len(single), 2, size))
-    place[0, 0, 0] = 1.0
-    for n in range(1, len(single)):
-        place[n, 0, 2 * n - 1] = place[n, 1, 2 * n] = 1.0
-    spread = np.einsum("nai,cidj,mbj->ncamdb", place, covariance, place)
-    spread = spread.reshape(2 * count * len(single), -1)
-    source = Source(f"scatter of {run}", spread, float(freedom[1]))
-    values = np.concatenate([one.values for one in single])
-    return Phasors(tuple(names), tuple(units), values, (source,))
-
-
-def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> Phasors:
-    values = strut_displacements(oscillator, set_point, max(orders, 1))[: orders + 1]
-    values[0] = values[0].imag  # H[0] = i A0
-    names = tuple(at_order(name, n) for n in range(orders + 1) for name in DISPLACEMENTS)
-    return Phasors(names, ("m",) * len(names), values.ravel())

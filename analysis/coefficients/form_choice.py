@@ -25,6 +25,7 @@ BOTH = "cubic and quadratic"
 NOT_SEPARABLE = "not separable"
 
 DECIDES = 20.0  # evidence ratio: 1 in 20 is what the intervals leave open too
+_DESCRIBES = 3.0  # squares left over by the richest form, for each degree of freedom
 _LOADS = ("force", "moment", "surge force")
 
 
@@ -90,6 +91,11 @@ def choose_form(
     best = min(criteria.values())
     weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
     verdict, ratio, why = _verdict(criteria)
+    if dispersion > _DESCRIBES:
+        why += (
+            f"; but even the richest leaves {dispersion:.3g} times what scatter explains (limit "
+            f"{_DESCRIBES:g}): no form describes these runs"
+        )
     ranked = sorted(criteria, key=lambda form: criteria[form])
     total = sum(weights.values())
     return FormChoice(

@@ -79,7 +79,7 @@ def term_of(name: str, plane: Plane) -> Term:
     """
     velocities, loads = VELOCITY_LETTERS[plane], LOAD_LETTERS[plane] + "X"
     found = _WORD.fullmatch(name)
-    letters = set(re.sub(r"dot|\||0", "", found[2])) if found else set()
+    letters = {one.strip("|")[0] for one in _FACTOR.findall(found[2])} if found else set()
     if found is None or found[1] not in loads or not letters <= set(velocities):
         example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
         raise ConfigurationError(

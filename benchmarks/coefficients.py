@@ -1,0 +1,182 @@
+"""Coefficients: do their intervals hold, do hulls come back, is the form told that was put in."""
+
+import math
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.coefficients.form_choice import BOTH, CUBIC, NOT_SEPARABLE, QUADRATIC, choose_form
+from analysis.coefficients.measured import measured_run
+from analysis.coefficients.run import from_struts
+from analysis.coefficients.solve import solve
+from analysis.readers.dataset import from_dataset
+from analysis.resolver.analyse import Settings, analyse
+from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up, scattered
+from benchmarks.coefficients_coverage import CASES, cubic_rates, linear_rates, monte_carlo_ratio
+from benchmarks.machine import ROOT
+from benchmarks.outcome import Benchmark, Outcome, Report, Row
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
+from sim.hull import HullCoefficients
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from sim.run import simulate
+from sim.water.table_files import read_heave_csv, read_hull_csv
+from sim.water.tables import RadiationTable
+
+_TABLES = ROOT.parent / "shared" / "reference" / "hydrodynamics"
+_HULLS = ("wigley_L3.0_B0.3_T0.1875", "box_L2.0_B0.4_T0.15")
+_CLOSE = 5e-3
+_CHANNELS = ("displacement_aft", "displacement_fore", "force_aft", "force_fore")
+_FORMS = {
+    CUBIC: {"Y_vvv": -900.0},
+    QUADRATIC: {"Y_v|v|": -250.0},
+}
+
+
+def run(quick: bool, report: Report) -> Outcome:
+    """Count intervals, put hulls in, and hold Monte Carlo and forms against what was put in."""
+    measured: dict[str, float] = {}
+    coverage: list[Row] = []
+    for case in CASES:
+        report(f"coverage: {case.name}")
+        rates = linear_rates(case, 20 if quick else 2000)
+        _count(measured, coverage, case.name, rates)
+    _count(measured, coverage, "cubic", cubic_rates(3 if quick else 1000, report))
+    ratio, ratios = monte_carlo_ratio(2_000 if quick else 50_000)
+    report("forms")
+    forms, wrong = _forms(4 if quick else 200)
+    tables = {
+        "Part of 95 % intervals that hold the truth": coverage,
+        "Standard uncertainty by Monte Carlo over the linear budget's": ratios,
+        "Which form was named, campaigns": forms,
+    }
+    if not quick:
+        measured |= {"monte_carlo_ratio": ratio, "wrong_form": wrong}
+    notes = [
+        "Each campaign draws scatter of 8 periods and one error of everything stated: mass, CG, "
+        "inertia, lag, gain, amplitude."
+    ]
+    if _TABLES.is_dir():
+        report("hulls")
+        rows = [row for table in _hulls(quick) for row in _hull_rows(*table)]
+        tables["Hulls put into the simulator, rig with noise"] = _worst(rows)
+        measured["hulls_missed"] = float(sum(bool(row["missed"]) for row in rows))
+    else:
+        notes.append("The tables of hulls are not at hand.")
+    return Outcome(tables, measured, tuple(notes))
+
+
+def _count(measured: dict[str, float], rows: list[Row], case: str, rates: dict[str, float]) -> None:
+    least, greatest = float(min(rates.values())), float(max(rates.values()))
+    measured |= {f"{case}_least": least, f"{case}_greatest": greatest}
+    mean = float(np.mean(list(rates.values())))
+    rows.append({"case": case, "mean": mean, "least": least, "greatest": greatest})
+
+
+def _forms(campaigns: int) -> tuple[list[Row], float]:
+    """Sway at three amplitudes with one form or the other; what was named."""
+    linear = {name: HORIZONTAL[name] for name in ("Y_vdot", "Y_v", "N_vdot", "N_v")}
+    rows: list[Row] = []
+    wrong = 0
+    points = [(name, point) for name, point in amplitudes() if name.startswith("sway")]
+    for form, terms in _FORMS.items():
+        generator = np.random.default_rng(3)
+        clean = [made_up(point, Made(linear | terms, orders=5), name) for name, point in points]
+        named = Counter(
+            choose_form([scattered(one, generator) for one in clean], 0).verdict
+            for _ in range(campaigns)
+        )
+        other = QUADRATIC if form == CUBIC else CUBIC
+        wrong += named[other]
+        row: Row = {"put in": form}
+        row |= {name: named[name] for name in (CUBIC, QUADRATIC, BOTH, NOT_SEPARABLE)}
+        rows.append(row)
+    return rows, wrong / (len(_FORMS) * campaigns)
+
+
+def _hulls(quick: bool) -> list[tuple[str, RadiationTable]]:
+    sphere = read_heave_csv(_TABLES / "hemisphere_heave.csv").froude_scaled(0.25)
+    found = [("hemisphere, R = 0.25 m", sphere)]
+    for body in _HULLS[: 1 if quick else 2]:
+        path = _TABLES / "hulls.csv"
+        found += [(f"{body}, {plane}", read_hull_csv(path, plane, body)) for plane in Plane]
+    return found
+
+
+def _hull_rows(name: str, table: RadiationTable) -> list[Row]:
+    """Every frequency that the oscillator reaches, both motions, with the rig's own noise."""
+    rig = vertical_rig() if table.plane is Plane.VERTICAL else horizontal_rig()
+    rows: list[Row] = []
+    for k, omega in enumerate(table.omega_rad_s):
+        frequency = float(omega) / (2.0 * math.pi)
+        if not 0.1 <= frequency <= 2.0:
+            continue
+        water = _water(table, k)
+        own = replace(rig, water=water)
+        eccentricity = min(0.04, 0.05 / frequency**2)
+        runs = [
+            _measured(own, SetPoint(frequency, eccentricity, phase), f"{phase:.0f}", k)
+            for phase in (0.0, math.pi)
+        ]
+        result = solve(runs)
+        for inertial, put_in in ((True, water.added_mass), (False, water.damping)):
+            matrix = result.matrix(inertial=inertial)
+            for place in ((0, 0), (1, 1)):
+                expected = put_in[place[0]][place[1]]
+                if expected == 0.0:
+                    continue
+                letter = "ab"[not inertial]
+                mode = ("35" if table.plane is Plane.VERTICAL else "26")[place[0]]
+                half = result.half_width()[result.index(letter + 2 * mode)]
+                error = float(matrix[place] - expected)
+                missed = abs(error) > max(_CLOSE * abs(expected), float(half))
+                rows.append(
+                    {
+                        "hull": name,
+                        "coefficient": letter + 2 * mode,
+                        "error": error / expected,
+                        "half_width": float(half) / abs(expected),
+                        "missed": missed,
+                    }
+                )
+    return rows
+
+
+def _water(table: RadiationTable, k: int) -> HullCoefficients:
+    restoring = ((1926.0, 0.0), (0.0, 600.0)) if table.plane is Plane.VERTICAL else None
+    a, b = table.added_mass[k].tolist(), table.damping[k].tolist()
+    added, damping = (tuple(map(tuple, matrix)) for matrix in (a, b))
+    if restoring is None:
+        return HullCoefficients(added_mass=added, damping=damping)  # type: ignore[arg-type]
+    return HullCoefficients(added_mass=added, damping=damping, restoring=restoring)  # type: ignore[arg-type]
+
+
+def _measured(rig: SimulatedRig, point: SetPoint, name: str, seed: int):  # type: ignore[no-untyped-def]
+    record = simulate(rig, point, periods=30, sample_rate_hz=100.0, seed=seed, name=name)
+    analysis = analyse(from_dataset(record), settings=Settings(channels=_CHANNELS, harmonics=3))
+    run = from_struts(measured_run(analysis, rig.oscillator))
+    return run.without(rig.body, np.array(rig.water.restoring))
+
+
+def _worst(rows: list[Row]) -> list[Row]:
+    """A row per hull and coefficient: errors at their largest, and how many were missed."""
+    found: list[Row] = []
+    for hull, coefficient in dict.fromkeys((row["hull"], row["coefficient"]) for row in rows):
+        own = [r for r in rows if (r["hull"], r["coefficient"]) == (hull, coefficient)]
+        largest = max(own, key=lambda row: abs(float(row["error"])))
+        found.append(
+            {
+                "hull": hull,
+                "coefficient": coefficient,
+                "frequencies": len(own),
+                "median error": float(np.median([abs(float(row["error"])) for row in own])),
+                "largest error": abs(float(largest["error"])),
+                "its half-width": float(largest["half_width"]),
+                "missed": sum(bool(row["missed"]) for row in own),
+            }
+        )
+    return found
+
+
+BENCHMARK = Benchmark("coefficients", "Coefficients", run)

@@ -1,0 +1,90 @@
+"""Repeats: what lies between runs is found, pooled and counted; a run that stands off is named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.repeats import outliers, repeatability, with_repeats
+from analysis.coefficients.solve import solve
+from benchmarks.coefficients_campaigns import RESTORING, VERTICAL, Made, made_up, scattered
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
+
+HEAVE = Made(VERTICAL, Plane.VERTICAL, orders=1, restoring=RESTORING)
+
+
+def repeats(
+    count: int, between: float, generator: np.random.Generator, *, frequency_hz: float = 0.8
+) -> list[Cycle]:
+    """Heave runs whose loads are off by a common relative error each."""
+    clean = made_up(SetPoint(frequency_hz, 0.02), HEAVE, "heave")
+    found = []
+    for k in range(count):
+        one = scattered(clean, generator, force_n=0.05, motion_m=1e-6)
+        factors = np.ones(len(one.phasors.names), dtype=complex)
+        for place, name in enumerate(one.phasors.names):
+            if name.split()[0] in ("force", "moment"):
+                draws = generator.standard_normal(2)
+                factors[place] += between * complex(*draws)
+        renamed = replace(one.phasors, sources=(replace(one.phasors.sources[0], label=f"s {k}"),))
+        found.append(
+            replace(one, name=f"{frequency_hz:g} {k}", phasors=renamed.mapped(np.diag(factors)))
+        )
+    return found
+
+
+def test_scatter_between_runs_is_found() -> None:
+    found = repeatability(repeats(200, 0.01, np.random.default_rng(0)))
+    run = repeats(1, 0.0, np.random.default_rng(0))[0].run()
+    part = abs(run.loads.values[0]) / abs(run.known() @ run.motion.values)[0]
+    assert found.relative[0] == pytest.approx(0.01 * part, rel=0.1)
+    assert found.degrees_of_freedom == 199
+
+
+def test_runs_that_differ_by_their_own_scatter_add_nothing_much() -> None:
+    found = repeatability(repeats(200, 0.0, np.random.default_rng(0)))
+    assert found.relative.max() < 2e-4
+
+
+def test_intervals_hold_where_runs_differ_between_each_other() -> None:
+    generator = np.random.default_rng(5)
+    hits, without = np.zeros(4), np.zeros(4)
+    for _ in range(60):
+        cycles = repeats(5, 0.01, generator)
+        known = repeatability(cycles)
+        result = solve([with_repeats(one, known).run() for one in cycles])
+        truth = [-VERTICAL[n] for n in ("Z_wdot", "Z_w", "M_wdot", "M_w")]
+        hits += np.abs(result.values - truth) <= result.half_width()
+        bare = solve([one.run() for one in cycles])
+        without += np.abs(bare.values - truth) <= bare.half_width()
+    assert np.all(hits / 60 >= 0.85)
+    assert np.all(hits / 60 <= 1.0)
+    assert without.mean() / 60 < 0.8
+
+
+def test_a_run_that_stands_off_is_named() -> None:
+    generator = np.random.default_rng(6)
+    cycles = repeats(5, 0.002, generator) + repeats(4, 0.002, generator, frequency_hz=1.0)
+    assert outliers(repeatability(cycles)) == ()
+    far = cycles[2]
+    factors = np.diag([1.1 if n.startswith("force") else 1.0 for n in far.phasors.names])
+    cycles[2] = replace(far, phasors=far.phasors.mapped(factors))
+    named = outliers(repeatability(cycles))
+    assert {one.run for one in named} == {"0.8 2"}
+    assert named[0].ratio > named[0].limit
+    assert "look at its record" in named[0].message
+
+
+def test_good_campaigns_seldom_name_anybody() -> None:
+    generator = np.random.default_rng(8)
+    named = sum(bool(outliers(repeatability(repeats(5, 0.005, generator)))) for _ in range(60))
+    assert named <= 4  # 0.6 expected
+
+
+def test_a_run_without_repeats_stays_as_it_is() -> None:
+    one = repeats(1, 0.01, np.random.default_rng(0))
+    known = repeatability(one)
+    assert with_repeats(one[0], known) is one[0]
+    assert known.kinds == ()

@@ -1,0 +1,161 @@
+"""All harmonics at once against each harmonic alone: values, scatter and every correction."""
+
+import math
+from dataclasses import replace
+
+import control
+import numpy as np
+import pytest
+
+from analysis.coefficients.corrections import (
+    Delay,
+    LowPass,
+    calibrated,
+    without_response,
+    without_zero,
+    zero_reading,
+)
+from analysis.coefficients.in_place import in_place
+from analysis.coefficients.measured import measured_run
+from analysis.coefficients.run import from_struts
+from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
+from analysis.readers.dataset import from_dataset
+from analysis.recording import Recording
+from analysis.resolver.analyse import Analysis, Settings, analyse
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.oscillator import HORIZONTAL_1963
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.h4_cubic_damping import CubicDamping
+from sim.rig import SimulatedRig, vertical_rig
+from sim.run import simulate
+from tests.analysis.coefficients.cycles import CHANNEL_NAMES
+
+POINT = SetPoint(0.8, 0.03, 0.4, 0.8)
+RIG = CubicDamping().change(vertical_rig(), POINT)
+MATRIX = np.array([[1.02, 0.03], [-0.01, 0.97]])
+
+
+def read(
+    point: SetPoint = POINT, rig: SimulatedRig = RIG, channels: tuple[str, ...] = CHANNEL_NAMES
+) -> Analysis:
+    record = simulate(rig, point, periods=8, sample_rate_hz=100.0, seed=3, name="run")
+    return analyse(from_dataset(record), settings=Settings(channels=channels, harmonics=3))
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Analysis:
+    return read()
+
+
+def same(cycle: StrutCycle, analysis: Analysis, change=lambda run: run) -> None:  # type: ignore[no-untyped-def]
+    """Every order of the cycle is the run of that order alone, scatter included."""
+    whole = cycle.model()
+    for order in (1, 2, 3):
+        alone = from_struts(change(measured_run(analysis, RIG.oscillator, order=order)))
+        own = whole.run(order)
+        np.testing.assert_allclose(own.phasors.values, alone.phasors.values, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(
+            own.phasors.covariance, alone.phasors.covariance, rtol=1e-9, atol=1e-18
+        )
+
+
+def test_as_read(analysis: Analysis) -> None:
+    same(measured_cycle(analysis, RIG.oscillator), analysis)
+
+
+def test_orders_scatter_together(analysis: Analysis) -> None:
+    covariance = measured_cycle(analysis, RIG.oscillator).phasors.covariance
+    first, third = slice(8, 16), slice(24, 32)
+    assert np.abs(covariance[first, third]).max() > 0.0
+    np.testing.assert_allclose(covariance, covariance.T, atol=1e-18)
+
+
+def test_cross_talk(analysis: Analysis) -> None:
+    cycle = measured_cycle(analysis, RIG.oscillator).calibrated(MATRIX)
+    same(cycle, analysis, lambda run: calibrated(run, MATRIX))
+    with pytest.raises(ConfigurationError, match="not singular"):
+        cycle.calibrated(np.ones((2, 2)))
+
+
+@pytest.mark.parametrize(
+    "response",
+    [Delay(2e-3, 0.98), LowPass(20.0, 2, "bessel"), control.tf([1.0], [0.004, 1.0]),
+     control.ss([[-250.0]], [[250.0]], [[1.0]], [[0.0]])],
+    ids=["skew", "filter", "transfer function", "state space"],
+)  # fmt: skip
+def test_lag_by_transfer_function(analysis: Analysis, response) -> None:  # type: ignore[no-untyped-def]
+    responses = {"force_aft": response, "force_fore": Delay(1e-3)}
+    cycle = measured_cycle(analysis, RIG.oscillator).without_response(responses)
+    same(cycle, analysis, lambda run: without_response(run, responses))
+
+
+def test_a_filter_that_lets_no_third_harmonic_through_is_refused(analysis: Analysis) -> None:
+    with pytest.raises(DataError, match="of harmonic 3 at"):
+        measured_cycle(analysis, RIG.oscillator).without_response({"force_aft": LowPass(1.2, 4)})
+
+
+def still(value: float, name: str) -> Recording:
+    noise = np.random.default_rng(0).normal(0.0, 0.01, (2, 400))
+    channels = (Channel("force_aft", "N"), Channel("force_fore", "N"))
+    return Recording(name, channels, np.array([[value], [2.0 * value]]) + noise, 100.0)
+
+
+def test_zero_runs_come_off_the_means_alone(analysis: Analysis) -> None:
+    zero = zero_reading(still(1.5, "zero"), 0.0).offsets
+    before = measured_cycle(analysis, RIG.oscillator)
+    after = before.without_zero(zero)
+    assert after.mean_known
+    assert not before.mean_known
+    alone = without_zero(measured_run(analysis, RIG.oscillator, order=0), zero)
+    for name in ("force_aft", "force_fore"):
+        assert after.phasors[f"{name} 0"] == pytest.approx(alone.phasors[name])
+        assert after.phasors[f"{name} 1"] == before.phasors[f"{name} 1"]
+    same(after, analysis)
+
+
+def test_a_dry_run_leaves_the_waters_loads() -> None:
+    wet = measured_cycle(read(), RIG.oscillator).model()
+    air = measured_cycle(read(replace(POINT, medium=Medium.AIR)), RIG.oscillator).model()
+    left = wet.without_dry(air)
+    taken = wet.without(RIG.body)
+    assert [flag.code for flag in left.flags].count("dry_run_taken_off") == 1
+    np.testing.assert_allclose(left.run(1).loads.values, taken.run(1).net().values, rtol=2e-3)
+    np.testing.assert_allclose(left.run(3).loads.values, wet.run(3).loads.values, atol=0.1)
+    with pytest.raises(ConfigurationError, match="a dry run was taken off"):
+        left.without(RIG.body)
+
+
+def test_a_known_mass_in_air_gives_gain_and_lag_for_all_orders() -> None:
+    """Gain and lag of the air run, taken out of a run in water at another frequency."""
+    gauges = {"force_aft": Delay(2e-3, 1.03), "force_fore": Delay(1e-3, 0.99)}
+    ideal = RIG.ideal()
+    inverse = {name: Delay(-one.lag_s, 1.0 / one.gain) for name, one in gauges.items()}
+    air = read(replace(POINT, medium=Medium.AIR, carriage_speed_m_s=0.0), ideal)
+    through = without_response(measured_run(air, RIG.oscillator), inverse)
+    found = in_place(through, RIG.body)
+    wet = measured_cycle(read(replace(POINT, frequency_hz=0.5), ideal), RIG.oscillator)
+    corrected = wet.without_response(inverse).without_response(found.responses)
+    np.testing.assert_allclose(corrected.phasors.values, wet.phasors.values, rtol=1e-6, atol=1e-6)
+
+
+def test_set_points_stand_in_for_displacements() -> None:
+    forces = ("force_aft", "force_fore")
+    cycle = measured_cycle(read(rig=RIG.ideal(), channels=forces), RIG.oscillator)
+    assert "motion_from_set_point" in [flag.code for flag in cycle.flags]
+    measured = measured_cycle(read(rig=RIG.ideal()), RIG.oscillator)
+    for name in ("displacement_aft 1", "displacement_fore 1"):
+        assert cycle.phasors[name] == pytest.approx(measured.phasors[name], rel=1e-6)
+    assert cycle.model().run(1).motion_is_asked
+
+
+def test_a_run_that_stands_still() -> None:
+    reading = zero_reading(still(6.0, "drift"), 10.0)
+    zero = zero_reading(still(1.0, "zero"), 0.0).offsets
+    cycle = static_cycle("drift", reading, HORIZONTAL_1963, 1.2, zero).model(drift_rad=0.1)
+    assert cycle.frequency_hz == 0.0
+    assert cycle.mean_known
+    assert cycle.run(0).loads.values[0].real == pytest.approx(15.0, abs=0.01)
+    assert cycle.run(0).loads.values[1].real == pytest.approx(5.0 * 0.5, abs=0.01)
+    assert math.isclose(cycle.drift_rad, 0.1)
+    assert len(cycle.phasors.sources) == 2

@@ -1,0 +1,76 @@
+"""Names of terms and back, their units, and every system's factors against written-out ones."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.coefficients.names import PLACES, Form, name_of
+from analysis.coefficients.normalisation import mmg, prime, seakeeping
+from analysis.coefficients.terms import Term, name_of_term, term_of, waves_of
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Plane
+
+factors = st.lists(st.sampled_from(["v", "r", "vdot", "rdot", "|v|", "|r|"]), max_size=4)
+
+
+@given(st.integers(0, 1), factors, st.sampled_from(list(Plane)))
+def test_a_name_and_its_term_are_a_pair(row: int, parts: list[str], plane: Plane) -> None:
+    term = Term(row, tuple(parts))
+    assert term_of(name_of_term(term, plane), plane) == term
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [("Y_v", "N s/m"), ("Y_vdot", "kg"), ("N_vdot", "kg m"), ("N_rdot", "kg m2"), ("N_r", "N m s"),
+     ("Y_r", "N s"), ("N_v", "N s"), ("Y_vvv", "N s3/m3"), ("Y_v|v|", "N s2/m2"),
+     ("Y_vvr", "N s3/m2"), ("N_vvv", "N s3/m2"), ("N_rrr", "N m s3"), ("X_vr", "N s2/m"),
+     ("Y_0", "N"), ("N_0", "N m")],
+)  # fmt: skip
+def test_units(name: str, unit: str) -> None:
+    assert term_of(name, Plane.HORIZONTAL).unit == unit
+
+
+@pytest.mark.parametrize("name", ["Y_w", "Z_v", "Yv", "Y_vv0", "K_v", "Y_", "Y_dot"])
+def test_what_is_no_term_is_refused(name: str) -> None:
+    with pytest.raises(ConfigurationError, match="is no term in the horizontal plane"):
+        term_of(name, Plane.HORIZONTAL)
+    with pytest.raises(ConfigurationError, match="horizontal plane only"):
+        term_of("X_ww", Plane.VERTICAL)
+
+
+def test_waves_are_products() -> None:
+    velocity = np.array([[1.0, -2.0], [3.0, 0.5]])
+    rate = np.array([[5.0, 7.0], [11.0, 13.0]])
+    terms = [term_of(n, Plane.HORIZONTAL) for n in ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0")]
+    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0]]
+    np.testing.assert_allclose(waves_of(terms, velocity, rate), expected)
+
+
+@given(st.floats(0.3, 400.0), st.floats(0.1, 30.0), st.floats(0.1, 20.0), st.floats(900.0, 1100.0))
+def test_linear_terms_are_divided_as_linear_coefficients_are(
+    length: float, other: float, speed: float, density: float
+) -> None:
+    for system in (
+        prime(length, speed, density),
+        mmg(length, other, speed, density),
+        seakeeping(length, other, density),
+    ):
+        for place in PLACES:
+            term = term_of(name_of(place, Plane.HORIZONTAL, Form.MANOEUVRING), Plane.HORIZONTAL)
+            unit = system.mass_kg if place.inertial else system.mass_per_second
+            expected = unit * length ** (place.row + place.column)
+            assert system.term_factor(term) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "powers"),  # of rho/2, L, U in the prime system, after Chislett and Stroem-Tejsen
+    [("Y_vvv", (2, -1)), ("Y_vvr", (3, -1)), ("Y_vrr", (4, -1)), ("Y_rrr", (5, -1)),
+     ("N_vvv", (3, -1)), ("N_vvr", (4, -1)), ("Y_v|v|", (2, 0)), ("X_vr", (3, 0)),
+     ("X_rr", (4, 0)), ("Y_0", (2, 2))],
+)  # fmt: skip
+def test_prime_factors_of_terms(name: str, powers: tuple[int, int]) -> None:
+    length, speed, density = 2.5, 1.3, 998.0
+    expected = 0.5 * density * length ** powers[0] * speed ** powers[1]
+    found = prime(length, speed, density).term_factor(term_of(name, Plane.HORIZONTAL))
+    assert found == pytest.approx(expected, rel=1e-12)
