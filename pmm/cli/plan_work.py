@@ -141,12 +141,8 @@ def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Findin
     ranks = list(Verdict)
 
     def kind(one: Finding) -> tuple[int, str, float]:
-        other = one.message if not one.run else ""
-        return (
-            ranks.index(one.verdict),
-            one.quantity + other,
-            0.0 if math.isnan(one.limit) else (one.limit),
-        )
+        what = one.quantity if one.run else one.message
+        return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
 
     for _, group in groupby(sorted(found, key=kind), kind):
         alike = list(group)

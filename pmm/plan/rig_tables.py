@@ -115,7 +115,7 @@ class RecorderSettings:
     Attributes
     ----------
     folder
-        Campaign folders are made in it; seen from where the command is given.
+        Campaign folders are made in it; its path from the rig's file.
     flush_s
         Longest wall time between two flushes.
     reserve_mb
