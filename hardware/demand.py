@@ -19,14 +19,17 @@ class Demand(str):
         Divisions of the answer per SI unit: 1000 where millimetres are read off a dial.
     channel
         The gauge that a load is for.
+    at_m
+        Where a mass goes, forward of the midpoint between the struts.
     """
 
-    __slots__ = ("channel", "part", "per_unit", "value")
+    __slots__ = ("at_m", "channel", "part", "per_unit", "value")
 
     part: str
     value: float | str | None
     per_unit: float
     channel: str
+    at_m: float
 
     def __new__(
         cls,
@@ -35,8 +38,10 @@ class Demand(str):
         value: float | str | None = None,
         per_unit: float = 1.0,
         channel: str = "",
+        at_m: float = 0.0,
     ) -> "Demand":
         """Make a question from its text and what it asks for."""
         made = super().__new__(cls, text)
-        made.part, made.value, made.per_unit, made.channel = part, value, per_unit, channel
+        made.part, made.value, made.per_unit = part, value, per_unit
+        made.channel, made.at_m = channel, at_m
         return made

@@ -2,16 +2,19 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
 from hardware.demand import Demand
 from hardware.rig import Rig
 from hardware.roles import PositionAxis
+from pmm.plan.kinds import RunKind
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.measurement import Measurement
 from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
+_UNDISPLACED: Final = frozenset({RunKind.ZERO, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW})
 
 
 @dataclass
@@ -80,11 +83,16 @@ class Conduct:
         return any(one.moving for one in self.rig.powered())
 
     def axes(self) -> tuple[tuple[PositionAxis, float], ...]:
-        """Return the axes with where the run wants them; at rest the phase does not matter."""
+        """Return the axes with where the run wants them.
+
+        What is to read the gauges without the restoring force stands at eccentricity 0; for other
+        runs at rest it does not matter where the struts are.
+        """
         point = self.present.set_point
         if not self.present.oscillates:
             axis = self.rig.eccentricity
-            return () if axis is None else ((axis, point.eccentricity_m),)
+            wanted = self.present.kind in _UNDISPLACED and axis is not None and 0.0 in axis.limits
+            return ((axis, 0.0),) if wanted and axis is not None else ()
         pairs = (
             (self.rig.eccentricity, point.eccentricity_m),
             (self.rig.phase, point.strut_phase_rad),

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from hardware.description.errors import PmmError
 from hardware.description.flags import Flag
 from hardware.errors import HardwareError
+from hardware.raw_log import Frame
 from hardware.roles import Pulse
 from pmm.recorder.lateness import CycleStatistics
 from pmm.recorder.run_recorder import Outcome, RunRecorder
 from pmm.run.errors import RecordingError
-
-if TYPE_CHECKING:
-    import can
 
 FloatArray = NDArray[np.float64]
 
@@ -64,7 +62,7 @@ class Taps:
     def __init__(self) -> None:
         self.recorder: RunRecorder | None = None
 
-    def frame(self, frame: "can.Message") -> None:
+    def frame(self, frame: Frame) -> None:
         """Take a frame of the bus."""
         if self.recorder is not None:
             self.recorder.frame(frame)

@@ -15,11 +15,12 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.rig import Rig
 from hardware.roles import Pulse, Sampled
-from pmm.plan.run_plan import RunPlan
+from pmm.plan.run_plan import LoadStep, RunPlan
 from pmm.recorder.live_path import as_record
 from pmm.run.errors import GateVoidError, OverloadError
 from pmm.run.gate import Gate, GateState
 from pmm.run.journal import Journal, kept
+from pmm.run.push import PushRecord
 from pmm.run.readings import needles, rows_at_rest, rows_of, worst_relative
 from pmm.run.sampler import Sampler
 from pmm.run.status import HarmonicRow
@@ -81,6 +82,7 @@ class Measurement:
         self._judged = 0
         self._sum = np.zeros(len(self.channels))
         self._square, self._count = np.zeros(len(self.channels)), 0
+        self._push = PushRecord(self.channels)
         if rig.photocell is not None:
             rig.photocell.take()
 
@@ -155,7 +157,28 @@ class Measurement:
             self._judge()
         if not self.run.oscillates and self.gate.state is GateState.OPEN:
             self._add(values)
+            self._push.take(values)
         self._check_loads(values)
+
+    def pushing(self) -> None:
+        """From here on somebody pushes."""
+        self.collect()
+        self._push.begin()
+
+    def let_go(self) -> None:
+        """From here on nobody pushes any more."""
+        self.collect()
+        self._push.end()
+
+    def judge_push(self, asked: LoadStep) -> None:
+        """Compare what the gauges showed with what was asked for.
+
+        Raises
+        ------
+        PushRefusedError
+            If cables are swapped, a sign is wrong, or no push is seen.
+        """
+        self.event("push", self._push.verdict(asked))
 
     def void(self, why: str) -> None:
         """Throw the gate away and wait for another one.

@@ -129,6 +129,8 @@ def _hold(c: Conduct) -> State | None:
     if c.rig.number - c.since < _HOLD_CYCLES:
         return None
     c.recording.finish()
+    if c.present.kind is RunKind.PUSH and c.present.load is not None:
+        c.recording.judge_push(c.present.load)
     return State.STOPPING
 
 
@@ -161,9 +163,11 @@ def _push(c: Conduct) -> None:
     third_s = run.measured_s / 3.0
     if c.pushed == 0 and c.elapsed_s >= third_s:
         c.pushed = 1
+        c.recording.pushing()
         c.questions.ask(c.surroundings.push(run.load.channel, run.load.force_n))
     elif c.pushed == 1 and c.elapsed_s >= 2.0 * third_s and not c.questions.present:
         c.pushed = 2
+        c.recording.let_go()
         c.questions.ask(c.surroundings.push(run.load.channel, 0.0))
     c.questions.done()
 

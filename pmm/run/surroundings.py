@@ -76,14 +76,13 @@ class Surroundings:
             yield Demand(f"medium: bring the model into {medium}; press Enter", "medium", medium)
 
     def _change_mass(self, run: RunPlan) -> Iterator[Demand]:
-        mass_kg = run.known_mass.mass_kg if run.known_mass else 0.0
+        known = run.known_mass
+        mass_kg, at_m = (known.mass_kg, known.x_m) if known is not None else (0.0, 0.0)
         if mass_kg == self.mass_kg:
             return
         self.mass_kg = mass_kg
-        what = (
-            f"add {mass_kg:g} kg at x = {run.known_mass.x_m:g} m" if run.known_mass else "take off"
-        )
-        yield Demand(f"mass: {what} (the known mass); press Enter", "mass", mass_kg)
+        what = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if known else "take it off"
+        yield Demand(f"mass: {what}; press Enter", "mass", mass_kg, at_m=at_m)
 
     def _change_drift(self, drift_rad: float) -> Iterator[Demand]:
         if drift_rad != self.drift_rad:

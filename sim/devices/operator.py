@@ -91,7 +91,7 @@ def _load(world: World, question: Demand) -> None:
 
 
 def _ballast(world: World, question: Demand) -> None:
-    world.plant.load(float(question.value or 0.0))
+    world.plant.load(float(question.value or 0.0), question.at_m)
 
 
 _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {

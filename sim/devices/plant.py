@@ -153,9 +153,17 @@ class Plant:
         )
         self._changed = self._changed or self._around != before
 
-    def load(self, mass_kg: float) -> None:
-        """Let the model carry a mass at the midpoint between the struts besides its own."""
-        body = replace(self._body, mass_kg=self._body.mass_kg + mass_kg)
+    def load(self, mass_kg: float, at_m: float = 0.0) -> None:
+        """Let the model carry a small mass on its midline besides its own; 0 takes it off."""
+        own = self._body
+        total = own.mass_kg + mass_kg
+        body = replace(
+            own,
+            mass_kg=total,
+            inertia_kg_m2=own.inertia_kg_m2 + mass_kg * at_m**2,
+            cg_x_m=(own.mass_kg * own.cg_x_m + mass_kg * at_m) / total,
+            cg_z_m=own.mass_kg * own.cg_z_m / total,
+        )
         self._changed = self._changed or body != self._rig.body
         self._rig = replace(self._rig, body=body)
 

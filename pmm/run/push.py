@@ -1,0 +1,60 @@
+"""The push test of a run: what the gauges read at rest and pushed, and whether that is right."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import Channel
+from pmm.devices.push_test import PushError, faults, judge
+from pmm.plan.run_plan import LoadStep
+from pmm.run.errors import PushRefusedError
+
+FloatArray = NDArray[np.float64]
+_FORCE_UNITS = ("N", "N m")
+
+
+class PushRecord:
+    """Collects the samples of a push test."""
+
+    def __init__(self, channels: Sequence[Channel]) -> None:
+        self._rows = [i for i, one in enumerate(channels) if one.unit in _FORCE_UNITS]
+        self._channels = tuple(channels[i] for i in self._rows)
+        self._parts: tuple[list[FloatArray], ...] = ([], [], [])  # before, during, after the push
+        self._part = 0
+
+    def take(self, values: FloatArray) -> None:
+        """Take samples, shape ``(channels, n)``; what comes after the push is let go."""
+        if self._part < 2:
+            self._parts[self._part].append(values[self._rows])
+
+    def begin(self) -> None:
+        """The push begins."""
+        self._part = 1
+
+    def end(self) -> None:
+        """The push is over."""
+        self._part = 2
+
+    def verdict(self, asked: LoadStep) -> str:
+        """Return what was found, if it is what was asked for.
+
+        Raises
+        ------
+        PushRefusedError
+            If it is not; the message names the fix.
+        """
+        rest, pushed = (np.hstack(part) if part else np.empty((0, 0)) for part in self._parts[:2])
+        names = [one.name for one in self._channels]
+        try:
+            found = judge(
+                self._channels,
+                dict(zip(names, rest, strict=True)),
+                dict(zip(names, pushed, strict=True)),
+            )
+        except (PushError, ValueError) as error:
+            raise PushRefusedError(asked.channel, f"push test: {error}") from error
+        wrong = faults(found, asked.channel, 1 if asked.force_n >= 0.0 else -1)
+        if wrong:
+            raise PushRefusedError(asked.channel, f"push test: {'; '.join(wrong)}")
+        return f"{found.channel} {found.change:+.4g} {found.unit}, as asked for"

@@ -1,0 +1,172 @@
+"""Zeros, pluck tests and known masses: what they say of the rig, from a campaign's folder."""
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.inertia.damped import fit_damped
+from analysis.inertia.spectrum import spectrum
+from hardware.description.errors import DataError
+from pmm.run.results import RunResult
+
+_LOWEST_CYCLES: Final = 5.0  # of a mode in the record: below, it is drift
+_RING_TIMES: Final = 10.0  # over the median of the spectrum: what stands out so far rings
+
+
+@dataclass(frozen=True)
+class ZeroDrift:
+    """A gauge's zero over the campaign, and its largest change from one to the next."""
+
+    channel: str
+    first_n: float
+    last_n: float
+    largest_change_n: float
+
+
+@dataclass(frozen=True)
+class RungMode:
+    """A natural frequency found by a pluck test."""
+
+    name: str
+    frequency_hz: float
+    standard_uncertainty_hz: float
+    damping_ratio: float
+    channel: str
+
+    def as_table(self) -> dict[str, Any]:
+        """Return it with the keys of a rig's ``[[modes]]``."""
+        return {
+            "name": self.name,
+            "frequency_hz": self.frequency_hz,
+            "damping_ratio": self.damping_ratio,
+        }
+
+
+@dataclass(frozen=True)
+class InPlaceResponse:
+    """What a gauge makes of a known inertia force.
+
+    Attributes
+    ----------
+    gain
+        Reading over force; its sign is that of the gauge.
+    lag_s
+        By which the reading is late.
+    """
+
+    run: str
+    channel: str
+    frequency_hz: float
+    gain: float
+    lag_s: float
+
+
+def zero_drifts(runs: Sequence[RunResult]) -> tuple[ZeroDrift, ...]:
+    """Return how the zero of each gauge moved over the zero runs."""
+    if not runs:
+        return ()
+    means = [one.means() for one in runs]
+    drifts = []
+    for name in runs[0].forces:
+        values = np.array([one[name] for one in means])
+        largest = float(np.abs(np.diff(values)).max()) if values.size > 1 else 0.0
+        drifts.append(ZeroDrift(name, float(values[0]), float(values[-1]), largest))
+    return tuple(drifts)
+
+
+def rung_modes(runs: Sequence[RunResult]) -> tuple[RungMode, ...]:
+    """Return the mode that each pluck test shows best.
+
+    Raises
+    ------
+    DataError
+        If a record holds no ring-down.
+    """
+    return tuple(_mode(one) for one in runs)
+
+
+def known_mass_responses(
+    known: Sequence[RunResult], dry: Sequence[RunResult], half_spacing_m: float
+) -> tuple[InPlaceResponse, ...]:
+    """Return each gauge's gain and lag from what a known mass adds to a dry run.
+
+    The difference of two runs in air at one set-point is the inertia force of the mass alone, so
+    that nothing has to be known of the model.
+    """
+    found: list[InPlaceResponse] = []
+    for one in known:
+        base = next((other for other in dry if _same_condition(one, other)), None)
+        if base is not None:
+            found += _responses(one, base, half_spacing_m)
+    return tuple(found)
+
+
+def _same_condition(one: RunResult, other: RunResult) -> bool:
+    mine, theirs = one.plan["set_point"], other.plan["set_point"]
+    keys = ("frequency_hz", "eccentricity_m", "strut_phase_rad", "medium")
+    return all(mine[key] == theirs[key] for key in keys)
+
+
+def _responses(one: RunResult, base: RunResult, half_m: float) -> list[InPlaceResponse]:
+    point, mass = one.plan["set_point"], one.plan["known_mass"]
+    frequency_hz = float(point["frequency_hz"])
+    omega = 2.0 * math.pi * frequency_hz
+    # Displacements as phasors of e sin(theta): in phase is real.
+    aft = complex(point["eccentricity_m"])
+    fore = aft * cmath.exp(1j * point["strut_phase_rad"])
+    slope = (fore - aft) / (2.0 * half_m)
+    place = (aft + fore) / 2.0 + slope * mass["x_m"]
+    force = -(omega**2) * mass["mass_kg"] * place
+    moment = -(omega**2) * float(_own_inertia(mass)) * slope + force * mass["x_m"]
+    asked = {
+        "force_aft": force / 2.0 - moment / (2.0 * half_m),
+        "force_fore": force / 2.0 + moment / (2.0 * half_m),
+    }
+    found = []
+    for channel, value in asked.items():
+        if channel not in one.first or not abs(value) > 0.0:
+            continue
+        ratio = (one.first[channel] - base.first[channel]) / value
+        sign = -1.0 if ratio.real < 0.0 else 1.0
+        lag_s = -cmath.phase(sign * ratio) / omega
+        found.append(InPlaceResponse(one.name, channel, frequency_hz, sign * abs(ratio), lag_s))
+    return found
+
+
+def _own_inertia(mass: dict[str, Any]) -> float:
+    return float(mass.get("own_inertia_kg_m2") or mass.get("inertia_kg_m2") or 0.0)
+
+
+def _mode(run: RunResult) -> RungMode:
+    """Fit the ring-down of the channel that rings loudest, from its largest swing on."""
+    recording, gate = run.gate_samples()
+    rate = recording.sample_rate_hz
+    best: tuple[float, float, str] = (0.0, 0.0, "")
+    for name in run.forces:
+        values = recording.values(name)[gate]
+        found = spectrum(values - np.nanmean(values), rate)
+        usable = found.frequency_hz > _LOWEST_CYCLES * rate / values.size
+        level = found.amplitude[usable]
+        peak = int(np.argmax(level))
+        times = float(level[peak] / np.median(level))
+        best = max(best, (times, float(found.frequency_hz[usable][peak]), name))
+    times, frequency_hz, channel = best
+    if times < _RING_TIMES:
+        raise DataError(
+            f"{run.name}: the loudest line is {times:.1f} times the noise (limit {_RING_TIMES:g}); "
+            "pluck harder, within the first third of the record"
+        )
+    values = recording.values(channel)[gate]
+    start = int(np.nanargmax(np.abs(values - np.nanmedian(values)))) + 1
+    ringing = values[start:]
+    time_s = np.arange(ringing.size) / rate
+    fit = fit_damped(time_s, ringing, start_periods_s=(1.0 / frequency_hz,), where=run.name)
+    mode = fit.modes[0]
+    frequency_hz = 1.0 / mode.period_s
+    spread_hz = fit.period_uncertainty_s() * frequency_hz**2
+    name = run.plan.get("entry") or run.name
+    return RungMode(name, frequency_hz, spread_hz, mode.damping_ratio, channel)
