@@ -69,8 +69,9 @@ def _print(results: Sequence[_Result]) -> None:
     table = Table(box=None, padding=(0, 1), pad_edge=False)
     for name in ("run", "samples", "missing", "frames", "bytes not whole", "what was done"):
         table.add_column(name, justify="left" if name in ("run", "what was done") else "right")
-    for one in (each for each in results if each.run is not None):
-        table.add_row(one.folder.name, *_cells(one.run))
+    for one in results:
+        if one.run is not None:
+            table.add_row(one.folder.name, *_cells(one.run))
     if table.row_count:
         console.print(table)
     for one in results:
@@ -81,8 +82,7 @@ def _print(results: Sequence[_Result]) -> None:
             error_line(one.error)
 
 
-def _cells(run: "RecoveredRun | None") -> tuple[str, ...]:
-    assert run is not None  # noqa: S101
+def _cells(run: "RecoveredRun") -> tuple[str, ...]:
     numbers = (run.samples, run.missing, run.frames, sum(run.lost_tail_bytes.values()))
     done = "nothing: it was closed" if run.was_whole else f"{run.path.name} is there"
     return (*map(str, numbers), done)

@@ -92,7 +92,8 @@ def sha256(path: Path) -> str:
 def lock(handle: int, folder: Path) -> None:
     """Keep others from taking the run of an open file for one that a crash left.
 
-    The lock ends with the process, however it ends. Where the system has none, nothing is done.
+    The lock ends with the process, however it ends. Where system or disk have none, nothing is
+    done.
 
     Raises
     ------
@@ -105,7 +106,9 @@ def lock(handle: int, folder: Path) -> None:
 
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
+    except BlockingIOError as error:
         raise BeingRecordedError(
             f"{folder}: a process is recording into it; recover it when that has ended"
         ) from error
+    except OSError:
+        return  # a network drive without locks

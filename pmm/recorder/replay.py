@@ -27,7 +27,7 @@ from pmm.recorder.files import BUS, HARMONICS, LINES
 from pmm.recorder.live_path import Gatherer, Taken
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.resolving import largest_difference, resolve_again
-from pmm.recorder.samples import Piece
+from pmm.recorder.samples import JournalSamples, Piece
 
 SAME_READING: Final = 1e-12
 
@@ -112,7 +112,7 @@ def replay(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Replay:
             "receive_thread": False,
             "options": {},
         }
-    return _compare(run, *_played(run, read_rig(tables, drivers)))
+    return _compare(run, run.samples, *_played(run, read_rig(tables, drivers)))
 
 
 def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[Taken], list[str]]:
@@ -151,9 +151,9 @@ def _cycles(run: RunData) -> int:
     return max(last, heard) - run.header.first_sync + 4
 
 
-def _compare(run: RunData, taken: list[Taken], faults: list[str]) -> Replay:
-    samples = run.samples
-    assert samples is not None  # noqa: S101
+def _compare(
+    run: RunData, samples: JournalSamples, taken: list[Taken], faults: list[str]
+) -> Replay:
     recorded = samples[:, 0 : samples.sample_count]
     again = _spread([one for each in taken for one in each.samples], recorded, samples.first_sync)
     differing = ~((again == recorded) | (np.isnan(again) & np.isnan(recorded)))

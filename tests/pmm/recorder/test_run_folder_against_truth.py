@@ -13,12 +13,21 @@ from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.roles import Pulse, Reading
-from pmm.recorder.files import BeingRecordedError, RunExistsError
+from pmm.recorder.files import (
+    HEADER,
+    MARKER,
+    RECORDING,
+    RECOVERED,
+    STREAMS,
+    BeingRecordedError,
+    RunExistsError,
+)
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.lateness import Lateness
 from pmm.recorder.recovery import recover, runs_in
 from pmm.recorder.run_recorder import Outcome, RunRecorder
 from tests.pmm.recorder.recorded import CHANNELS, fed, header, truth
+from tests.sim.devices.benches import ROOT
 
 
 def test_a_closed_run_is_the_samples_handed_in(tmp_path: Path) -> None:
@@ -208,6 +217,12 @@ def test_runs_of_a_campaign_are_found_by_name(tmp_path: Path) -> None:
     assert runs_in(tmp_path / "a") == (tmp_path / "a",)
     with pytest.raises(DataError, match="holds no run"):
         runs_in(tmp_path / "figures")
+
+
+def test_the_page_names_every_file_of_a_run() -> None:
+    page = (ROOT / "docs" / "recording-safety.md").read_text()
+    for name in (HEADER, *STREAMS, MARKER, RECORDING, RECOVERED):
+        assert f"| `{name}` |" in page
 
 
 def test_channels_and_readings_are_the_vocabularys() -> None:
