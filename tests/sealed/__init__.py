@@ -1,0 +1,1 @@
+"""Sealed data: another reality, and what is judged by it."""

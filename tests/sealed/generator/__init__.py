@@ -1,0 +1,1 @@
+"""A second reality, made in the time domain, that shares nothing with ``sim`` or ``analysis``."""

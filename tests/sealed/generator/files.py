@@ -1,0 +1,247 @@
+"""The folders of a case: what whoever answers may see, and the key."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.sealed.generator.case import Case
+from tests.sealed.generator.design import REGIMES
+from tests.sealed.generator.features import (
+    ORDERS,
+    harmonics,
+    line_sigma,
+    recorded,
+    reference,
+    resampled,
+)
+from tests.sealed.generator.parameters import FloatArray, P
+from tests.sealed.generator.priors import STATED
+from tests.sealed.generator.recordings import FOREIGN, set_point, write_csv, write_netcdf
+from tests.sealed.generator.rig import CHANNELS, Record, Rig, Run
+
+FOREIGN_SHARE = 0.2
+
+
+def _toml(value: Any) -> str:
+    """Return a value as TOML; mappings inline."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value)
+    return str(value) if isinstance(value, int) else repr(float(value))
+
+
+def table(head: str, rows: Mapping[str, Any]) -> str:
+    """Return a table of TOML under its header line."""
+    return "\n".join([head, *(f"{key} = {_toml(value)}" for key, value in rows.items()), ""])
+
+
+def _matrix(p: FloatArray, first: P) -> list[list[float]]:
+    values = [float(p[first + i]) for i in range(4)]
+    return [values[:2], values[2:]]
+
+
+def _oscillator(rig: Rig) -> dict[str, Any]:
+    rows: dict[str, Any] = {
+        "plane": rig.plane,
+        "half_spacing_m": rig.half_spacing_m,
+        "frequency_hz": {"low": 0.05, "high": 2.0},
+        "eccentricity_m": {"low": 0.0, "high": 0.1 if rig.plane == "vertical" else 0.35},
+        "force_per_strut_n": rig.full_scale_n,
+    }
+    if rig.rod_length_m is not None:
+        rows["rod_length_m"] = rig.rod_length_m
+    return rows
+
+
+def _acquisition(rig: Rig) -> dict[str, Any]:
+    noise = rig.noise
+    force = {"noise_rms": round(noise.white_n, 3), "resolution": noise.step_n}
+    all_rows = {
+        "shaft_angle": {"resolution": noise.step_rad},
+        "displacement_aft": {"noise_rms": noise.displacement_m},
+        "displacement_fore": {"noise_rms": noise.displacement_m},
+        "force_aft": force,
+        "force_fore": force,
+        "carriage_speed": {"noise_rms": noise.carriage_m_s},
+    }
+    return {name: row for name, row in all_rows.items() if name in rig.sensors}
+
+
+def _run(run: Run, **more: Any) -> dict[str, Any]:
+    return {"name": run.name, **set_point(run), "periods": run.periods, **more}
+
+
+def _columns(rig: Rig) -> str:
+    names = [CHANNELS[row] for row in recorded(rig.sensors)]
+    text = table("[columns]", {"time": "Zeit [s]"})
+    text += table("\n[columns.channels]", {name: FOREIGN[name][0] for name in names})
+    if "photocell" in rig.sensors:
+        text += table("\n[columns.photocell]", {"edges_file": "{stem}_edges.csv"})
+    return text
+
+
+def campaign_text(case: Case, *, foreign: bool) -> str:
+    """Return campaign.toml: what is believed, and the runs."""
+    rig, p = case.campaign.rig, case.campaign.believed
+    model = {
+        "mass_kg": p[P.MASS],
+        "inertia_kg_m2": p[P.INERTIA],
+        "cg_x_m": p[P.CG_X],
+        "cg_z_m": p[P.CG_Z],
+    }
+    hull = {
+        "added_mass": _matrix(p, P.ADDED_00),
+        "damping": _matrix(p, P.DAMPING_00),
+        "restoring": _matrix(p, P.RESTORING_00),
+    }
+    scale = {"full_scale_n": rig.full_scale_n}
+    head = table(f'name = "{case.name}"', {})
+    if "photocell" not in rig.sensors:
+        head += "photocell = false\n"
+    parts = [
+        head,
+        table("[oscillator]", _oscillator(rig)),
+        table("[model]", model),
+        table("[hull]", hull),
+        table("[dynamometers]", {"aft": scale, "fore": scale}),
+        table("[acquisition]", _acquisition(rig)),
+        table("[simulation]", {"sample_rate_hz": rig.sample_rate_hz}),
+    ]
+    if "photocell" not in rig.sensors:
+        parts.append(table("[reference]", {"channel": "displacement_aft"}))
+    if foreign:
+        parts.append(_columns(rig))
+    for run in case.campaign.runs:
+        rows = _run(run)
+        if foreign:
+            rows["file"] = f"{run.name}.csv.gz"
+        parts.append(table("[[runs]]", rows))
+    return "\n".join(parts)
+
+
+def case_text(case: Case) -> str:
+    """Return case.toml: priors, withheld set-points and what the rig can do."""
+    rig = case.campaign.rig
+    fast = [run.frequency_hz for run in case.campaign.runs]
+    wide = [run.eccentricity_m for run in case.campaign.runs]
+    speed = max(run.carriage_speed_m_s for run in case.campaign.runs)
+    can = {
+        "frequency_hz": {"low": 0.7 * min(fast), "high": 1.15 * max(fast)},
+        "eccentricity_m": {"low": 0.5 * min(wide), "high": max(wide)},
+        "carriage_speed_m_s": {"low": 0.0, "high": 1.3 * speed},
+        "strut_phase_rad": [0.0, 1.0471975512, 1.5707963268, 2.0943951024, 3.1415926536],
+        "media": ["water", "air"],
+        "special": ["rest", "check-weight", "injection"],
+    }
+    parts = [
+        table('schema = "sealed-case-1"', {"sensors": list(rig.sensors)}),
+        table("[priors]", STATED),
+        table("[rig]", can),
+    ]
+    for run, regime in zip(case.campaign.held_out, REGIMES, strict=True):
+        parts.append(table("[[held_out]]", _run(run, regime=regime)))
+    return "\n".join(parts)
+
+
+def _held_out(case: Case, run: Run, record: Record) -> dict[str, Any]:
+    """Return the harmonics of a withheld run without noise, with sigma as if it had some."""
+    rig = case.campaign.rig
+    ref = reference(record, run, rig.sensors)
+    means, in_phase, quadrature = harmonics(resampled(record, ref, run.periods), run.periods)
+    own = np.arange(1, ORDERS + 1) * run.periods
+    channels = {}
+    for row in recorded(rig.sensors):
+        channels[CHANNELS[row]] = {
+            "mean": float(means[row]),
+            "in_phase": in_phase[row].tolist(),
+            "quadrature": quadrature[row].tolist(),
+            "sigma": line_sigma(rig, run, row)[own].tolist(),
+        }
+    return {"frequency_hz": 1.0 / ref.period_s, "channels": channels}
+
+
+def _effects(case: Case) -> list[dict[str, Any]]:
+    pair = case.content.kind == "pair"
+    return [
+        {
+            "name": sized.effect.name,
+            "stage": sized.effect.stage,
+            "form": sized.effect.form,
+            "equivalent": sized.equivalent,
+            "snr": sized.snr,
+            "alone": case.alone(sized) if pair else sized.snr,
+        }
+        for sized in case.content.effects
+    ]
+
+
+def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the key of a case; docs/sealed.md says what each entry means."""
+    content, p = case.content, case.parameters
+    out: dict[str, Any] = {
+        "schema": "sealed-truth-1",
+        "case": case.name,
+        "seed": str(case.seed),
+        "index": case.index,
+        "kind": content.kind,
+        "null": case.null,
+        "verdict": content.verdict,
+        "determinable": case.determinable,
+        "effects": _effects(case),
+        "right": [list(answer) for answer in content.right],
+        "stages": list(content.stages),
+        "snr": case.snr,
+        "angle_deg": None,
+        "imitators": [],
+        "classes": {},
+        "separated_by": content.separated_by,
+        "nuisances": [{"name": x.effect.name, "snr": x.snr} for x in case.always],
+        "true_hull": {
+            "mass_kg": float(p[P.MASS]),
+            "inertia_kg_m2": float(p[P.INERTIA]),
+            "added_mass": _matrix(p, P.ADDED_00),
+            "damping": _matrix(p, P.DAMPING_00),
+            "restoring": _matrix(p, P.RESTORING_00),
+        },
+        "held_out": dict(held_out),
+        "ceiling": None,
+    }
+    if content.effects and content.verdict != "none":
+        absent = {name for answer in content.right for name in answer}
+        near = case.library.imitators(case.signature, sorted(absent))
+        out["imitators"] = [{"name": name, "cosine": cosine} for name, cosine in near]
+        out["angle_deg"] = float(np.degrees(np.arccos(min(near[0][1], 1.0))))
+        out["classes"] = case.library.classes()
+        out["ceiling"] = case.reach()
+    return out
+
+
+def write(case: Case, cases: Path, keys: Path) -> None:
+    """Write a case's folder below ``cases`` and its key below ``keys``."""
+    folder, key = cases / case.name, keys / case.name
+    folder.mkdir(parents=True)
+    (key / "held-out").mkdir(parents=True)
+    foreign = bool(np.random.default_rng([case.seed, case.index, 3]).random() < FOREIGN_SHARE)
+    rig = case.campaign.rig
+    for number, run in enumerate(case.campaign.runs):
+        made = case.recorded(run, number)
+        if foreign:
+            write_csv(folder / f"{run.name}.csv.gz", made, run, rig)
+        else:
+            write_netcdf(folder / f"{run.name}.nc", made, run, rig)
+    (folder / "campaign.toml").write_text(campaign_text(case, foreign=foreign))
+    (folder / "case.toml").write_text(case_text(case))
+    held_out = {}
+    for run in case.campaign.held_out:
+        clean = case.noise_free(run)
+        write_netcdf(key / "held-out" / f"{run.name}.nc", clean, run, rig)
+        held_out[run.name] = _held_out(case, run, clean)
+    (key / "truth.json").write_text(json.dumps(truth(case, held_out), indent=1) + "\n")

@@ -1,0 +1,149 @@
+"""What a case holds: drawn by kind, with the right answers that go with it."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from tests.sealed.generator.catalogue import BY_NAME, CATALOGUE
+from tests.sealed.generator.ceiling import applicable
+from tests.sealed.generator.design import Campaign
+from tests.sealed.generator.effect import Effect
+from tests.sealed.generator.outside import ABOVE, ALSO_RIGHT, OUTSIDE, TWINS
+from tests.sealed.generator.signatures import Projection, Situation
+from tests.sealed.generator.sizing import INVISIBLE, Sized, sized
+
+Kind = Literal["none", "friction-above", "coefficients", "single", "pair", "outside", "twin"]
+Verdict = Literal["none", "coefficients", "gap", "unknown"]
+
+CASE_KINDS: dict[Kind, float] = {
+    "none": 0.08,
+    "friction-above": 0.06,
+    "coefficients": 0.06,
+    "single": 0.45,
+    "pair": 0.15,
+    "outside": 0.15,
+    "twin": 0.05,
+}
+NULL_KINDS: dict[Kind, float] = {"none": 0.8, "friction-above": 0.2}
+COEFFICIENTS = ("added-mass-error", "damping-error")
+DETERMINABLE = 3.0
+
+
+@dataclass(frozen=True)
+class Content:
+    """What is there, and what is right to say of it.
+
+    Attributes
+    ----------
+    right
+        Right answers, each a sorted tuple of effects' names; the empty one is "none".
+    separated_by
+        The further run that tells twins apart.
+    """
+
+    kind: Kind
+    verdict: Verdict
+    effects: tuple[Sized, ...]
+    right: tuple[tuple[str, ...], ...]
+    stages: tuple[str, ...]
+    separated_by: str | None = None
+
+
+def drawn_kind(rng: np.random.Generator, *, null: bool) -> Kind:
+    """Return a kind with its share as probability."""
+    shares = NULL_KINDS if null else CASE_KINDS
+    kinds = list(shares)
+    return kinds[int(rng.choice(len(kinds), p=list(shares.values())))]
+
+
+def wanted_snr(rng: np.random.Generator) -> float:
+    """Return an SNR: evenly on a logarithmic scale from 2 to 200."""
+    return float(np.exp(rng.uniform(np.log(2.0), np.log(200.0))))
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What the contents of a case are drawn from."""
+
+    campaign: Campaign
+    situation: Situation
+    projection: Projection
+    rng: np.random.Generator
+
+    def _one(self, pool: list[Effect], wanted: float, tries: int = 5) -> Sized:
+        """Return an effect of the pool that reaches half of what is wanted, or the last tried."""
+        found = None
+        for i in self.rng.permutation(len(pool))[:tries]:
+            found = sized(self.situation, self.projection, pool[i], wanted, self.rng)
+            if 0.5 * wanted < found.snr < 2.0 * wanted:
+                break
+        assert found is not None, "no effect for this rig"
+        return found
+
+    def _pool(self, effects: tuple[Effect, ...]) -> list[Effect]:
+        return [
+            effect
+            for effect in effects
+            if effect.name not in COEFFICIENTS and applicable(effect, self.campaign)
+        ]
+
+    def draw(self, kind: Kind) -> Content:
+        """Return the content of a case of this kind."""
+        return getattr(self, "_" + kind.replace("-", "_"))()  # type: ignore[no-any-return]
+
+    def _none(self) -> Content:
+        return Content("none", "none", (), ((),), ())
+
+    def _friction_above(self) -> Content:
+        effect = sized(self.situation, self.projection, ABOVE, INVISIBLE, self.rng)
+        return Content("friction-above", "none", (effect,), ((),), ())
+
+    def _coefficients(self) -> Content:
+        pool = [BY_NAME[name] for name in COEFFICIENTS]
+        effects = tuple(sized(self.situation, self.projection, e, 5.0, self.rng) for e in pool)
+        return Content(
+            "coefficients",
+            "coefficients",
+            effects,
+            (*((name,) for name in COEFFICIENTS), COEFFICIENTS),
+            (BY_NAME[COEFFICIENTS[0]].stage,),
+        )
+
+    def _single(self) -> Content:
+        found = self._one(self._pool(CATALOGUE), wanted_snr(self.rng))
+        return Content("single", "gap", (found,), ((found.effect.name,),), (found.effect.stage,))
+
+    def _pair(self) -> Content:
+        pool = self._pool(CATALOGUE)
+        wanted = max(wanted_snr(self.rng), 8.0)
+        first = self._one(pool, wanted)
+        others = [e for e in pool if e.name != first.effect.name and not e.rebased]
+        second = self._one(others, wanted * float(self.rng.uniform(0.6, 1.6)))
+        if self.rng.random() < 0.5:
+            second = self._against(first, second)
+        names = tuple(sorted(x.effect.name for x in (first, second)))
+        stages = tuple(sorted({x.effect.stage for x in (first, second)}))
+        return Content("pair", "gap", (first, second), (names,), stages)
+
+    def _against(self, first: Sized, second: Sized) -> Sized:
+        """Return the second with the sign that takes from the first, where it has a sign."""
+        if not second.effect.signed:
+            return second
+        one, two = (
+            self.projection.left(self.situation.signature(x.effect, x.size, x.drawn))
+            for x in (first, second)
+        )
+        return replace(second, size=-second.size) if float(one @ two) > 0.0 else second
+
+    def _outside(self) -> Content:
+        found = self._one(self._pool(OUTSIDE), max(wanted_snr(self.rng), 5.0))
+        also = tuple((name,) for name in ALSO_RIGHT.get(found.effect.name, ()))
+        return Content("outside", "unknown", (found,), also, (found.effect.stage,))
+
+    def _twin(self) -> Content:
+        effect, right, stages, apart = TWINS[int(self.rng.integers(len(TWINS)))]
+        found = sized(
+            self.situation, self.projection, effect, max(wanted_snr(self.rng), 5.0), self.rng
+        )
+        return Content("twin", "gap", (found,), tuple((name,) for name in right), stages, apart)

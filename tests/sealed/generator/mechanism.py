@@ -1,0 +1,90 @@
+"""From parameters and a run to what truly moves and pulls: the integration, set up and called."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tests.sealed.generator.integrate import integrate
+from tests.sealed.generator.parameters import FloatArray, P
+from tests.sealed.generator.rig import Rig, Run
+
+# Longest step on rigid gauges, and on gauges, frames or clearances that give way.
+RIGID_STEP_S, LOOSE_STEP_S = 2.6e-3, 0.7e-3
+SETTLING_PERIODS = 3.0
+# What the gauges' stiffness becomes where a clearance needs one, N/m.
+CONTACT_N_M = 2e7
+KERNEL_S = 5.0
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What happens, sensors apart: ``(6, samples)`` from ``before`` samples ahead of time 0."""
+
+    samples: FloatArray
+    edges_s: FloatArray
+    before: int
+
+
+def set_run(p: FloatArray, run: Run) -> FloatArray:
+    """Return the parameters with those of the run put in."""
+    q = p.copy()
+    moving = run.turns
+    q[P.OMEGA] = 2.0 * math.pi * run.frequency_hz if moving else 0.0
+    q[P.ECCENTRICITY] = run.eccentricity_m if moving else 1e-9
+    for place in (P.ECC_ERROR_AFT, P.ECC_ERROR_FORE):
+        q[place] *= moving
+    q[P.STRUT_PHASE], q[P.SPEED] = run.strut_phase_rad, run.carriage_speed_m_s
+    q[P.WATER] = float(run.medium == "water")
+    q[P.HOUR], q[P.WAITED], q[P.PRELOAD] = run.hour, run.waited_s, run.preload_n
+    if run.kind == "check-weight":
+        q[P.CHECK_AFT if run.strut == "aft" else P.CHECK_FORE] = run.weight_n
+    if run.kind == "injection":
+        q[P.INJECTED] = run.force_n
+    return q
+
+
+def retardation(p: FloatArray, interval_s: float) -> FloatArray:
+    """Return both retardation functions at the sample interval, ``(2, taps)``; one tap if none.
+
+    The memory's is exponential or Gaussian; echoes from the walls come back as widening bumps.
+    """
+    if p[P.MEMORY_0] == p[P.MEMORY_1] == p[P.ECHO] == 0.0:
+        return np.zeros((2, 1))
+    tau = np.arange(0.0, KERNEL_S, interval_s)
+    scaled = p[P.MEMORY_RATE] * tau
+    shape = np.exp(-scaled) if p[P.MEMORY_SHAPE] == 0.0 else np.exp(-np.pi / 4.0 * scaled**2)
+    echo = np.zeros_like(tau)
+    for bounce in range(1, 5):
+        width = 0.06 * p[P.ECHO_DELAY] * (1.0 + 0.3 * bounce)
+        bump = np.exp(-(((tau - bounce * p[P.ECHO_DELAY]) / width) ** 2))
+        echo += p[P.ECHO_DECAY] ** (bounce - 1) * bump / (width * math.sqrt(math.pi))
+    first = p[P.MEMORY_0] * shape + p[P.ECHO] * p[P.ADDED_00] * echo
+    return np.vstack([first, p[P.MEMORY_1] * shape + p[P.ECHO] * p[P.ADDED_11] * echo])
+
+
+def _is_loose(p: FloatArray) -> bool:
+    gives = p[[P.GAUGE_STIFFNESS, P.FRAME_STIFFNESS, P.KNOCK, P.PLAY]]
+    return bool(np.any(gives > 0.0))
+
+
+def happen(p: FloatArray, run: Run, rig: Rig, *, settling: float = SETTLING_PERIODS) -> Truth:
+    """Return what happens in a run, from ``settling`` periods ahead of the record."""
+    q = set_run(p, run)
+    loose = _is_loose(q)
+    if loose and q[P.GAUGE_STIFFNESS] == 0.0:
+        q[P.GAUGE_STIFFNESS] = CONTACT_N_M
+        q[P.GAUGE_DAMPING] = 2e4
+    period = 1.0 / run.frequency_hz if run.turns else 1.0
+    before, samples = (round(x * rig.sample_rate_hz) for x in (settling * period, run.duration_s))
+    step = LOOSE_STEP_S if loose else RIGID_STEP_S
+    substeps = math.ceil(1.0 / (rig.sample_rate_hz * step))
+    interval = 1.0 / rig.sample_rate_hz
+    kernels = retardation(q, interval)
+    out, edges = integrate(q, kernels, interval, substeps, before, samples)
+    return Truth(out, edges, before)
+
+
+def shortened(run: Run) -> Run:
+    """Return the run with no more periods than a steady state needs."""
+    return replace(run, periods=2) if run.turns else run
