@@ -1,4 +1,4 @@
-"""The example of docs/coefficients.md runs, and ends near what was put in."""
+"""The examples of docs/coefficients.md run, and end near what was put in."""
 
 import re
 from pathlib import Path
@@ -9,9 +9,10 @@ DOCUMENT = Path(__file__).parents[3] / "docs" / "coefficients.md"
 
 
 def test_the_example_runs() -> None:
-    (block,) = re.findall(r"```python\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    text = DOCUMENT.read_text(encoding="utf-8")
     names: dict[str, object] = {}
-    exec(compile(block, str(DOCUMENT), "exec"), names)  # noqa: S102 - our own document
+    for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(block, str(DOCUMENT), "exec"), names)  # noqa: S102 - our own document
     result, table, beside = names["result"], names["table"], names["beside"]
     put_in = {"Z_wdot": -75.0, "Z_w": -190.0, "M_qdot": -22.0, "M_q": -55.0}
     for name, value in put_in.items():
@@ -20,6 +21,12 @@ def test_the_example_runs() -> None:
     assert table.normalisation == "prime (rho/2, L = 2.5 m, U = 1.2 m/s)"  # type: ignore[attr-defined]
     ratio = beside.standard_uncertainty / result.standard_uncertainty  # type: ignore[attr-defined]
     np.testing.assert_allclose(ratio, 1.0, atol=0.1)
+    campaign = names["campaign"]
+    for k in campaign.rows("Z_wdot"):  # type: ignore[attr-defined]
+        width = campaign.uncertain.half_width(0.999)[k]  # type: ignore[attr-defined]
+        assert abs(campaign.values[k] + 75.0) <= width  # type: ignore[attr-defined]
+    assert names["in_prime"].normalisation == table.normalisation  # type: ignore[attr-defined]
+    assert names["lines"][0].share > 0.2  # type: ignore[index]
 
 
 def test_every_flag_is_in_the_document() -> None:

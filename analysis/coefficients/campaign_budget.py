@@ -1,0 +1,151 @@
+"""The budget of one coefficient, GUM style: what each input adds, through GTC's uncertain numbers.
+
+Inputs of one kind stand in one line (the scatter of all runs, the repeats of all runs); what two
+coefficients have in common is kept (:func:`correlation`), because both are made of the same
+uncertain numbers.
+"""
+
+import math
+from dataclasses import dataclass
+
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.uncertainty import student_factor
+
+_KINDS = {
+    "scatter of": "harmonic scatter",
+    "repeats:": "repeats",
+    "zero run": "zero runs",
+    "extrapolation of": "extrapolation to zero frequency",
+}
+_WORDS = {
+    "mass_kg": "mass",
+    "cg_x_m": "centre of gravity, ahead",
+    "cg_z_m": "centre of gravity, height",
+    "inertia_kg_m2": "moment of inertia",
+    "half_spacing_m": "strut spacing",
+    "speed_m_s": "carriage speed",
+    "frequency_relative": "frequency",
+    "restoring_relative": "restoring",
+    "amplitude_relative": "amplitude",
+    "strut_phase_rad": "phase setting",
+    "lag_s": "amplifier lag",
+    "skew_s": "skew between gauges",
+    "force_gain_relative": "calibration, both gauges",
+    "gauge_aft_relative": "calibration, aft gauge",
+    "gauge_fore_relative": "calibration, fore gauge",
+    "cross_talk_aft": "cross-talk into the aft gauge",
+    "cross_talk_fore": "cross-talk into the fore gauge",
+    "latency_s": "photocell latency",
+    "midpoint_x_m": "alignment, model along the rig",
+    "alignment_rad": "alignment, heading",
+    "density_relative": "density",
+}
+_DIGIT = 0.1
+
+
+@dataclass(frozen=True)
+class Line:
+    """What one kind of input adds.
+
+    Attributes
+    ----------
+    contribution
+        Standard uncertainty of the coefficient by this kind alone, in its unit.
+    share
+        Part of the variance; all lines together are 1.
+    degrees_of_freedom
+        Fewest of the inputs of this kind.
+    """
+
+    source: str
+    contribution: float
+    share: float
+    degrees_of_freedom: float
+
+
+@dataclass(frozen=True)
+class CoefficientBudget:
+    """The budget of one coefficient, largest line first.
+
+    Attributes
+    ----------
+    degrees_of_freedom
+        Effective, by Welch and Satterthwaite with correlated ensembles (GTC).
+    coverage_factor, half_width
+        Of the interval at the campaign's level.
+    digits
+        What is to be said where the coefficient is a small difference; empty where it is not.
+    """
+
+    name: str
+    unit: str
+    value: float
+    standard_uncertainty: float
+    degrees_of_freedom: float
+    coverage_factor: float
+    half_width: float
+    lines: tuple[Line, ...]
+    digits: str
+
+
+def budget(found: CampaignCoefficients, row: int) -> CoefficientBudget:
+    """Return the budget of one entry of a campaign's table."""
+    import GTC  # type: ignore[import-untyped]
+
+    entry = found.entries[row]
+    (number,) = found.uncertain.gtc_numbers([row])
+    spread, freedom = 0.0, math.inf
+    if not isinstance(number, float):
+        spread, freedom = float(GTC.uncertainty(number)), float(GTC.dof(number))
+    freedom = math.inf if math.isnan(freedom) else freedom
+    factor = float(student_factor(found.uncertain.degrees_of_freedom[[row]], found.level)[0])
+    return CoefficientBudget(
+        entry.name,
+        entry.unit,
+        float(found.values[row]),
+        spread,
+        freedom,
+        factor,
+        factor * spread,
+        _lines(found, row, spread),
+        _digits(entry.name, entry.retained),
+    )
+
+
+def correlation(found: CampaignCoefficients, first: int, second: int) -> float:
+    """Return the correlation coefficient of two entries, by GTC."""
+    import GTC
+
+    one, other = found.uncertain.gtc_numbers([first, second])
+    return float(GTC.get_correlation(one, other))
+
+
+def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[Line, ...]:
+    variances: dict[str, float] = {}
+    freedom: dict[str, float] = {}
+    parts = found.uncertain.variances()[:, row]
+    for one, part in zip(found.uncertain.contributions, parts, strict=True):
+        if part > 0.0:
+            source = _source(one.label)
+            variances[source] = variances.get(source, 0.0) + float(part)
+            freedom[source] = min(freedom.get(source, math.inf), one.degrees_of_freedom)
+    lines = [
+        Line(source, math.sqrt(part), part / spread**2, freedom[source])
+        for source, part in variances.items()
+    ]
+    return tuple(sorted(lines, key=lambda line: -line.share))
+
+
+def _source(label: str) -> str:
+    kind = next((words for start, words in _KINDS.items() if label.startswith(start)), None)
+    return kind or _WORDS.get(label, label)
+
+
+def _digits(name: str, retained: float) -> str:
+    if math.isnan(retained) or retained >= _DIGIT:
+        return ""
+    lost = -math.log10(max(retained, 1e-12))
+    return (
+        f"{name} is {100.0 * retained:.2g} % of the largest part of the load that it is left from: "
+        f"{lost:.1f} digits are lost in the difference"
+    )

@@ -1,0 +1,81 @@
+"""The budget of a coefficient against its contributions, and correlations against closed forms."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from analysis.coefficients.campaign import Request, campaign_coefficients
+from analysis.coefficients.campaign_budget import budget, correlation
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.names import Form
+from analysis.coefficients.stated import Stated
+from benchmarks.coefficients_campaigns import (
+    RESTORING,
+    VERTICAL,
+    Made,
+    made_up,
+    pure_pair,
+    scattered,
+)
+from hardware.description.oscillator import Plane
+
+STATED = Stated(
+    mass_kg=0.1, inertia_kg_m2=0.2, lag_s=2e-4, force_gain_relative=1e-3, cross_talk_aft=1e-3,
+    midpoint_x_m=1e-3, density_relative=1e-3,
+)  # fmt: skip
+MADE = Made(VERTICAL, Plane.VERTICAL, restoring=RESTORING)
+
+
+def campaign(frequency_hz: float, stated: Stated = STATED) -> CampaignCoefficients:
+    generator = np.random.default_rng(9)
+    cycles = [
+        scattered(made_up(p, MADE, name), generator)
+        for name, p in zip(("heave", "pitch"), pure_pair(frequency_hz, 0.02, 0.0), strict=True)
+    ]
+    return campaign_coefficients(cycles, Request(Form.SEAKEEPING, stated))
+
+
+@pytest.mark.parametrize("name", ["a33", "b33", "a55", "b53"])
+def test_lines_add_up_to_gtcs_uncertainty(name: str) -> None:
+    found = campaign(0.8)
+    row = found.row(name)
+    own = budget(found, row)
+    assert sum(line.share for line in own.lines) == pytest.approx(1.0)
+    assert own.standard_uncertainty == pytest.approx(found.uncertain.standard_uncertainty[row])
+    assert own.degrees_of_freedom == pytest.approx(found.uncertain.degrees_of_freedom[row])
+    assert own.half_width == pytest.approx(found.half_widths[row])
+    shares = [line.share for line in own.lines]
+    assert shares == sorted(shares, reverse=True)
+    assert "harmonic scatter" in {line.source for line in own.lines}
+
+
+def test_the_mass_acts_in_full_on_the_added_mass() -> None:
+    lines = {line.source: line for line in budget(campaign(0.8), campaign(0.8).row("a33")).lines}
+    assert lines["mass"].contribution == pytest.approx(0.1, rel=1e-6)
+    assert lines["harmonic scatter"].degrees_of_freedom == 7.0
+
+
+def test_what_two_coefficients_share_is_their_correlation() -> None:
+    """Added masses at two frequencies, of a mass alone: one and the same error."""
+    exact = [made_up(pure_pair(f, 0.02, 0.0)[0], MADE, f"heave {f}") for f in (0.6, 0.9)]
+    found = campaign_coefficients(
+        exact, Request(Form.SEAKEEPING, Stated(mass_kg=0.1), zero_frequency=False)
+    )
+    first, second = found.rows("a33")
+    assert correlation(found, first, second) == pytest.approx(1.0)
+
+
+def test_low_frequency_says_how_many_digits_are_lost() -> None:
+    slow, fast = campaign(0.1), campaign(0.8)
+    assert "2.3 digits are lost" in budget(slow, slow.row("a33")).digits
+    assert budget(fast, fast.row("a33")).digits == ""
+    restoring = {line.source for line in budget(slow, slow.row("a33")).lines[:2]}
+    assert restoring & {"density", "calibration, both gauges"}
+
+
+def test_every_stated_input_has_words_of_its_own() -> None:
+    from analysis.coefficients.campaign_budget import _WORDS
+
+    assert set(_WORDS) == {one.name for one in fields(Stated)}
+    assert len(set(_WORDS.values())) == len(_WORDS)
