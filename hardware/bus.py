@@ -18,6 +18,7 @@ from hardware.errors import BusOffError, BusOpenError, DeadReceiveThreadError
 
 # Part of the bit rate that process data may take: the rest is for SDO, EMCY and repeated frames.
 LARGEST_LOAD: Final = 0.7
+_ANSWER_SHARE: Final = 0.8  # of the period, for all nodes to answer a SYNC
 _POLL_S: Final = 0.05
 # An adapter that takes no frame for so long, or a thread that does not end, is given up.
 _SEND_TIMEOUT_S: Final = 0.1
@@ -45,6 +46,9 @@ class BusConfiguration:
         Period of all heartbeats, and how long the drives wait for the controller's.
     allowed_gap_cycles
         Cycles that a heartbeat or process data may be late before it counts as lost.
+    answer_ms
+        How long the answers to a SYNC are waited for; 0 is four fifths of the period. Longer is for
+        cycles that do not keep to a clock, so that a slow peer costs time and no samples.
     sync_overflow
         The SYNC counter runs from 1 to here (2 to 240); 0 sends SYNC without a counter.
     options
@@ -60,6 +64,7 @@ class BusConfiguration:
     heartbeat_ms: int = 100
     heartbeat_limit_ms: int = 300
     allowed_gap_cycles: int = 3
+    answer_ms: int = 0
     sync_overflow: int = 240
     options: Mapping[str, int | float | str | bool] = field(
         default_factory=lambda: MappingProxyType({})
@@ -69,6 +74,11 @@ class BusConfiguration:
     def period_s(self) -> float:
         """Seconds from SYNC to SYNC."""
         return 1.0 / self.sync_rate_hz
+
+    @property
+    def answer_s(self) -> float:
+        """Seconds that the answers to a SYNC are waited for."""
+        return self.answer_ms / 1000.0 if self.answer_ms else _ANSWER_SHARE * self.period_s
 
 
 def frame_bits(data_bytes: int) -> int:

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Final
 
 import can
@@ -20,7 +21,6 @@ _NMT, _SYNC, _EMCY, _HEARTBEAT = 0x000, 0x080, 0x080, 0x700
 _START, _PRE_OPERATIONAL = 0x01, 0x80
 _REPEAT_CYCLES: Final = 10  # RPDOs go out when they change, and again so often
 _FRAMES_A_CYCLE: Final = 4096  # a babbling node must not keep the loop for ever
-_RESPONSE_SHARE: Final = 0.8  # of the period, for all nodes to answer a SYNC
 
 
 class _Network(canopen.Network):
@@ -194,7 +194,8 @@ class Master:
             pass  # a lost bus cannot be told anything
         finally:
             self._receiver.close()
-            self._bus.shutdown()
+            with suppress(can.CanError, OSError):  # a dead adapter cannot be told good-bye
+                self._bus.shutdown()
 
     def _dispatch(self, frame: can.Message) -> None:
         identifier = frame.arbitration_id
@@ -226,7 +227,7 @@ class Master:
     def _collect(self) -> list[HardwareError]:
         """Deliver frames until every TPDO has come or its time is over, and whatever is there."""
         faults: list[HardwareError] = []
-        end = self.clock() + _RESPONSE_SHARE * self.configuration.period_s
+        end = self.clock() + self.configuration.answer_s
         if self._operating:
             # A stream that missed its last SYNC owes two frames: so a late one is not taken for
             # the present one's.

@@ -21,6 +21,7 @@ from hardware.errors import (
 from hardware.node import Node
 
 OPERATIONAL: Final = 5
+_PRE_OPERATIONAL: Final = 127
 _BUS_OFF: Final = 0x40  # error class in the identifier of an error frame
 _FOLLOWING_ERROR: Final = 0x8611
 
@@ -68,9 +69,15 @@ class Supervisor:
         self._beat_limit = math.ceil(beat_cycles) + self._gap
         self._found: list[HardwareError] = []
         self._told: set[tuple[str, str]] = set()
+        self._started = 0
 
     def start(self, number: int) -> None:
-        """Begin to count from cycle ``number``."""
+        """Begin to count from cycle ``number``.
+
+        A heartbeat of before may still be on its way, so that the state has as long as the first
+        heartbeat.
+        """
+        self._started = number
         for node in self._nodes.values():
             node.last_beat = number
             for stream in node.streams:
@@ -87,7 +94,8 @@ class Supervisor:
         node = self._nodes[node_id]
         node.last_beat = number
         state = data[0] & 0x7F if data else -1
-        if state != OPERATIONAL:
+        on_its_way = state == _PRE_OPERATIONAL and number - self._started <= self._beat_limit
+        if state != OPERATIONAL and not on_its_way:
             what = "booted" if state == 0 else f"is in state {state}, not operational"
             self._tell(NodeStateError(node.name, f"node {node_id} {what} during operation"))
 

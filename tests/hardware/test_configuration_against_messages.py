@@ -86,6 +86,11 @@ def test_a_drive_needs_a_bus_and_a_touch_probe_a_drive() -> None:
         pass
 
 
+def test_answers_have_four_fifths_of_the_period_unless_it_is_said() -> None:
+    assert BusConfiguration("virtual", "x", sync_rate_hz=200.0).answer_s == pytest.approx(0.004)
+    assert BusConfiguration("virtual", "x", answer_ms=2000).answer_s == 2.0
+
+
 def test_a_frame_is_as_long_as_the_standard_says() -> None:
     # Davis, Burns, Bril and Lukkien (2007): 55 + 10 s bits for an 11-bit identifier.
     assert [frame_bits(size) for size in range(9)] == [55 + 10 * size for size in range(9)]

@@ -148,6 +148,8 @@ class Hosted:
             "channel": channel,
             "options": bus,
             "allowed_gap_cycles": 30,
+            # Free-running, a peer that the machine has no time for costs time and no samples.
+            "answer_ms": 0 if self.real_time else 2000,
         }
         tables = {part: self._plugged(part) for part in parts}
         whole = tables if set(parts) <= set(self.said["ports"]) else {"bus": table, **tables}
