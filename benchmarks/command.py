@@ -23,6 +23,7 @@ NAMES = (
     "classic",
     "simulator",
     "devices",
+    "run_control",
     "inertia",
     "recorder",
     "kill",

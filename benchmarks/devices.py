@@ -46,7 +46,8 @@ def _amplifier(node: int, channel: str) -> dict[str, Any]:
     return {"driver": "cia404-amplifier", "node": node, "channels": [{**one, "status": "6150:1"}]}
 
 
-def _tables(rate_hz: float) -> dict[str, Any]:
+def tables(rate_hz: float) -> dict[str, Any]:
+    """Return the tables of a rig of three drives and two amplifiers."""
     axis = {"speed": 0.01, "acceleration": 0.1, "quick_stop": 1.0, "standard_uncertainty": 1e-5}
     axis |= {"driver": "cia402-axis", "tolerance": 1e-4}
     return {
@@ -78,7 +79,7 @@ def _tables(rate_hz: float) -> dict[str, Any]:
 def _turning(rate_hz: float) -> Iterator[tuple[Rig, World]]:
     """Open a rig whose shaft turns at speed, axes homed where they stand."""
     can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
-    configuration = read_rig(_tables(rate_hz), DRIVERS)
+    configuration = read_rig(tables(rate_hz), DRIVERS)
     around = Surroundings(carriage_speed_m_s=1.2)
     world = World(configuration, Scene(vertical_rig(), around, _ECCENTRICITY_M, _PHASE_RAD))
     with (

@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
@@ -178,32 +178,34 @@ def _print(found: Evaluation) -> None:
         console.print(str(file), soft_wrap=True)
 
 
-def _tables(found: Evaluation) -> "list[Table]":
-    tables = []
+def _tables(found: Evaluation) -> "Iterator[Table]":
     if found.zeros:
-        rows = [
+        heads = ("gauge", "first [N]", "last [N]", "largest change [N]")
+        zeros = [
             (z.channel, f"{z.first_n:.4g}", f"{z.last_n:.4g}", f"{z.largest_change_n:.2g}")
             for z in found.zeros
         ]
-        heads = ("gauge", "first [N]", "last [N]", "largest change [N]")
-        tables.append(_table("Zeros", heads, rows))
+        yield _table("Zeros", heads, zeros)
     if found.calibration is not None:
-        tables.append(_calibration_table(found.calibration))
+        yield _calibration_table(found.calibration)
     if found.modes:
-        rows = [
-            (m.name, f"{m.frequency_hz:.4g} ± {m.standard_uncertainty_hz:.1g}",
-             f"{m.damping_ratio:.3g}", m.channel)
+        modes = [
+            (
+                m.name,
+                f"{m.frequency_hz:.4g} ± {m.standard_uncertainty_hz:.1g}",
+                f"{m.damping_ratio:.3g}",
+                m.channel,
+            )
             for m in found.modes
-        ]  # fmt: skip
-        tables.append(_table("Modes", ("test", "f [Hz]", "damping ratio", "seen on"), rows))
+        ]
+        yield _table("Modes", ("test", "f [Hz]", "damping ratio", "seen on"), modes)
     if found.responses:
-        rows = [
+        kinds = ("run", "gauge", "f [Hz]", "gain", "lag [ms]")
+        known = [
             (r.run, r.channel, f"{r.frequency_hz:g}", f"{r.gain:.5f}", f"{1e3 * r.lag_s:.3f}")
             for r in found.responses
         ]
-        heads = ("run", "gauge", "f [Hz]", "gain", "lag [ms]")
-        tables.append(_table("Known mass", heads, rows))
-    return tables
+        yield _table("Known mass", kinds, known)
 
 
 def _calibration_table(one: Calibration) -> "Table":

@@ -12,7 +12,7 @@ from pmm.run.states import State
 from pmm.run.status import HarmonicRow, RunOutcome, Status
 
 if TYPE_CHECKING:
-    from rich.console import Group
+    from rich.console import Group, RenderableType
     from rich.table import Table
 
 _EVERY_S: Final = 0.25
@@ -89,7 +89,11 @@ class LiveView:
         status = self._status
         if status is None:
             return Group(Text("opening the rig"))
-        parts = [_head(status), _bar(status), harmonics_table(status.harmonics)]
+        parts: list[RenderableType] = [
+            _head(status),
+            _bar(status),
+            harmonics_table(status.harmonics),
+        ]
         parts += [Text(outcome_line(one), style="dim") for one in self._outcomes[-5:]]
         parts += [Text(f"! {one}", style="bold red") for one in status.alarms[-5:]]
         if self._asked():

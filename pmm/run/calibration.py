@@ -118,13 +118,14 @@ def read_calibration(path: Path) -> Calibration:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
         channels = tuple(table["channels"])
         arrays = [np.array(table[key], dtype=np.float64) for key in _ARRAYS]
-        dates = [date.fromisoformat(table[key]) for key in ("made", "expires")]
+        made, expires = (date.fromisoformat(table[key]) for key in ("made", "expires"))
     except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
         raise ConfigurationError(f"{path}: no calibration: {error!r}") from error
     size = len(channels)
     if [one.shape for one in arrays] != [(size, size), (size, size), (size,), (size,)]:
         raise ConfigurationError(f"{path}: the matrix does not fit the {size} channels")
-    return Calibration(channels, *arrays, *dates)
+    matrix, spread, hysteresis, nonlinearity = arrays
+    return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)
 
 
 _ARRAYS: Final = ("matrix", "standard_uncertainty", "hysteresis", "nonlinearity")

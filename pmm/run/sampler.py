@@ -111,4 +111,4 @@ class Sampler:
             values[source.rows, start - self.next : until - self.next] = block.values[
                 :, start - first : until - first
             ]
-        return end <= stop + 1
+        return bool(end <= stop + 1)

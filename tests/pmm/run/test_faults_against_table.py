@@ -195,7 +195,10 @@ PHASES = [state for state in State if state not in (State.IDLE, State.FAULT, Sta
     ("state", "command"),
     [
         *((state, Command.STOP) for state in PHASES),
-        *((state, Command.QUICK_STOP) for state in (State.SETTING, State.GATE_OPEN, State.STOPPING)),
+        *(
+            (state, Command.QUICK_STOP)
+            for state in (State.SETTING, State.GATE_OPEN, State.STOPPING)
+        ),
     ],
 )
 def test_a_stop_in_any_phase_ends_at_rest_with_the_recording_closed(
