@@ -114,7 +114,7 @@ def _hull_rows(name: str, table: RadiationTable) -> list[Row]:
             continue
         water = _water(table, k)
         own = replace(rig, water=water)
-        eccentricity = min(0.04, 0.05 / frequency**2)
+        eccentricity = min(0.04, 0.03 / frequency**2)
         runs = [
             _measured(own, SetPoint(frequency, eccentricity, phase), f"{phase:.0f}", k)
             for phase in (0.0, math.pi)
