@@ -188,6 +188,7 @@ def test_no_room_for_a_run_is_refused_before_it_moves(tmp_path: Path) -> None:
         assert not (tmp_path / "heave").exists()
 
 
+QUICKLY = (State.SETTING, State.GATE_OPEN, State.STOPPING)
 PHASES = [state for state in State if state not in (State.IDLE, State.FAULT, State.STOPPED)]
 
 
@@ -195,10 +196,7 @@ PHASES = [state for state in State if state not in (State.IDLE, State.FAULT, Sta
     ("state", "command"),
     [
         *((state, Command.STOP) for state in PHASES),
-        *(
-            (state, Command.QUICK_STOP)
-            for state in (State.SETTING, State.GATE_OPEN, State.STOPPING)
-        ),
+        *((state, Command.QUICK_STOP) for state in QUICKLY),
     ],
 )
 def test_a_stop_in_any_phase_ends_at_rest_with_the_recording_closed(

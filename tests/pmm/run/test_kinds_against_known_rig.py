@@ -14,8 +14,7 @@ from pmm.run.calibration import calibrate, read_calibration, write_calibration
 from pmm.run.results import of_kind, read_results
 from pmm.run.rig_tests import known_mass_responses, rung_modes, zero_drifts
 from pmm.run.states import State
-from tests.pmm.run.harness import TABLES, absent, at_rest, bench, oscillation
-from tests.sim.devices.benches import amplifier
+from tests.pmm.run.harness import absent, at_rest, bench, oscillation
 
 HALF_SPACING_M = 0.5
 
@@ -27,16 +26,13 @@ def weight(channel: str, force_n: float, way: LoadDirection, number: int):
 
 def test_check_weights_give_the_scale_that_the_rig_has_wrong(tmp_path: Path) -> None:
     # The aft gauge's scale is 2 % too large.
-    wrong = amplifier(4, "force_aft")
     steps = [(0.0, "up"), (50.0, "up"), (100.0, "up"), (50.0, "down"), (0.0, "down")]
     runs = [
         weight(channel, force, LoadDirection(way), i)
         for channel in ("force_aft", "force_fore")
         for i, (force, way) in enumerate(steps)
     ]
-    with bench(
-        tmp_path, runs, tables={**TABLES, "forces": [wrong, amplifier(5, "force_fore")]}
-    ) as one:
+    with bench(tmp_path, runs) as one:
         line = one.world.nodes["forces[0]"].lines["force_aft"]
         line.scale = line.scale / 1.02
         one.finish()
