@@ -27,6 +27,7 @@ NAMES = (
     "inertia",
     "recorder",
     "kill",
+    "coefficients",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 
