@@ -16,6 +16,7 @@ FloatArray = NDArray[np.float64]
 
 _STEP = 0.02  # of a prior deviation, at least
 _STEPS = 6
+_FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
 _SETTLED = 0.05  # change of the log posterior at which a fit ends
 
 
@@ -145,11 +146,32 @@ def at(problem: Problem, parts: tuple[Candidate, ...], units: FloatArray) -> Fit
     signature = problem.whitened(base - simulator.nominal)
     slopes = [_slope(problem, parts, units, base, axis) for axis in range(len(units))]
     columns = np.column_stack(slopes) if slopes else np.zeros((len(base), 0))
+    return _weighed(problem, parts, units, columns, signature)
+
+
+def _weighed(
+    problem: Problem,
+    parts: tuple[Candidate, ...],
+    units: FloatArray,
+    columns: FloatArray,
+    signature: FloatArray,
+) -> Fit:
     left = problem.residual - signature
     found = posterior(left + columns @ units, columns, problem.nuisances)
     cost = misfit(left, problem.nuisances) + float(units @ units)
     shared = problem.nuisances.log_determinant
     return Fit(parts, units, columns, signature, cost, found, shared)
+
+
+def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
+    """Put two linearised hypotheses together as if their effects did not act on each other."""
+    return _weighed(
+        problem,
+        first.candidates + second.candidates,
+        np.concatenate((first.units, second.units)),
+        np.hstack((first.columns, second.columns)),
+        first.signature + second.signature,
+    )
 
 
 def _slope(
@@ -171,35 +193,53 @@ def expected_evidence(problem: Problem, fit: Fit) -> float:
 
     For a first look at many effects: it takes no further simulation.
     """
-    units = most_probable(fit)
-    left = fit.linearised(problem.residual) - fit.columns @ units
-    cost = misfit(left, problem.nuisances) + float(units @ units)
+    cost = _linear_cost(problem, fit, most_probable(fit))
     return -0.5 * (cost + fit.shared) + fit.posterior.log_volume
 
 
 def refine(problem: Problem, fit: Fit, steps: int = _STEPS) -> Fit:
-    """Improve a fit by damped Gauss-Newton steps through the simulator."""
-    best = fit
+    """Improve a fit by damped Gauss-Newton steps through the simulator.
+
+    The slopes are kept as long as a step brings most of what they promise.
+    """
+    best, stale = fit, False
     for _ in range(steps):
-        better = _step(problem, best)
+        better, fulfilled = _step(problem, best)
         if better is None:
-            break
-        gain, best = best.cost - better.cost, better
+            if not stale:
+                break
+            best, stale = at(problem, best.candidates, best.units), False
+            continue
+        gain, best, stale = best.cost - better.cost, better, True
         if gain < _SETTLED:
             break
-    return best
+        if fulfilled < _FULFILLED:
+            best, stale = at(problem, best.candidates, best.units), False
+    return at(problem, best.candidates, best.units) if stale else best
 
 
-def _step(problem: Problem, fit: Fit) -> Fit | None:
-    """Return a better fit along the Gauss-Newton step; ``None`` if there is none."""
+def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
+    """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps."""
     towards = most_probable(fit) - fit.units
+    promise = fit.cost - _linear_cost(problem, fit, fit.units + towards)
     for share in (1.0, 0.4, 0.1, 0.02):
         units = fit.units + share * towards
         try:
-            change = problem.simulator.predict(built(fit.candidates, units))
+            moved = _moved(problem, fit, units)
         except PmmError:
             continue
-        left = problem.residual - problem.whitened(change - problem.simulator.nominal)
-        if misfit(left, problem.nuisances) + float(units @ units) < fit.cost:
-            return at(problem, fit.candidates, units)
-    return None
+        if moved.cost < fit.cost:
+            return moved, (fit.cost - moved.cost) / max(promise, 1e-9)
+    return None, 0.0
+
+
+def _linear_cost(problem: Problem, fit: Fit, units: FloatArray) -> float:
+    left = fit.linearised(problem.residual) - fit.columns @ units
+    return misfit(left, problem.nuisances) + float(units @ units)
+
+
+def _moved(problem: Problem, fit: Fit, units: FloatArray) -> Fit:
+    """Return the fit at other parameters, with the slopes that it has."""
+    values = problem.simulator.predict(built(fit.candidates, units))
+    signature = problem.whitened(values - problem.simulator.nominal)
+    return _weighed(problem, fit.candidates, units, fit.columns, signature)

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.candidate import candidates, turned
-from analysis.gap.fit import Fit, Problem, at, expected_evidence, most_probable, refine
-from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
+from analysis.gap.fit import Fit, Problem, at, expected_evidence, joined, most_probable, refine
+from analysis.gap.gaussian import Nuisances, left_over, null_evidence
 from analysis.gap.unknown import Deviation, find_deviation
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -221,26 +221,13 @@ def _pairs(
         for second in looked:
             if second.names != first.names:
                 key = frozenset((*first.names, *second.names))
-                joined = _joined(problem, first, second)
-                score = expected_evidence(problem, joined)
+                both = joined(problem, first, second)
+                score = expected_evidence(problem, both)
                 if key not in chances or score > chances[key][0]:
-                    chances[key] = (score, joined)
+                    chances[key] = (score, both)
     best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
     found = _each(executor, _refined_pair, problem, [one for _, one in best])
     return sorted(found, key=lambda one: -one.log_evidence)
-
-
-def _joined(problem: Problem, first: Fit, second: Fit) -> Fit:
-    """Put two linearised effects together as if they did not act on each other."""
-    columns = np.hstack((first.columns, second.columns))
-    units = np.concatenate((first.units, second.units))
-    signature = first.signature + second.signature
-    left = problem.residual - signature
-    found = posterior(left + columns @ units, columns, problem.nuisances)
-    cost = misfit(left, problem.nuisances) + float(units @ units)
-    return Fit(
-        first.candidates + second.candidates, units, columns, signature, cost, found, first.shared
-    )
 
 
 def _refined_pair(problem: Problem, fit: Fit) -> Fit:

@@ -134,7 +134,7 @@ def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
 
 def _set_points(choices: Choices) -> Iterator[SetPoint]:
     low, high = choices.frequency_hz.low, choices.frequency_hz.high
-    frequencies = np.geomspace(max(low, high / 8.0), high, 5)
+    frequencies = np.geomspace(max(low, high / 8.0), high, 4)
     radii = np.geomspace(max(choices.eccentricity_m.low, choices.eccentricity_m.high / 8.0),
                          choices.eccentricity_m.high, 3)  # fmt: skip
     for frequency, radius, phase, speed, medium in product(

@@ -1,0 +1,172 @@
+"""A diagnosis as an answer that programs read: probabilities, parameters, what is foretold.
+
+``docs/sealed.md`` has the keys; :data:`SCHEMA` names them.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Part, Stack
+from analysis.gap.diagnose import Diagnosis
+from analysis.gap.fit import Fit, Problem
+from analysis.gap.forecast import forecast, further, planned
+from analysis.gap.free import Free
+from analysis.gap.priors import Priors
+from analysis.gap.propose import Proposal
+from pmm.gap.case import HeldOut
+
+FloatArray = NDArray[np.float64]
+
+SCHEMA: Final = "sealed-answer-1"
+_TWO_SIDED = 1.96
+_DRAWS = 400
+_SEED = 20260
+
+
+def answer(
+    name: str,
+    diagnosis: Diagnosis,
+    held_out: Sequence[HeldOut],
+    free: Sequence[Free],
+    priors: Priors,
+) -> dict[str, Any]:
+    """Return a diagnosis as a dictionary of numbers and texts.
+
+    Parameters
+    ----------
+    name
+        Of the case.
+    held_out
+        Runs whose outcome is to be foretold.
+    """
+    best = None if diagnosis.best is None else diagnosis.best.fit
+    foretold = _Foretold(diagnosis.problem, best, held_out, free, priors)
+    shares = diagnosis.probabilities.by_answer
+    found: dict[str, Any] = {
+        "schema": SCHEMA,
+        "case": name,
+        "probabilities": _summing_to_one(shares),
+        "stages": _summing_to_one(diagnosis.stages) if best is not None else {},
+        "classes": [
+            sorted([own, *(other for other, _ in alike)])
+            for own, alike in diagnosis.classes.items()
+        ],
+        "effects": [] if best is None else list(_effects(best)),
+        "next_run": None if not diagnosis.proposals else next_run(diagnosis.proposals[0]),
+    }
+    return found | foretold.as_dict()
+
+
+def _summing_to_one(shares: Mapping[str, float]) -> dict[str, float]:
+    rounded = {name: round(float(share), 9) for name, share in shares.items() if share > 5e-10}
+    total = sum(rounded.values())
+    return {name: share / total for name, share in rounded.items()}
+
+
+def _effects(fit: Fit) -> Any:
+    """Yield each effect with its parameters and their 95 % intervals."""
+    spread = np.sqrt(np.diagonal(fit.posterior.covariance))
+    at = 0
+    for candidate in fit.candidates:
+        parameters = {name: _fixed(value) for name, value in candidate.held.items()}
+        for axis in candidate.axes:
+            unit, wide = float(fit.units[at]), _TWO_SIDED * float(spread[at])
+            values = [axis.value(unit), axis.value(unit - wide), axis.value(unit + wide)]
+            parameters[axis.parameter.name] = dict(
+                zip(("value", "low", "high"), values, strict=True)
+            )
+            at += 1
+        yield {"name": candidate.name, "parameters": parameters}
+
+
+def _fixed(value: float) -> dict[str, float]:
+    return {"value": value, "low": value, "high": value}
+
+
+def next_run(one: Proposal) -> dict[str, Any]:
+    """Return a proposed run as the plan and the sealed rig take it."""
+    if one.set_point is None:
+        return {"kind": one.kind, **_SPECIAL.get(one.kind, {})}
+    return {
+        "kind": one.kind,
+        "frequency_hz": one.set_point.frequency_hz,
+        "eccentricity_m": one.set_point.eccentricity_m,
+        "strut_phase_rad": one.set_point.strut_phase_rad,
+        "carriage_speed_m_s": one.set_point.carriage_speed_m_s,
+        "medium": one.set_point.medium.value,
+        "preload_n": one.preload_n,
+    }
+
+
+_SPECIAL: Final[Mapping[str, Mapping[str, Any]]] = {
+    "check-weight": {"weight_n": 50.0, "strut": "aft"},
+    "injection": {"frequency_hz": 1.0, "force_n": 20.0},
+}
+
+
+class _Foretold:
+    """The withheld runs as foretold without an effect and with the best answer."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        best: Fit | None,
+        held_out: Sequence[HeldOut],
+        free: Sequence[Free],
+        priors: Priors,
+    ) -> None:
+        self._names = [one.name for one in held_out]
+        runs = [planned(problem, one.set_point, at) for at, one in enumerate(held_out)]
+        self._there = further(problem, runs, free, priors) if runs else None
+        self._problem, self._best = problem, best
+
+    def as_dict(self) -> dict[str, Any]:
+        if self._there is None:
+            return {"before": {}, "after": {}, "shrinkage": _share(0.0, 0.0, 0.0)}
+        stack = self._there.simulator.stack
+        plain = forecast(self._problem, self._there, None)
+        cured = forecast(self._problem, self._there, self._best) if self._best else plain
+        drawn = np.random.default_rng(_SEED).standard_normal((_DRAWS, cured.root.shape[1]))
+        shares = [
+            _shrinks(cured.mean + cured.root @ one - plain.mean, cured.root @ one) for one in drawn
+        ]
+        middle = _shrinks(cured.mean - plain.mean, np.zeros_like(cured.mean))
+        low, high = np.quantile(shares, (0.025, 0.975)) if self._best else (0.0, 0.0)
+        return {
+            "before": self._runs(stack, plain.values(self._there)),
+            "after": self._runs(stack, cured.values(self._there)),
+            "shrinkage": _share(middle if self._best else 0.0, float(low), float(high)),
+        }
+
+    def _runs(self, stack: Stack, values: FloatArray) -> dict[str, Any]:
+        return {name: harmonics(stack, values, number) for number, name in enumerate(self._names)}
+
+
+def _shrinks(before: FloatArray, after: FloatArray) -> float:
+    """Return the part of a gap that goes away, noise floor taken off both."""
+    old, new = float(np.sqrt(np.mean(before**2))), float(np.sqrt(np.mean(after**2)))
+    return 1.0 - min(new / old, 1.0) if old > 0.0 else 0.0
+
+
+def _share(value: float, low: float, high: float) -> dict[str, float]:
+    return {"value": value, "low": min(low, value), "high": max(high, value)}
+
+
+def harmonics(stack: Stack, values: FloatArray, run: int) -> dict[str, Any]:
+    """Return a run's components by channel: mean, in-phase and quadrature parts by order."""
+    found: dict[str, dict[str, Any]] = {}
+    for at in np.flatnonzero(stack.run == run):
+        one = stack.components[at]
+        if not one.channel:
+            continue
+        channel = found.setdefault(one.channel, {"mean": 0.0, "in_phase": [], "quadrature": []})
+        if one.part is Part.MEAN:
+            channel["mean"] = float(values[at])
+        else:
+            channel["in_phase" if one.part is Part.IN_PHASE else "quadrature"].append(
+                float(values[at])
+            )
+    return found

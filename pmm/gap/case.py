@@ -1,0 +1,113 @@
+"""``case.toml``: what the staff of a rig tell beside its campaign. ``docs/sealed.md`` has the keys.
+
+Any campaign may have one: tolerances, runs whose outcome is to be foretold, what the rig can do.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from analysis.gap.priors import Priors
+from analysis.gap.propose import Choices
+from hardware.description.oscillator import Range
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.campaign import Campaign
+from pmm.configuration import Fault, as_error, read_toml, validate
+
+CASE_FILE = "case.toml"
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """A run whose outcome is to be foretold; keys as those of a campaign's runs."""
+
+    name: str
+    frequency_hz: float
+    eccentricity_m: float
+    strut_phase_rad: float = 0.0
+    carriage_speed_m_s: float = 0.0
+    medium: Medium = Medium.WATER
+    periods: int = 10
+    regime: str = ""
+
+    @property
+    def set_point(self) -> SetPoint:
+        """What the run would be told to do."""
+        return SetPoint(
+            self.frequency_hz,
+            self.eccentricity_m,
+            self.strut_phase_rad,
+            self.carriage_speed_m_s,
+            self.medium,
+        )
+
+
+@dataclass(frozen=True)
+class RigChoices:
+    """What a further run may be."""
+
+    frequency_hz: Range
+    eccentricity_m: Range
+    carriage_speed_m_s: Range = field(default_factory=lambda: Range(0.0, 0.0))
+    strut_phase_rad: tuple[float, ...] = (0.0,)
+    media: tuple[Medium, ...] = (Medium.WATER,)
+    special: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is told beside a campaign.
+
+    Attributes
+    ----------
+    sensors
+        Channels that were recorded, ``"photocell"`` among them where there is one.
+    """
+
+    schema: str = "sealed-case-1"
+    sensors: tuple[str, ...] = ()
+    priors: Priors = field(default_factory=Priors)
+    held_out: tuple[HeldOut, ...] = ()
+    rig: RigChoices | None = None
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+    def choices(self, campaign: Campaign) -> Choices | None:
+        """Return what the rig can do next; from the oscillator's limits where nothing is said."""
+        oscillator = campaign.oscillator
+        if oscillator is None:
+            return None
+        limit_n = oscillator.force_per_strut_n
+        if self.rig is None:
+            return Choices(
+                oscillator.frequency_hz, oscillator.eccentricity_m, force_limit_n=limit_n
+            )
+        speeds = self.rig.carriage_speed_m_s
+        return Choices(
+            self.rig.frequency_hz,
+            self.rig.eccentricity_m,
+            self.rig.strut_phase_rad,
+            tuple(sorted({speeds.low, speeds.high})),
+            self.rig.media,
+            self.rig.special,
+            limit_n,
+        )
+
+
+def read_case(folder: Path) -> Case:
+    """Read a campaign's ``case.toml``; without one everything is as usual.
+
+    Raises
+    ------
+    ConfigurationError
+        With every error of the file.
+    """
+    path = folder / CASE_FILE
+    if not path.exists():
+        return Case()
+    table: dict[str, Any] = read_toml(path)
+    faults: list[Fault] = []
+    case = validate(Case, table, faults)
+    if case is None or faults:
+        raise as_error(path, faults, table)
+    return case
