@@ -11,7 +11,7 @@ SCHEMA = "sealed-board-1"
 
 
 def nulls_of(seed: int, cases: int, nulls: int) -> list[bool]:
-    """Return for each case of the board whether it is a null, in an order that the seed shuffles."""
+    """Return for each case whether it is a null, in an order that the seed shuffles."""
     flags = np.array([False] * cases + [True] * nulls)
     return [bool(flag) for flag in np.random.default_rng([seed, 0xB0A2D]).permutation(flags)]
 

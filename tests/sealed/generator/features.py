@@ -69,7 +69,7 @@ def reference(record: Record, run: Run, sensors: tuple[str, ...]) -> Reference:
 
 
 def resampled(record: Record, ref: Reference, periods: int) -> FloatArray:
-    """Return all channels at even angles of whole revolutions, the shaft's angle less a straight one."""
+    """Return all channels at even angles of whole revolutions, the shaft's less a straight one."""
     from scipy.interpolate import CubicSpline
 
     times = ref.opens_s + ref.period_s * np.arange(periods * POINTS) / POINTS

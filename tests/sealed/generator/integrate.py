@@ -6,7 +6,7 @@ import numpy as np
 
 from tests.sealed.generator.compiled import compiled
 from tests.sealed.generator.loads import carriage_speed, inertia
-from tests.sealed.generator.mechanics import crank, rates, side
+from tests.sealed.generator.mechanics import crank, put, rates, side
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
 from tests.sealed.generator.rubbing import creep, rub
@@ -133,6 +133,7 @@ def integrate(
         t = (n - before) * interval
         if len(kernels[0]) > 1:
             remember(p, t, n, y, kernels, past, interval, memory)
+            held[H.MEMORY_0], held[H.MEMORY_1] = memory[0, 0], memory[1, 0]
         keep(p, t, y, held, work, k[0], out[n])
         for i in range(substeps):
             for row in range(2):
@@ -140,6 +141,7 @@ def integrate(
                 held[H.MEMORY_0 + row] = memory[row, 0] + slope * (i + 0.5) / substeps
             old = (y[Y.CRANK] - p[P.MARK]) / (2.0 * math.pi)
             step(p, t + i * dt, dt, y, held, work, k)
+            put(p, y, work)
             rub(p, y, held, dt, work)
             creep(p, y, held, dt)
             new = (y[Y.CRANK] - p[P.MARK]) / (2.0 * math.pi)

@@ -220,6 +220,15 @@ def rigid_place(p: FloatArray, y: FloatArray, w: FloatArray) -> None:
 
 
 @compiled
+def put(p: FloatArray, y: FloatArray, w: FloatArray) -> None:
+    """Write the struts' places into ``w``; on rigid gauges the model's go with them."""
+    for strut in range(2):
+        crank(p, strut, y[Y.CRANK], w)
+    if p[P.GAUGE_STIFFNESS] == 0.0:
+        rigid_place(p, y, w)
+
+
+@compiled
 def rigid_rates(
     p: FloatArray, y: FloatArray, held: FloatArray, w: FloatArray, dy: FloatArray
 ) -> None:
@@ -250,11 +259,8 @@ def rates(
 ) -> None:
     """Write the rates of all states; the gauges' forces are left in ``held``."""
     dy[:] = 0.0
-    for strut in range(2):
-        crank(p, strut, y[Y.CRANK], w)
     loose = p[P.GAUGE_STIFFNESS] > 0.0
-    if not loose:
-        rigid_place(p, y, w)
+    put(p, y, w)
     water_takes(p, t, y, held, w)
     if p[P.SLOSH_MASS] > 0.0:
         w[W.WATER_0] -= p[P.SLOSH_MASS] * slosh_rates(p, y, dy)

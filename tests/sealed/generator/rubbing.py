@@ -7,7 +7,7 @@ the distance travelled: exact, whatever the step. Bouc-Wen's loop (n = 1) is of 
 import math
 
 from tests.sealed.generator.compiled import compiled
-from tests.sealed.generator.mechanics import crank, meshed, side
+from tests.sealed.generator.mechanics import meshed, side
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
 
@@ -55,7 +55,6 @@ def rub_below(p: FloatArray, y: FloatArray, held: FloatArray, dt: float) -> None
 def rub_above(p: FloatArray, y: FloatArray, held: FloatArray, dt: float, work: FloatArray) -> None:
     """Bring the guides' friction and the last joints' play forward by ``dt``."""
     for strut in range(2):
-        crank(p, strut, y[Y.CRANK], work)
         v = work[W.WAY_AFT + 3 * strut + 1] * y[Y.CRANK_SPEED]
         at = H.GUIDE_AFT + strut
         held[at] = settled(held[at], p[P.GUIDE_COULOMB], v, dt, BRISTLE_M)

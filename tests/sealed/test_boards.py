@@ -1,0 +1,156 @@
+"""Boards: what is written, that it is the same each time, and that nothing leads to the key."""
+
+import ast
+import hashlib
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.readers import ColumnMap, read_recording
+from analysis.recording import Recording
+from tests.sealed.board import generate, make_one, nulls_of
+from tests.sealed.generator import catalogue, outside
+from tests.sealed.generator.further import carried_out, parsed, possible
+from tests.sealed.generator.rig import Run
+
+HERE = Path(__file__).parent
+SEED, CASES, NULLS = 5, 3, 7
+
+
+@pytest.fixture(scope="module")
+def board(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a board of ten cases."""
+    folder = tmp_path_factory.mktemp("sealed") / "board"
+    names = list(generate(SEED, CASES, NULLS, folder))
+    assert names == [f"case-{index:04d}" for index in range(1, CASES + NULLS + 1)]
+    return folder
+
+
+def _digest(folder: Path) -> dict[str, str]:
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in files
+    }
+
+
+def _truths(board: Path) -> list[dict[str, object]]:
+    return [
+        json.loads((key / "truth.json").read_text()) for key in sorted((board / "keys").iterdir())
+    ]
+
+
+def test_same_seed_gives_the_same_bytes(board: Path, tmp_path: Path) -> None:
+    flags = nulls_of(SEED, CASES, NULLS)
+    for index in (1 + flags.index(True), 1 + flags.index(False)):
+        name = make_one(SEED, index, flags[index - 1], tmp_path)
+        for room in ("cases", "keys"):
+            assert _digest(tmp_path / room / name) == _digest(board / room / name)
+
+
+def test_no_case_folder_leads_to_its_key(board: Path) -> None:
+    words = {effect.name for effect in (*catalogue.CATALOGUE, *outside.OUTSIDE)}
+    words |= {"truth", "keys", "seed", "null", str(board)}
+    for path in (board / "cases").rglob("*"):
+        assert not path.is_symlink()
+        if path.suffix == ".toml":
+            text = path.read_text()
+            assert not [word for word in words if word in text], path
+
+
+def _read(folder: Path, run: dict[str, object], campaign: dict[str, object]) -> Recording:
+    if "file" in run:
+        text = folder / "columns.toml"
+        lines = (folder / "campaign.toml").read_text().split("\n[columns]\n")[1]
+        columns = lines.split("[[runs]]")[0].replace("[columns.", "[")
+        text.write_text(columns)
+        read = read_recording(folder / str(run["file"]), ColumnMap.from_toml(text))
+        text.unlink()
+        return read
+    return read_recording(folder / f"{run['name']}.nc")
+
+
+def test_recordings_hold_what_the_case_says(board: Path) -> None:
+    foreign = 0
+    for folder in sorted((board / "cases").iterdir()):
+        campaign = tomllib.loads((folder / "campaign.toml").read_text())
+        told = tomllib.loads((folder / "case.toml").read_text())
+        sensors = set(told["sensors"]) - {"photocell"}
+        foreign += "columns" in campaign
+        assert 8 <= len(campaign["runs"]) <= 12
+        assert [row["regime"] for row in told["held_out"]] == [
+            "frequency", "amplitude", "phase", "medium",
+        ]  # fmt: skip
+        for run in campaign["runs"][:3]:
+            read = _read(folder, run, campaign)
+            assert set(read.channel_names) == sensors
+            assert (read.photocell_edges_s is not None) == ("photocell" in told["sensors"])
+            periods = read.sample_count / read.sample_rate_hz * run["frequency_hz"]
+            assert periods == pytest.approx(run["periods"] + 1, rel=0.01)
+            assert np.isfinite(read.samples[:, :]).all()
+    assert foreign >= 1
+
+
+def test_keys_are_whole_and_nuisances_invisible(board: Path) -> None:
+    for truth in _truths(board):
+        assert all(row["snr"] < 1.0 for row in truth["nuisances"])  # type: ignore[attr-defined]
+        assert set(truth["held_out"]) == {f"withheld-{i}" for i in range(1, 5)}  # type: ignore[call-overload]
+        if truth["null"]:
+            assert truth["verdict"] == "none"
+            assert truth["snr"] < 1.0  # type: ignore[operator]
+        if truth["ceiling"]:
+            reached = truth["ceiling"]
+            probabilities = {name: reached[name] for name in reached if name != "class_size"}  # type: ignore[attr-defined, index]
+            assert all(0.0 <= value <= 1.0 for value in probabilities.values())
+            assert probabilities["top_1"] <= probabilities["top_1_by_class"]
+
+
+def test_a_full_folder_is_refused(board: Path) -> None:
+    with pytest.raises(FileExistsError, match="not empty"):
+        list(generate(SEED, 1, 0, board))
+
+
+@pytest.mark.parametrize(
+    "wanted", [{"kind": "rest"}, {"kind": "injection", "frequency_hz": 1.0, "force_n": 40.0}]
+)
+def test_further_run_is_carried_out(
+    board: Path, tmp_path: Path, wanted: dict[str, object]
+) -> None:
+    carried_out(board / "keys" / "case-0001", wanted, tmp_path / "extra.nc")
+    read = read_recording(tmp_path / "extra.nc")
+    force = read.samples[[read.channel_names.index("force_aft")], :][0]
+    assert read.end_s == pytest.approx(20.0, abs=0.02)
+    assert np.std(force) == pytest.approx(0.3 if wanted["kind"] == "rest" else 28.3, rel=0.7)
+
+
+def test_possible_further_runs_are_understood(board: Path) -> None:
+    rng = np.random.default_rng(1)
+    last = Run("run-01", 0.8, 0.02)
+    told = board / "cases" / "case-0001" / "case.toml"
+    kinds = {parsed(possible(told, rng), last).kind for _ in range(60)}
+    assert kinds == {"oscillation", "rest", "check-weight", "injection"}
+    with pytest.raises(ValueError, match="'wiggle'"):
+        parsed({"kind": "wiggle"}, last)
+    with pytest.raises(ValueError, match="unknown \\['weight_n'\\]"):
+        parsed({"kind": "rest", "weight_n": 3.0}, last)
+
+
+def test_the_generator_knows_nothing_of_the_project() -> None:
+    rooms = {"pmm", "analysis", "sim", "hardware"}
+    for path in [*(HERE / "generator").glob("*.py"), HERE / "board.py", HERE / "__main__.py"]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+            assert not rooms & {name.split(".")[0] for name in names}, path
+
+
+def test_names_are_those_of_the_project_s_catalogue() -> None:
+    from sim.effects.catalogue import CATALOGUE
+
+    ours = {effect.name: effect.stage for effect in catalogue.CATALOGUE}
+    theirs = {effect.name for effect in CATALOGUE}
+    assert set(ours) <= theirs
+    assert theirs - set(ours) == {"late-gate", "guide-friction", "vortex-shedding"}
