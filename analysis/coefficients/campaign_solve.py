@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.campaign_nonlinear import nonlinear_fits, static_fits
+from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER, nonlinear_fits, static_fits
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, Entry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
 from analysis.coefficients.cycle import CHANNELS, Cycle, at_order
 from analysis.coefficients.cycle_fit import CycleFit, root_of
+from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.phasors import FloatArray, real_form
 from analysis.coefficients.result import Coefficients
@@ -39,8 +40,8 @@ def solve_group(group: Group, request: Request) -> Block:
     if group.kind is GroupKind.LINEAR:
         return _linear(group.cycles, request)
     if group.kind is GroupKind.STATIC:
-        return _fits_block(static_fits(group.cycles, request), group.cycles)
-    return _fits_block(nonlinear_fits(group.cycles, request), group.cycles)
+        return _fits_block(static_fits(group.cycles, request), group.cycles, request)
+    return _fits_block(nonlinear_fits(group.cycles, request), group.cycles, request)
 
 
 def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
@@ -119,6 +120,7 @@ def _fundamental(cycle: Cycle) -> FloatArray:
 def _fits_block(
     found: tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]],
     cycles: Sequence[Cycle],
+    request: Request,
 ) -> Block:
     fits, choices, missing = found
     entries = tuple(
@@ -126,7 +128,24 @@ def _fits_block(
     )
     uncertain = stacked([fit.uncertain for _, fit in fits])
     flags = tuple(flag for cycle in cycles for flag in cycle.flags)
-    return Block(entries, uncertain, no_trials(len(entries)), tuple(choices), tuple(missing), flags)
+    trials = _fits_trials(fits, request)
+    return Block(entries, uncertain, trials, tuple(choices), tuple(missing), flags)
+
+
+def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> TrialColumns:
+    """Monte Carlo of the fits of all runs with all harmonics; the others are checks on them."""
+    columns = [
+        cycle_trials(fit, request.trials, request.seed, request.level)
+        if request.trials and method == HIGHER_ORDER
+        else no_trials(len(fit.names))
+        for method, fit in fits
+    ]
+    if not columns:
+        return no_trials(0)
+    names = ("standard_uncertainty", "low", "high")
+    return TrialColumns(
+        request.trials, *(np.concatenate([getattr(one, n) for one in columns]) for n in names)
+    )
 
 
 def _fit_entry(method: str, fit: CycleFit, k: int) -> Entry:

@@ -300,3 +300,12 @@ def test_pitch_at_another_amplitude_is_solved_with_heave() -> None:
     for name, put_in in VERTICAL.items():
         k = found.rows(name, method=LINEAR)[-1]
         assert found.values[k] == pytest.approx(put_in, abs=1e-6), name
+
+
+def test_monte_carlo_of_a_non_linear_campaign() -> None:
+    generator = np.random.default_rng(2)
+    cycles = [scattered(made_up(p, Made(ALL), n), generator) for n, p in amplitudes()[:3]]
+    found = campaign_coefficients(cycles, Request(trials=1000))
+    for k in found.rows(method=HIGHER_ORDER):
+        assert found.trials.low[k] < found.values[k] < found.trials.high[k]
+    assert all(math.isnan(found.trials.low[k]) for k in found.rows(method="single run"))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.cycle_fit import FIRST, HIGHER, QUASI_STEADY, STATIC, fit_cycles
+from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.normalisation import mmg, prime
 from analysis.coefficients.stated import Stated
 from analysis.coefficients.terms import term_of
@@ -191,6 +192,21 @@ def test_scatter_of_fits_is_what_their_budget_says() -> None:
         widths.append(fit.uncertain.standard_uncertainty)
     ratio = np.std(values, axis=0, ddof=1) / np.mean(widths, axis=0)
     np.testing.assert_allclose(ratio, 1.0, atol=0.3)  # 60 campaigns leave 0.09 open
+
+
+def test_monte_carlo_beside_the_budget_of_a_fit() -> None:
+    generator = np.random.default_rng(4)
+    cycles = [
+        scattered(made_up(p, Made(ALL), n), generator, periods=200) for n, p in amplitudes()[:3]
+    ]
+    stated = Stated(mass_kg=0.1, lag_s=1e-4, amplitude_relative=1e-3)
+    fit = fit_cycles(cycles, ("Y_vdot", "Y_v", "Y_vvv"), stated=stated)
+    drawn = cycle_trials(fit, 4000, seed=1)
+    ratio = drawn.standard_uncertainty / fit.uncertain.standard_uncertainty
+    np.testing.assert_allclose(ratio, 1.0, atol=0.05)
+    half = (drawn.high - drawn.low) / 2.0
+    np.testing.assert_allclose(half, fit.uncertain.half_width(), rtol=0.06)
+    np.testing.assert_array_equal(cycle_trials(fit, 4000, seed=1).low, drawn.low)
 
 
 def test_a_stated_mass_moves_only_what_it_should() -> None:
