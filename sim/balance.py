@@ -8,6 +8,7 @@ imaginary parts, ``(orders + 1, 2, columns)``.
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.compiled import compile_loop
 from sim.compiled_laws import law_force
@@ -104,6 +105,16 @@ def _respond(
 
 
 @compile_loop
+def _pivot(left: FloatArray, gram: FloatArray, free: NDArray[np.bool_]) -> int:
+    """Return the free direction of which most is left, or -1 where they all depend on others."""
+    best, most = -1, _DEPENDENT
+    for i in range(free.size):
+        if free[i] and left[i, i] > most * gram[i, i]:
+            best, most = i, left[i, i] / gram[i, i]
+    return best
+
+
+@compile_loop
 def _weights(gram: FloatArray, right: FloatArray) -> FloatArray:
     """Return the solution of ``gram x = right``, directions that depend on others left out."""
     size = right.size
@@ -112,11 +123,8 @@ def _weights(gram: FloatArray, right: FloatArray) -> FloatArray:
     free = np.ones(size, dtype=np.bool_)
     rank = 0
     for _ in range(size):
-        best = -1
-        for i in range(size):
-            if free[i] and (best < 0 or left[i, i] / gram[i, i] > left[best, best] / gram[best, best]):
-                best = i
-        if left[best, best] <= _DEPENDENT * gram[best, best]:
+        best = _pivot(left, gram, free)
+        if best < 0:
             break
         free[best] = False
         order[rank] = best

@@ -13,6 +13,7 @@ from sim.signals import FloatArray
 
 _FIRST_WITH_REFERENCE = 4
 _FIRST_THAT_JUMPS = 7
+_ARC_SINE = 11
 _ROOT_PI = math.sqrt(math.pi)
 
 
@@ -20,28 +21,26 @@ _ROOT_PI = math.sqrt(math.pi)
 def _polynomial(kind: int, p: FloatArray, i: int, x: float, v: float) -> float:
     """Viscous, quadratic, cubic, spring."""
     if kind == 0:
-        return p[i, 1] * v
+        return float(p[i, 1] * v)
     if kind == 1:
         through = v + p[i, 2]
-        return p[i, 1] * through * abs(through)
+        return float(p[i, 1] * through * abs(through))
     if kind == 2:
-        return p[i, 1] * v**3
-    return p[i, 4] + x * (p[i, 1] + x * (p[i, 2] + x * p[i, 3]))
+        return float(p[i, 1] * v**3)
+    return float(p[i, 4] + x * (p[i, 1] + x * (p[i, 2] + x * p[i, 3])))
 
 
 @compile_loop
-def _curved(
-    kind: int, p: FloatArray, i: int, x: float, time_s: float, speed_m_s: float
-) -> float:
+def _curved(kind: int, p: FloatArray, i: int, x: float, time_s: float, speed_m_s: float) -> float:
     """Proximity, exponential, tone."""
     if kind == 6:
         fade = 1.0 if math.isnan(p[i, 4]) else math.exp(-time_s / p[i, 4])
-        return p[i, 1] * fade * math.sin(2.0 * math.pi * p[i, 2] * time_s + p[i, 3])
+        return float(p[i, 1] * fade * math.sin(2.0 * math.pi * p[i, 2] * time_s + p[i, 3]))
     reference = p[i, 4] if kind == 4 else p[i, 3]
     dynamic = 1.0 if math.isnan(reference) else (speed_m_s / reference) ** 2
     if kind == 4:
-        return p[i, 1] * dynamic * ((p[i, 2] / (p[i, 2] - x)) ** p[i, 3] - 1.0)
-    return p[i, 1] * dynamic * math.expm1(p[i, 2] * x)
+        return float(p[i, 1] * dynamic * ((p[i, 2] / (p[i, 2] - x)) ** p[i, 3] - 1.0))
+    return float(p[i, 1] * dynamic * math.expm1(p[i, 2] * x))
 
 
 @compile_loop
@@ -52,13 +51,22 @@ def _jumping(
     if kind == 8:
         velocity, width = v / p[i, 2], half / p[i, 2]
         risen = math.erf(abs(velocity + width)) - math.erf(abs(velocity - width))
-        return p[i, 1] * (_ROOT_PI / 4.0) * risen / width
+        return float(p[i, 1] * (_ROOT_PI / 4.0) * risen / width)
     sign = min(max(v / half, -1.0), 1.0)
     if kind == 7:
-        return p[i, 1] * sign + p[i, 2]
+        return float(p[i, 1] * sign + p[i, 2])
     if kind == 9:
-        return p[i, 1] * abs(p[i, 3] * load + p[i, 2]) * sign
-    return p[i, 1] * abs(x) * sign
+        return float(p[i, 1] * abs(p[i, 3] * load + p[i, 2]) * sign)
+    return float(p[i, 1] * abs(x) * sign)
+
+
+@compile_loop
+def _arc_sine(p: FloatArray, i: int, x: float, v: float, a: float, load: float) -> float:
+    """Struts on parallel lines."""
+    cosine = math.sqrt(1.0 - x**2)
+    growing = a / cosine + x * v**2 / cosine**3
+    beyond = p[i, 1] * (growing - a) + p[i, 2] * (v / cosine - v) + p[i, 3] * (math.asin(x) - x)
+    return float((load + beyond) / cosine - load)
 
 
 @compile_loop
@@ -115,10 +123,15 @@ def law_force(
         else:
             a = at[line, 4] * a0 + at[line, 5] * a1 + at[line, 2] * turn0 + at[line, 3] * turn1
             load = at[line, 6] * laws[i, 7] + at[line, 7] * laws[i, 8]
-            half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
-            force = _jumping(kind, laws, i, x, v, half, load)
-            jumps[into, 0] += force * a0
-            jumps[into, 1] += force * a1
+            if kind == _ARC_SINE:
+                force = _arc_sine(laws, i, x, v, a, load)
+                smooth[into, 0] += force * a0
+                smooth[into, 1] += force * a1
+            else:
+                half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
+                force = _jumping(kind, laws, i, x, v, half, load)
+                jumps[into, 0] += force * a0
+                jumps[into, 1] += force * a1
     if cross_flow.shape[0]:
         _cross_flow(cross_flow, at, line, smooth, into)
 
@@ -130,7 +143,5 @@ def laws_over_period(
     """Return the forces at the points of a period, ``(points, 2)``: smooth ones, ones that jump."""
     smooth, jumps = np.zeros((len(values), 2)), np.zeros((len(values), 2))
     for k in range(len(values)):
-        law_force(
-            laws, cross_flow, values, k, k * step_s, step_s, speed_m_s, smooth, jumps, k
-        )
+        law_force(laws, cross_flow, values, k, k * step_s, step_s, speed_m_s, smooth, jumps, k)
     return smooth, jumps

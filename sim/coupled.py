@@ -1,114 +1,28 @@
 """Drive, mechanism and model in one stage: a drive that feels the load of the struts.
 
 The three parts are the same as in an open chain. The drive's linear part answers exactly to the
-load torque between samples; torque, motion and forces are then swept over the block until they fit
-each other (:mod:`sim.relaxation`), so that any part, changed by whatever effect, can be inside.
+load torque between samples; torque, motion and forces are then solved sample by sample
+(:mod:`sim.coupled_march`). What that does not know is swept over the block until it fits
+(:mod:`sim.relaxation`), so that any part, changed by whatever effect, can be inside.
 """
 
-import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.coupled_march import TORQUE_DEGREE, ShaftSystem, coupled_march
-from sim.drive import SHAFT, DriveSettings, Shaft, shaft_over
-from sim.linear import ComplexArray, Hold, causal_hold
-from sim.motor import Motor, closed_loop, droop
+from sim.coupled_march import TORQUE_DEGREE, coupled_march
+from sim.drive import SHAFT
+from sim.linear import ComplexArray
+from sim.loaded_drive import LoadedDrive, LoadedState
 from sim.period import Period, Spectra
-from sim.relaxation import LONGEST_SWEEP, Tail, relax
+from sim.relaxation import LONGEST_SWEEP, relax
 from sim.sampled import steady_of
+from sim.settled import fine_enough, last_period
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
-
-
-class LoadedState(NamedTuple):
-    """Deviation of angle, speed and current; ``None`` before the first sample; last torques."""
-
-    states: tuple[float, ...] | None = None
-    torques: Tail = ()
-
-
-@dataclass(frozen=True)
-class LoadedDrive:
-    """A motor that gives way to the load torque.
-
-    Attributes
-    ----------
-    reflected_inertia_kg_m2
-        Mean inertia that the model adds at the shaft. It is solved as part of the motor; its torque
-        is then no part of the load that is handed in. Any value gives the same motion; the true one
-        gives it with the fewest sweeps.
-    """
-
-    frequency_hz: float
-    settings: DriveSettings
-    motor: Motor
-    reflected_inertia_kg_m2: float = 0.0
-
-    name: ClassVar[str] = "drive"
-    reads: ClassVar[tuple[Signal, ...]] = (signals.LOAD_TORQUE,)
-    writes: ClassVar[tuple[Signal, ...]] = SHAFT
-
-    def start(self, sample_rate_hz: float, seed: int) -> LoadedState:
-        """Return the state before the first sample: no deviation yet."""
-        return LoadedState()
-
-    def run(self, state: LoadedState, block: Block, inputs: Signals) -> tuple[LoadedState, Signals]:
-        """Return the shaft's motion under a load torque (less the reflected inertia's)."""
-        told = self.settings.commanded(self.frequency_hz, block.time_s)
-        inertia = self.motor.shaft_inertia_kg_m2 + self.reflected_inertia_kg_m2
-        torque = inputs[signals.LOAD_TORQUE.name] + inertia * told.acceleration
-        system = closed_loop(self.motor, self.reflected_inertia_kg_m2)
-        hold = self._hold(block.sample_rate_hz)
-        known = 0 if state.states is not None else 1
-        if known:
-            zero = (0.0,) * len(system.A)
-            state = LoadedState(zero, ((float(torque[0]),),) * TORQUE_DEGREE)
-        joined = np.concatenate([np.array(state.torques)[:, 0], torque[known:]])[:, np.newaxis]
-        states = np.empty((block.count, len(system.A)))
-        states[:known] = state.states
-        states[known:] = hold.run(np.array(state.states), joined)
-        deviation = states @ system.C.T + torque[:, np.newaxis] @ system.D.T
-        shaft = Shaft(*(given + more for given, more in zip(told, deviation.T, strict=True)))
-        tail = tuple((value,) for value in joined[-TORQUE_DEGREE:, 0].tolist())
-        return LoadedState(tuple(states[-1].tolist()), tail), shaft.signals
-
-    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
-        """Return the period that the shaft really has under the load, and its harmonics."""
-        torque = inputs[signals.LOAD_TORQUE.name]
-        free_hz = self.settings.frequency_hz(self.frequency_hz)
-        slower = droop(self.motor) * float(torque[0].real) / (2.0 * math.pi)
-        real = period.at(free_hz + slower)
-        told = self.settings.ripple_over(real)
-        inertia = self.motor.shaft_inertia_kg_m2 + self.reflected_inertia_kg_m2
-        whole = torque + inertia * told[signals.SHAFT_ACCELERATION.name]
-        system = closed_loop(self.motor, self.reflected_inertia_kg_m2)
-        beyond = told[signals.SHAFT_ANGLE.name].copy()
-        beyond[1:] += system.response(real.s[1:])[:, 0, 0] * whole[1:]
-        return real, shaft_over(real, beyond)
-
-    @property
-    def shaft(self) -> ShaftSystem:
-        """What the march of drive and model needs of this drive."""
-        motor, inertia = self.motor, self.reflected_inertia_kg_m2
-        both = (motor.guides, self.settings.guides)
-        return ShaftSystem(
-            self.settings,
-            self.frequency_hz,
-            closed_loop(motor, inertia),
-            motor.shaft_inertia_kg_m2,
-            inertia,
-            (sum(one.coulomb_n for one in both), sum(one.viscous_n_s_m for one in both)),
-            tuple((float(one.order), one.torque_n_m, one.phase_rad) for one in motor.cogging),
-            (0.0, 0.0, 0.0),
-        )
-
-    def _hold(self, sample_rate_hz: float) -> Hold:
-        system = closed_loop(self.motor, self.reflected_inertia_kg_m2)
-        return causal_hold(system, 1.0 / sample_rate_hz, TORQUE_DEGREE)
 
 
 @dataclass(frozen=True)
@@ -157,8 +71,9 @@ class Coupled:
         written: list[Signals] = []
         first = 0
         while first < block.count:
-            # A run's first sample has no state to march from.
-            most = 1 if state[0].states is None else LONGEST_SWEEP
+            # A run's first sample is swept: it has no state yet to march from.
+            swept = state[0].states is None and self.drive.settings.gear is None
+            most = 1 if swept else LONGEST_SWEEP
             count = min(most, block.count - first)
             part = Block(block.first + first, count, block.sample_rate_hz)
             given = {name: values[first : first + count] for name, values in inputs.items()}
@@ -173,7 +88,51 @@ class Coupled:
         }
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
-        """Return the period that the shaft has under its load, and the harmonics of all parts."""
+        """Return the period that the shaft has under its load, and the harmonics of all parts.
+
+        A gear with backlash is run on until its motion repeats.
+        """
+        if self.drive.settings.gear is None:
+            return self._balanced(period, inputs)
+        settings = replace(self.drive.settings, gear=None)
+        held = replace(self, drive=replace(self.drive, settings=settings))
+        real = period.at(settings.frequency_hz(self.drive.frequency_hz))
+        if self.drive.motor is not None:
+            real, _ = held._balanced(period, inputs)
+        return real, self._settled(real, inputs)
+
+    def _settled(self, real: Period, inputs: Spectra) -> Spectra:
+        """Return the harmonics of all parts after as many periods as it takes."""
+        old = self.drive.settings
+        whole = tuple(one for one in old.ripple if float(one.order).is_integer())
+        steady = replace(old, initial_angle_rad=0.0, start_ramp_s=0.0, stop_at_s=None, ripple=whole)
+        stage = replace(self, drive=replace(self.drive, settings=steady))
+        hull: Any = self.hull
+        if hasattr(hull, "laws"):
+            laws = tuple(one for one in hull.laws if one.law.periodic)
+            stage = stage.with_part("hull", replace(hull, laws=laws))
+        fine = fine_enough(real, self.drive.system.A)
+        if hasattr(hull, "system") and hull.system.elastic_count:
+            fine = fine_enough(fine, hull.system.state_matrix)
+        given = {name: fine.values(values) for name, values in inputs.items()}
+
+        def run(state: Any, turn: int) -> tuple[Any, Signals]:
+            rate_hz = fine.points * fine.frequency_hz
+            state, out = stage.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
+            turned = fine.omega_rad_s * (fine.time_s + turn / fine.frequency_hz)
+            beyond = out[signals.SHAFT_ANGLE.name] - turned
+            return state, {**out, signals.SHAFT_ANGLE.name: beyond}
+
+        found = last_period(run, stage.start(1.0, 0), ("force_aft", "force_fore"))
+        # Time counts from where the mean angle is 0.
+        late = fine.harmonics(found[signals.SHAFT_ANGLE.name])[0].real / fine.omega_rad_s
+        spectra = {
+            name: fine.harmonics(one) * np.exp(-fine.s * late) for name, one in found.items()
+        }
+        spectra[signals.SHAFT_ANGLE.name][0] = 0.0
+        return spectra
+
+    def _balanced(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         found: dict[str, ComplexArray] = {}
         real = period
 
@@ -199,7 +158,6 @@ class Coupled:
 
     def _torque(self, run: Signals, period: Period | None = None) -> FloatArray:
         """Return the load at the shaft: struts, their guides, and what varies with the angle."""
-        motor = self.drive.motor
         angle, speed = run[signals.SHAFT_ANGLE.name], run[signals.SHAFT_SPEED.name]
         if period is not None:
             angle = angle + period.omega_rad_s * period.time_s
@@ -207,12 +165,12 @@ class Coupled:
         for strut in ("aft", "fore"):
             lever = run[f"lever_{strut}"]
             total += run[f"force_{strut}"] * lever
-            for guides in (motor.guides, self.drive.settings.guides):
+            for guides in self.drive.guides:
                 if guides.coulomb_n or guides.viscous_n_s_m:
                     velocity = lever * speed
                     total += guides.viscous_n_s_m * velocity * lever
                     total += guides.coulomb_n * np.sign(velocity) * lever
-        for cogging in motor.cogging:
+        for cogging in self.drive.cogging:
             total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
         return total
 
@@ -244,9 +202,12 @@ class _Stretch:
         return self._sweep() if marched is None else marched
 
     def _march(self) -> tuple[tuple[Any, Any, Any], Signals] | None:
-        states, torques = self.state[0]
+        before: LoadedState = self.state[0]
+        swept = before.states is None and self.stage.drive.settings.gear is None
         march = coupled_march(self.stage.drive.shaft, self.stage.parts, self.block, self.inputs)
-        found = None if states is None or march is None else march.run(*self.state[0], self.state[2])
+        if swept or march is None:
+            return None
+        found = march.run(before.states, before.torques, self.state[2])
         if found is None:
             return None
         shaft, _, hull, run = found

@@ -34,11 +34,11 @@ class ShaftSystem:
     ----------
     system
         From the torques (load, and what a gear with a clearance gives back) to angle, speed and
-        acceleration beyond what the drive is told; with a clearance, its opening and rate too.
+        acceleration beyond what the drive is told; with a clearance, its opening too.
     inertia_kg_m2, reflected_inertia_kg_m2
         Of the shaft; and what is solved as part of it.
     gap
-        Stiffness, damping and half clearance of the gear, or zeros.
+        Stiffness and half clearance of the gear, or zeros.
     """
 
     settings: DriveSettings
@@ -48,7 +48,7 @@ class ShaftSystem:
     reflected_inertia_kg_m2: float
     friction: tuple[float, float]
     cogging: tuple[tuple[float, float, float], ...]
-    gap: tuple[float, float, float]
+    gap: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class CoupledMarch:
 
     def run(
         self,
-        states: tuple[float, ...],
+        states: tuple[float, ...] | None,
         torques: tuple[tuple[float, ...], ...],
         hull_state: HullState,
     ) -> "tuple[ShaftLoop, Course, HullState, dict[str, FloatArray]] | None":
@@ -73,18 +73,21 @@ class CoupledMarch:
         Parameters
         ----------
         states, torques
-            Of the shaft: its state, and the torques of the last samples.
+            Of the shaft: its state, and the torques of the last samples; ``None`` and nothing
+            before a run's first sample, in which nothing deviates yet.
         """
         from sim.marching import march
         from sim.shaft_loop import linkages_of
 
         told = self.shaft.settings.commanded(self.shaft.frequency_hz, self.block.time_s)
-        course = self._course(told, hull_state)
-        shaft = self._shaft_loop(told, course)
-        shaft.states[TORQUE_DEGREE - 1] = states
-        shaft.torques[:TORQUE_DEGREE] = torques
+        known = 1 if states is None else 0
+        course = self._course(told, hull_state, known)
+        shaft = self._shaft_loop(told)
+        if states is not None:
+            shaft.states[TORQUE_DEGREE - 1] = states
+            shaft.torques[:TORQUE_DEGREE] = torques
         whole = self.hull.mounting.joint is not None
-        outputs = np.empty((self.block.count, OUTPUTS if whole else OUTPUTS - 4))
+        outputs = np.empty((self.block.count, OUTPUTS if whole else OUTPUTS - 2))
         links = linkages_of(self.mechanism)
         if march(self.model.model, self.model.table, course, shaft, links, outputs) >= 0:
             return None
@@ -92,13 +95,14 @@ class CoupledMarch:
         force = outputs[:, 6:8] + course.loads[TORQUE_DEGREE:, :2]
         return shaft, course, after, self._signals(shaft.motion, course.struts[1:], force)
 
-    def _course(self, told: Shaft, state: HullState) -> "Course":
+    def _course(self, told: Shaft, state: HullState, known: int) -> "Course":
         struts = self._struts(told)
-        if state.states is None:  # a model that remembers nothing
-            width = 4 if self.hull.mounting.joint is None else 6
-            state = HullState((), (0.0,) * 6, ((0.0,) * width,) * TORQUE_DEGREE)
         forces = self.hull.forces_over(self.block, self.flow_m_s)
-        course = forces.course(state, struts, 0)
+        if not self.hull.system.states:  # a model that remembers nothing
+            state = HullState((), (0.0,) * 6, ((0.0,) * 4,) * TORQUE_DEGREE)
+        elif state.states is None:
+            state = forces.at_first_sample(struts)
+        course = forces.course(state, struts, known)
         reach = np.hypot(struts[:, :2], self._levers(told)).max()
         torque = 2.0 * course.scale[0] * reach + np.finfo(np.float64).tiny
         more = np.full(len(self.shaft.system.B.T), torque)
@@ -112,16 +116,17 @@ class CoupledMarch:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
-    def _shaft_loop(self, told: Shaft, course: "Course") -> "ShaftLoop":
+    def _shaft_loop(self, told: Shaft) -> "ShaftLoop":
         from sim.shaft_loop import ShaftLoop
 
         one, count = self.shaft, self.block.count
         hold = _hold(one.system, 1.0 / self.block.sample_rate_hz)
         n, inputs = one.system.B.shape
-        to_outputs = np.zeros((n, 5))
+        to_outputs = np.zeros((n, 4))
         to_outputs[:, : len(one.system.C)] = one.system.C.T
-        by_torque = np.zeros((inputs, 5))
+        by_torque = np.zeros((inputs, 4))
         by_torque[:, : len(one.system.D)] = one.system.D.T
+        at_once = by_torque + 0.0
         by_torque += hold[1][-1].T @ to_outputs
         return ShaftLoop(
             True,
@@ -129,6 +134,7 @@ class CoupledMarch:
             hold[1],
             to_outputs,
             by_torque,
+            at_once,
             np.column_stack(told),
             np.zeros((count + TORQUE_DEGREE, n)),
             np.zeros((count + TORQUE_DEGREE, inputs)),
@@ -162,7 +168,7 @@ def coupled_march(
     numbered = all(has_number(one.law) for one in hull.laws)
     if play or not numbered or inputs.keys() != {signals.CARRIAGE_SPEED.name}:
         return None
-    model = marching_of(hull, 1.0 / block.sample_rate_hz, shaft.gap[2] > 0.0)
+    model = marching_of(hull, 1.0 / block.sample_rate_hz, shaft.gap[1] > 0.0)
     if model is None:
         return None
     flow = hull.flow_factor * inputs[signals.CARRIAGE_SPEED.name]

@@ -7,6 +7,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from sim import signals
+from sim.gear import Gear
 from sim.motor import Guides, Servo, ShuntMotor
 from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
@@ -71,6 +72,9 @@ class DriveSettings:
         How the speed varies over a revolution.
     motor
         What turns the shaft and feels its load; ``None`` for a drive that holds its speed.
+    gear
+        The last gear, where it has backlash: what is behind it feels the load, with or without a
+        motor that does.
     guides
         Friction of the struts' guides, besides the motor's own: a load of the shaft.
     """
@@ -82,6 +86,7 @@ class DriveSettings:
     speed_error: float = 0.0
     ripple: tuple[SpeedRipple, ...] = ()
     motor: ShuntMotor | Servo | None = None
+    gear: Gear | None = None
     guides: Guides = field(default_factory=Guides)
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED

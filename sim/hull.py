@@ -20,6 +20,7 @@ from sim.model_march import Marching, marching_of, periodic_laws
 from sim.mounting import Mounting
 from sim.period import Period, Spectra
 from sim.relaxation import LONGEST_SWEEP, relax
+from sim.settled import fine_enough, last_period
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
 from sim.water.radiation import Radiation, constant
@@ -129,9 +130,14 @@ class Hull:
         return state, np.concatenate(forces)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
-        """Return the harmonics of the forces: exact, the laws by harmonic balance."""
+        """Return the harmonics of the forces: exact, the laws by harmonic balance.
+
+        Where the gauges have a clearance the forces are run on until they repeat.
+        """
         speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
         hull = self if speed == self.carriage_speed_m_s else replace(self, carriage_speed_m_s=speed)
+        if self.mounting.joint is not None:
+            return period, hull._settled(period, inputs)
         system = hull.system
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         impedance, _ = system.impedance(period.s)
@@ -142,6 +148,20 @@ class Hull:
         h = _yielded(y, give, _apply(impedance, y) + laws)
         force = _apply(impedance, h) + laws
         return period, {"force_aft": force[:, 0], "force_fore": force[:, 1]}
+
+    def _settled(self, period: Period, inputs: Spectra) -> Spectra:
+        """Return the harmonics of the forces after as many periods as it takes."""
+        laws = tuple(one for one in self.laws if one.law.periodic)
+        hull, fine = replace(self, laws=laws), fine_enough(period, self.system.state_matrix)
+        given = {one.name: fine.values(inputs[one.name]) for one in self.reads}
+
+        def run(state: HullState, turn: int) -> tuple[HullState, Signals]:
+            rate_hz = fine.points * fine.frequency_hz
+            return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
+
+        names = tuple(one.name for one in self.writes)
+        found = last_period(run, HullState(), names)
+        return {name: fine.harmonics(found[name]) for name in names}
 
     def _balance(
         self, period: Period, y: ComplexArray, give: ComplexArray | None, impedance: ComplexArray

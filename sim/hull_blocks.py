@@ -75,7 +75,7 @@ class BlockForces:
         rigid = struts @ by_struts
 
         def under(loads: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-            forcing = driven + by_load.forcing(np.vstack([history, loads[known:]]))
+            forcing = driven + by_load.forcing(np.vstack([history[known:], loads]))
             states = np.empty((len(struts), self.system.states))
             states[:known] = state.states
             states[known:] = follow(by_motion.step, forcing, np.array(state.states))
@@ -92,7 +92,7 @@ class BlockForces:
         elif loads.any():
             loads = relax(respond, loads, "hull", self.scale(struts))
         states, _, linear = under(loads)
-        tail = np.vstack([history, loads[known:]])[-LOAD_DEGREE:]
+        tail = np.vstack([history[known:], loads])[-LOAD_DEGREE:]
         after = HullState(_value(states[-1]), _value(struts[-1]), tuple(map(_value, tail)))
         return after, linear + loads[:, :2]
 
@@ -123,10 +123,12 @@ class BlockForces:
         if rest and outputs is not None:
             relax(respond, self._forces(rest, outputs), "hull", self.scale(struts)[:2])
         if outputs is None:
-            return self._unsettled()
+            self._check_unsettled()
+            return None
         return marched_state(course), outputs[:, 6:8] + course.loads[LOAD_DEGREE:, :2]
 
-    def _unsettled(self) -> None:
+    def _check_unsettled(self) -> None:
+        """Refuse a clearance that the march could not solve: sweeps cannot either."""
         if self.system.joint is not None:
             raise ConfigurationError(
                 "hull: what meets in the gauges' clearance is too stiff for the sample rate; "

@@ -10,6 +10,7 @@ from sim.acting import Acting, Point
 from sim.hull_forces import CrossFlow, direction
 from sim.hull_system import HullSystem
 from sim.laws import (
+    ArcSine,
     Coulomb,
     Cubic,
     Exponential,
@@ -38,6 +39,7 @@ LAWS: Final[tuple[type[ForceLaw], ...]] = (
     Stribeck,
     LoadFriction,
     RubbingSpring,
+    ArcSine,
 )
 
 

@@ -33,13 +33,12 @@ class ModelLoop(NamedTuple):
         What the loads add, oldest sample first, shape ``(4, n, 6)``: f, g, and what the gauges give
         back in their clearance, two columns each.
     from_states, from_struts, from_loads
-        To the outputs: ``(n, 12)``, ``(6, 12)`` and ``(6, 12)``.
+        To the outputs: ``(n, 10)``, ``(6, 10)`` and ``(6, 10)``.
     by_speed
         Forces per speed beyond the mean and per displacement (two rows), per velocity (two), and
         velocities through the water per displacement (two): shape ``(6, 2)``.
     gap
-        Stiffness, damping, half clearance and preload of the gauges' joints; a clearance of zero
-        for none.
+        Stiffness, half clearance and preload of the gauges' joints; a clearance of zero for none.
     """
 
     step: FloatArray
@@ -137,21 +136,23 @@ def _free_shaft(
     states: FloatArray,
     torques: FloatArray,
     k: int,
+    known: int,
     work: FloatArray,
 ) -> None:
     """Fill in the shaft's state and outputs at sample k, but for this sample's torques."""
     size = step.shape[0]
-    for j in range(5):
+    for j in range(4):
         work[15, j] = 0.0
     for i in range(size):
-        total = 0.0
-        for j in range(size):
-            total += step[i, j] * states[k + 2, j]
-        for past in range(3):
+        total = states[k + 3, i] if k < known else 0.0
+        if k >= known:
+            for j in range(size):
+                total += step[i, j] * states[k + 2, j]
             for j in range(torques.shape[1]):
-                total += by_inputs[past, i, j] * torques[k + past, j]
+                total += by_inputs[0, i, j] * torques[k, j] + by_inputs[1, i, j] * torques[k + 1, j]
+                total += by_inputs[2, i, j] * torques[k + 2, j]
         states[k + 3, i] = total
-        for j in range(5):
+        for j in range(4):
             work[15, j] += total * to_outputs[i, j]
 
 
@@ -195,6 +196,7 @@ def _keep_shaft(
     torques: FloatArray,
     motion: FloatArray,
     k: int,
+    known: int,
     unknown: FloatArray,
     first: int,
     work: FloatArray,
@@ -204,7 +206,7 @@ def _keep_shaft(
         motion[k, j] = work[2, j]
     for j in range(torques.shape[1]):
         torques[k + 3, j] = unknown[first + j]
-        for i in range(states.shape[1]):
+        for i in range(states.shape[1] if k >= known else 0):
             states[k + 3, i] += by_inputs[3, i, j] * unknown[first + j]
 
 
@@ -220,7 +222,7 @@ def march(
     """Solve all samples; return the number of one that does not settle, or -1.
 
     Fills in ``states`` and ``loads`` of the course, ``outputs`` (h, h', h'' and linear force at
-    both struts; opening and its rate in both gauges), shape ``(samples, 8)``, or 12 where
+    both struts; opening of both gauges), shape ``(samples, 8)``, or 10 where
     the gauges have a clearance, and all that the shaft does, if it is driven.
     """
     struts, states, loads, known = course.struts, course.states, course.loads, course.known
@@ -229,7 +231,7 @@ def march(
     laws, cross_flow, by_speed, gap = table.laws, table.cross_flow, model.by_speed, model.gap
     instants, step_s, scale = course.instants, course.step_s, course.scale
     by_torque, numbers, cogging, shaft_gap = (
-        shaft.by_torque, shaft.numbers, shaft.cogging, shaft.gap
+        shaft.at_once, shaft.numbers, shaft.cogging, shaft.gap
     )  # fmt: skip
     first = loads.shape[1]
     unknown, room = np.zeros(first + torques.shape[1]), np.zeros((8, 8))
@@ -237,13 +239,22 @@ def march(
     for k in range(len(outputs)):
         if k == 0 or k == known:
             _maps(model, k >= known, work)
+            if k >= known:
+                by_torque = shaft.by_torque
         _free_outputs(
             step, before, by_loads, model.from_states, struts, states, loads, k, known, work
         )
         _guess(loads, k, unknown, 0)
         if driven:
             _free_shaft(
-                shaft.step, shaft.by_inputs, shaft.to_outputs, shaft.states, torques, k, work
+                shaft.step,
+                shaft.by_inputs,
+                shaft.to_outputs,
+                shaft.states,
+                torques,
+                k,
+                known,
+                work,
             )
             _guess(torques, k, unknown, first)
         else:
@@ -259,6 +270,14 @@ def march(
         _keep_model(after, by_loads, struts, states, loads, k, known, unknown)
         if driven:
             _keep_shaft(
-                shaft.by_inputs, shaft.states, torques, shaft.motion, k, unknown, first, work
+                shaft.by_inputs,
+                shaft.states,
+                torques,
+                shaft.motion,
+                k,
+                known,
+                unknown,
+                first,
+                work,
             )
     return -1

@@ -14,13 +14,14 @@ from sim.signals import FloatArray
 if TYPE_CHECKING:
     from sim.hull import Hull
     from sim.marching import Course, ModelLoop
+    from sim.shaft_loop import Linkages, ShaftLoop
 
 _NOTHING_KEPT = (
     Hold(np.zeros((0, 0)), np.zeros((2, 0, 6))),
     Hold(np.zeros((0, 0)), np.zeros((LOAD_DEGREE + 1, 0, 4))),
 )
 LOADS = 6  # f, g, and what the gauges give back in their clearance: two of each
-OUTPUTS = 12  # as in sim.settling
+OUTPUTS = 10  # as in sim.settling
 
 
 class Marching(NamedTuple):
@@ -63,28 +64,23 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
 
     by_motion, by_load = system.holds(step_s) if system.states else _NOTHING_KEPT
     by_struts, by_states, by_loads = system.model_maps
-    r, states, struts = system.elastic_count, np.zeros((system.states, 4)), np.zeros((6, 4))
-    if r >= 2:
-        states[[0, 1, r, r + 1], [0, 1, 2, 3]] = 1.0
+    opening, struts = np.zeros((system.states, 2)), np.zeros((6, 2))
+    if system.elastic_count >= 2:
+        opening[:2] = np.eye(2)
     weights = np.zeros((LOAD_DEGREE + 1, system.states, LOADS))
     weights[:, :, : by_load.weights.shape[2]] = by_load.weights
     from_loads = np.zeros((LOADS, OUTPUTS))
     from_loads[: len(by_loads), :8] = by_loads
-    gap = np.zeros(4)
+    gap = np.zeros(3)
     if system.joint is not None:
-        elastic = system.elastic
-        gap[:] = (
-            elastic.stiffness[0, 0],
-            elastic.damping[0, 0],
-            system.joint.half_play_m,
-            system.joint.preload_n,
-        )
+        stiffness = system.elastic.stiffness[0, 0]
+        gap[:] = (stiffness, system.joint.half_play_m, system.joint.preload_n)
     arrays = (
         by_motion.step,
         by_motion.weights[0],
         by_motion.weights[1],
         weights,
-        np.hstack([by_states, states]),
+        np.hstack([by_states, opening]),
         np.hstack([by_struts, struts]),
         from_loads,
         np.vstack([*system.speed_loads, system.turn]),
@@ -132,19 +128,20 @@ def march_model(marching: Marching, course: "Course") -> FloatArray | None:
     """Fill in states and loads; return the outputs, or ``None`` if a sample does not settle."""
     from sim.marching import march
 
-    columns = OUTPUTS if course.given.shape[1] == LOADS else OUTPUTS - 4
+    columns = OUTPUTS if course.given.shape[1] == LOADS else OUTPUTS - 2
     outputs = np.empty((len(course.given), columns))
-    bad = march(marching.model, marching.table, course, *_undriven(), outputs)
+    shaft, links = _undriven()
+    bad = march(marching.model, marching.table, course, shaft, links, outputs)
     return None if bad >= 0 else outputs
 
 
 @lru_cache(maxsize=1)
-def _undriven() -> tuple[object, object]:
+def _undriven() -> "tuple[ShaftLoop, Linkages]":
     """Return a shaft that drives nothing, and its linkages."""
     from sim.shaft_loop import Linkages, ShaftLoop
 
     flat, deep = np.zeros((0, 0)), np.zeros((0, 0, 0))
     shaft = ShaftLoop(
-        False, flat, deep, flat, flat, flat, flat, flat, flat, np.zeros(4), flat, np.zeros(4)
+        False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(4), flat, np.zeros(3)
     )  # fmt: skip
     return shaft, Linkages(np.zeros((2, 5)))

@@ -11,11 +11,12 @@ from sim.acquisition import Acquisition, Digitiser
 from sim.acting import Acting
 from sim.carriage import Carriage, CarriageSettings
 from sim.chain import Chain
-from sim.coupled import Coupled, LoadedDrive, reflected_inertia
+from sim.coupled import Coupled, reflected_inertia
 from sim.drive import ConstantSpeedDrive, DriveSettings
 from sim.dynamometer import Dynamometers, Gauge
 from sim.hull import Hull, HullCoefficients
 from sim.hull_forces import CrossFlow
+from sim.loaded_drive import LoadedDrive
 from sim.mechanism import Mechanism, Setting
 from sim.mounting import Mounting
 from sim.photocell import Photocell
@@ -88,7 +89,7 @@ class SimulatedRig:
         )
         hull = self._hull(set_point.medium, carriage.mean_m_s)
         stages: tuple[Stage[Any], ...]
-        if self.drive.motor is None:
+        if self.drive.motor is None and self.drive.gear is None:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
             stages = (drive, carriage, mechanism, hull)
         else:

@@ -25,15 +25,20 @@ _STALLED = 3
 
 
 @compile_loop
-def joint_return(gap: FloatArray, opening: float, rate: float) -> float:
+def joint_return(gap: FloatArray, opening: float) -> float:
     """Return the force that a spring in a row with a clearance has less than the spring alone.
 
-    At no opening the spring carries the preload against one side.
+    At no opening the spring carries the preload against one side. The damper beside the spring is
+    left: it acts across the clearance too, as what lubricates it does.
+
+    Parameters
+    ----------
+    gap
+        Stiffness, half clearance, preload.
     """
-    at = opening + gap[2] + gap[3] / gap[0]
-    pressed = max(at - gap[2], 0.0) + min(at + gap[2], 0.0)
-    lost = gap[1] * rate if pressed == 0.0 else 0.0
-    return gap[0] * (opening - pressed) + gap[3] + lost
+    at = opening + gap[1] + gap[2] / gap[0]
+    pressed = max(at - gap[1], 0.0) + min(at + gap[1], 0.0)
+    return float(gap[0] * (opening - pressed) + gap[2])
 
 
 @compile_loop
@@ -60,9 +65,9 @@ def _model_loads(
                 added = by_speed[i, j] * work[1, j] + by_speed[2 + i, j] * work[1, 2 + j]
                 room[0, i] += extra * added
                 room[0, 2 + i] += extra * by_speed[4 + i, j] * work[1, j]
-    if gap[2] > 0.0:
+    if gap[1] > 0.0:
         for i in range(2):
-            room[0, 4 + i] += joint_return(gap, work[1, 8 + i], work[1, 10 + i])
+            room[0, 4 + i] += joint_return(gap, work[1, 8 + i])
 
 
 @compile_loop
@@ -105,11 +110,11 @@ def _turn_shaft(
     work: FloatArray,
 ) -> None:
     """Fill in the shaft's motion, row 2 of ``work``, the struts', and in row 15 the opening's."""
-    for i in range(5):
+    for i in range(4):
         work[2, i] = work[15, i]
         for j in range(unknown.size - first):
             work[2, i] += by_torque[j, i] * unknown[first + j]
-    work[15, 5], work[15, 6] = work[2, 3], work[2, 4]
+    work[15, 5] = work[2, 3]
     for i in range(3):
         work[2, i] += told[k, i]
     strut_motion(links, work, struts, k + 1)
@@ -151,8 +156,8 @@ def _respond(
     if driven:
         rest = numbers[0] * told[k, 2] - numbers[1] * (work[2, 2] - told[k, 2])
         room[0, loads] = _shaft_torque(numbers, cogging, work, room) + rest
-        if shaft_gap[2] > 0.0:
-            room[0, loads + 1] = joint_return(shaft_gap, work[15, 5], work[15, 6])
+        if shaft_gap[1] > 0.0:
+            room[0, loads + 1] = joint_return(shaft_gap, work[15, 5])
 
 
 @compile_loop

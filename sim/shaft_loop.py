@@ -9,8 +9,6 @@ from sim.compiled import compile_loop
 from sim.mechanism import Mechanism
 from sim.signals import FloatArray
 
-OUTPUTS = 5  # angle, speed, acceleration; opening of the gear's clearance and its rate
-
 
 class Linkages(NamedTuple):
     """Both struts' linkages.
@@ -38,7 +36,9 @@ class ShaftLoop(NamedTuple):
         What the load torque and the gear's return add, oldest sample first, shape ``(4, n, 2)``.
     to_outputs, by_torque
         From states and from this sample's inputs (by way of the state too) to the outputs, shapes
-        ``(n, OUTPUTS)`` and ``(2, OUTPUTS)``.
+        ``(n, 4)`` and ``(2, 4)``.
+    at_once
+        From this sample's inputs alone, where the state is known already.
     told
         Angle, speed, acceleration that the drive is told, ``(samples, 3)``.
     states, torques
@@ -60,6 +60,7 @@ class ShaftLoop(NamedTuple):
     by_inputs: FloatArray
     to_outputs: FloatArray
     by_torque: FloatArray
+    at_once: FloatArray
     told: FloatArray
     states: FloatArray
     torques: FloatArray

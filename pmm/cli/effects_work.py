@@ -18,10 +18,13 @@ from sim.effects.agreement import simulated_signature
 from sim.effects.catalogue import build, catalogue, user_effects
 from sim.effects.effect import Effect, Lines, Signature
 from sim.effects.situation import Situation
+from sim.pendulum.effects import CATALOGUE as PENDULUM_CATALOGUE
+from sim.pendulum.effects.base import plausible
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
 
 JSON_SCHEMA = "pmm-effects-1"
 _SMALL = 1e-4  # of a channel's largest change: not worth a row
@@ -171,7 +174,11 @@ def _parts(value: complex) -> dict[str, float]:
 
 def _list(effects: Mapping[str, type[Effect]], *, as_json: bool) -> None:
     if as_json:
-        document = {"schema": JSON_SCHEMA, "effects": [described(one) for one in effects.values()]}
+        document = {
+            "schema": JSON_SCHEMA,
+            "effects": [described(one) for one in effects.values()],
+            "pendulum_effects": [_described_pendulum(one) for one in PENDULUM_CATALOGUE],
+        }
         click.echo(json.dumps(document, indent=1))
         return
     from rich.table import Table
@@ -183,7 +190,33 @@ def _list(effects: Mapping[str, type[Effect]], *, as_json: bool) -> None:
         table.add_row(one.code, one.name, str(one.stage), one.title, _parameters(one))
     console = output()
     console.print(table)
-    console.print(f"{len(effects)} effects; pmm effects NAME shows one whole")
+    console.print(f"{len(effects)} effects; pmm effects NAME shows one whole\n")
+    console.print(_pendulum_table())
+    console.print(f"{len(PENDULUM_CATALOGUE)} effects of pendulum tests: see docs/pendulums.md")
+
+
+def _pendulum_table() -> "Table":
+    """Return the effects of pendulum tests, which a bench is given and no campaign."""
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for heading in ("name", "stage", "what it does", "parameters: typical (plausible range)"):
+        table.add_column(heading, overflow="fold")
+    for one in PENDULUM_CATALOGUE:
+        known = [f"{key} = {p.typical:g} ({p.text})" for key, p in plausible(one).items()]
+        table.add_row(one.name, one.stage, one.summary, "\n".join(known))
+    return table
+
+
+def _described_pendulum(kind: type[Any]) -> dict[str, Any]:
+    known = plausible(kind).items()
+    return {
+        "name": kind.name,
+        "stage": kind.stage,
+        "title": kind.summary,
+        "signature": kind.signature,
+        "parameters": [{"name": key, **asdict(one)} for key, one in known],
+    }
 
 
 def _parameters(kind: type[Effect]) -> str:

@@ -34,6 +34,8 @@ _WHY: Final = {
     "D1b": "first order in the load's inertia over the shaft's; below 1e-3 with 400 kg m2",
     "D2": "first order in the droop; below 1e-3 with 2e-4 rad/(s N m)",
     "D3": "first order in M e²/J; below 1e-3 with 200 kg m2",
+    "D4": "theory has rigid teeth, which do not bounce or ring",
+    "K6b": "theory has rigid sides without bounce; 1.3e-2 with 1e-5 m and 5e6 N/m in heave",
     "K5": "the leading power of e/l; below 1e-3 at 10 mm",
 }
 

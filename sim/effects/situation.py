@@ -73,7 +73,7 @@ class Situation:
     @staticmethod
     def system_of(rig: SimulatedRig, set_point: SetPoint) -> HullSystem:
         """Return a rig's model and water as a linear system."""
-        still = replace(rig, drive=replace(rig.drive, motor=None))
+        still = replace(rig, drive=replace(rig.drive, motor=None, gear=None))
         system: HullSystem = still.chain(set_point).stage("hull").system  # type: ignore[attr-defined]
         return system
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.errors import ConfigurationError
+from sim.crossings import quintic, root
 from sim.noise import NoiseState, draw_normal, start_stream
 from sim.pendulum.coordinates import Coordinate
-from sim.photocell import _quintic, _root
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
 
@@ -169,5 +169,5 @@ def crossings(
     above = rows[0] >= 0.0
     at = np.flatnonzero(above[1:] != above[:-1])
     before, after = rows[:, at], rows[:, at + 1]
-    where: FloatArray = at + _root(_quintic(before, after), after[0])
+    where: FloatArray = at + root(quintic(before, after), after[0])
     return where, above[at + 1]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.effects.agreement import phasor
 from sim.effects.applied import switch_on
@@ -20,8 +21,9 @@ def own(text: str) -> list[Effect]:
     return [kind() for kind in catalogue().values() if kind.code[0] in text]
 
 
-# A motor and an entirely different linkage change what the others start from.
-SMALL = [one for one in own("DKS") if one.code not in ("D1b", "D2", "D3", "K1")]
+# A motor, a gear, joints on springs and an entirely different linkage change what the others start
+# from.
+SMALL = [one for one in own("DKS") if one.code not in ("D1b", "D2", "D3", "D4", "K1", "K6b")]
 
 
 def test_small_effects_add_up() -> None:
@@ -38,9 +40,13 @@ def test_small_effects_add_up() -> None:
     assert np.linalg.norm(found - stated) < 0.05 * np.linalg.norm(stated)
 
 
-@pytest.mark.parametrize("groups", ["D", "K", "S", "DKS"])
-def test_all_go_together(groups: str) -> None:
-    rig, set_point = switch_on(own(groups), vertical_rig().ideal(), SET_POINT)
+# Where teeth meet is solved sample by sample with the load, which friction in a joint cannot be.
+@pytest.mark.parametrize(
+    ("groups", "without"), [("D", ""), ("K", ""), ("S", ""), ("DKS", "K6"), ("DKS", "D4")]
+)
+def test_all_go_together(groups: str, without: str) -> None:
+    effects = [one for one in own(groups) if one.code != without]
+    rig, set_point = switch_on(effects, vertical_rig().ideal(), SET_POINT)
     chain = rig.chain(set_point)
     _, run = chain.run(chain.start(200.0, 0), 1500)
     steady = steady_run(rig, set_point)
@@ -51,3 +57,11 @@ def test_all_go_together(groups: str) -> None:
     first = 2.0 * abs(np.mean(last * turned))
     # The last period holds no whole number of samples, and a soft motor may still swing a little.
     assert first == pytest.approx(abs(steady.spectra["force_aft"][1]), rel=0.02)
+
+
+def test_a_gear_with_backlash_says_what_it_cannot_go_with() -> None:
+    both = [one for one in own("DK") if one.code in ("D4", "K6")]
+    rig, set_point = switch_on(both, vertical_rig().ideal(), SET_POINT)
+    chain = rig.chain(set_point)
+    with pytest.raises(ConfigurationError, match="leave out play that friction holds"):
+        chain.run(chain.start(200.0, 0), 10)

@@ -1,0 +1,95 @@
+"""What crosses a clearance: free flight from one side to the other, and a plastic impact.
+
+No effect itself. What is behind the clearance leaves its side when the force that holds it there
+turns, flies under what it would have taken to keep it there, and stops where it meets the other
+side. The flight takes about ``(6 L m / F')^(1/3)`` for the length L and the force's rate F', so
+that the square wave of the describing functions, which changes sides at once, is a limit that comes
+nearer with the cube root of the clearance only.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.linear import ComplexArray
+from sim.signals import FloatArray
+
+POINTS = 2048  # of a turn, for quadrature
+_TURNS = 3  # until the flights repeat
+
+
+@dataclass(eq=False)
+class Clearances:
+    """Several clearances, each of one length, in front of one body.
+
+    Attributes
+    ----------
+    length
+        Of all of them; a place is 0 at the near side and -length at the far one.
+    damping, stiffness
+        Shape ``(n, n)``; against the flight.
+    places, rates
+        Shape ``(n,)``.
+    """
+
+    length: float
+    damping: FloatArray
+    stiffness: FloatArray
+    places: FloatArray = field(init=False)
+    rates: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.places = np.zeros(len(self.damping))
+        self.rates = np.zeros(len(self.damping))
+
+    def step(self, pull: FloatArray, inertia: FloatArray, step_s: float) -> None:
+        """Go on by a step under the pull that each side has to exert, positive off the near one."""
+        load = pull + self.damping @ self.rates + self.stiffness @ self.places
+        near, far = self.places >= 0.0, self.places <= -self.length
+        held = (near & (load <= 0.0)) | (far & (load >= 0.0))
+        flying = np.flatnonzero(~held)
+        if not flying.size:
+            return
+        block = inertia[np.ix_(flying, flying)]
+        self.rates[flying] -= step_s * np.linalg.solve(block, load[flying])
+        self.places[flying] += step_s * self.rates[flying]
+        for one in flying:
+            if not -self.length < self.places[one] < 0.0:
+                self._meet(int(one), inertia, flying)
+
+    def _meet(self, one: int, inertia: FloatArray, flying: NDArray[np.intp]) -> None:
+        """Stop one at its side; its impulse changes the rates of those that still fly."""
+        others = np.array([i for i in flying if i != one and self.rates[i] != 0.0], dtype=int)
+        if others.size:
+            block = inertia[np.ix_(others, others)]
+            self.rates[others] += np.linalg.solve(block, inertia[others, one] * self.rates[one])
+        self.places[one] = min(max(self.places[one], -self.length), 0.0)
+        self.rates[one] = 0.0
+
+
+def flight_harmonics(
+    clearances: Clearances, pull: FloatArray, inertia: FloatArray, step_s: float
+) -> ComplexArray:
+    """Return the harmonics of the places over a turn, ``x = Re sum X_n exp(i n th)``.
+
+    Parameters
+    ----------
+    pull
+        Over the points of a turn, shape ``(POINTS, n)``.
+    inertia
+        At each point, ``(POINTS, n, n)``.
+
+    Returns
+    -------
+    ComplexArray
+        Shape ``(POINTS/2 + 1, n)``.
+    """
+    places = np.empty_like(pull)
+    for _ in range(_TURNS):
+        for k in range(POINTS):
+            places[k] = clearances.places
+            clearances.step(pull[k], inertia[k], step_s)
+    found: ComplexArray = np.fft.rfft(places, axis=0) * (2.0 / POINTS)
+    found[0] /= 2.0
+    return found

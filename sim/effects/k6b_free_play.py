@@ -1,0 +1,92 @@
+"""K6b: play in the last joint of the struts, where only forces take the model across it."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.flights import POINTS, Clearances, flight_harmonics
+from sim.effects.situation import Situation, at_struts
+from sim.linear import ComplexArray
+from sim.mounting import Joint, Mounting
+from sim.rig import SimulatedRig
+
+HIGHEST = 3
+
+
+@dataclass(frozen=True)
+class FreePlay(Effect):
+    """``y = y_d - h sgn(F)``: the model lies at the side to which the strut's force presses it.
+
+    A square wave of the displacement, of which the force has Z_n times as much at each order; of
+    first harmonic ``-(4 h/pi)`` along F, and a third of that at the third order. It takes the model
+    some time to fly across, so that the wave is late and round. A preload beyond the peak of the
+    force closes the joint. At rest, where the dynamometers are tared, the joint lies at one side.
+    A rig whose gauges are rigid gets gauges that give way.
+    """
+
+    code: ClassVar[str] = "K6b"
+    name: ClassVar[str] = "free-play"
+    title: ClassVar[str] = "Play in the struts' last joints, crossed by inertia"
+    stage: ClassVar[StageName] = StageName.MECHANISM
+
+    half_play_m: float = parameter(5e-5, 1e-7, 1e-3, "m", "clearance to either side, h")
+    preload_n: float = parameter(0.0, 0.0, 1000.0, "N", "force that presses the joint to one side")
+    stiffness_n_m: float = parameter(2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid")
+    damping_n_s_m: float = parameter(5000.0, 100.0, 5e4, "N s/m", "of a gauge, where it is rigid")
+
+    def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
+        """Return the rig with the play in both joints; play that is there already is added to."""
+        mounting = self._gauges(rig.mounting)
+        old = mounting.joint
+        half, preload = self.half_play_m, self.preload_n
+        if old is not None:
+            half, preload = half + old.half_play_m, preload + old.preload_n
+        return replace(rig, mounting=replace(mounting, joint=Joint(half, preload)))
+
+    def _gauges(self, mounting: Mounting) -> Mounting:
+        if mounting.gauge_stiffness_n_m is not None:
+            return mounting
+        return replace(
+            mounting,
+            gauge_stiffness_n_m=self.stiffness_n_m,
+            gauge_damping_n_s_m=self.damping_n_s_m,
+        )
+
+    def signature(self, situation: Situation) -> Signature:
+        """Return flights and impacts of a model on rigid sides, then on the gauges' springs."""
+        crossed = self._crossed(situation)
+        found: dict[tuple[str, int], complex] = {}
+        for order in range(HIGHEST + 1):
+            change = crossed[order]
+            displacement = situation.displacement(order) + change
+            force = self._on_gauges(situation, order) @ displacement
+            found |= at_struts(force - situation.force(order), order)
+        return found
+
+    def _on_gauges(self, situation: Situation, order: int) -> ComplexArray:
+        """Return force per displacement behind the joints, with the gauges in a row with it."""
+        gauges = self._gauges(situation.rig.mounting)
+        s = 1j * order * situation.omega
+        spring = (gauges.gauge_stiffness_n_m or 0.0) + s * gauges.gauge_damping_n_s_m
+        impedance = situation.impedance(order)
+        found = np.linalg.solve(np.eye(2) + impedance / spring, impedance)
+        return np.asarray(found, dtype=np.complex128)
+
+    def _crossed(self, situation: Situation) -> ComplexArray:
+        """Return phasors ``S + i C`` of what the joints take off the displacement, by order."""
+        system, damping = situation.system, self._gauges(situation.rig.mounting).gauge_damping_n_s_m
+        clearances = Clearances(
+            2.0 * self.half_play_m, system.damping + damping * np.eye(2), system.stiffness
+        )
+        theta = 2.0 * np.pi * np.arange(POINTS) / POINTS
+        force = self._on_gauges(situation, 1) @ situation.displacement()
+        # F = Im(H exp(i theta)) for H = S + i C.
+        pull = np.imag(np.exp(1j * theta)[:, np.newaxis] * force) - self.preload_n
+        inertia = np.broadcast_to(system.mass, (POINTS, 2, 2))
+        step_s = 2.0 * np.pi / (POINTS * situation.omega)
+        waves = flight_harmonics(clearances, pull, inertia, step_s)
+        # Re(X exp(i n th)) = S sin + C cos with S + i C = i X; the mean stays as it is.
+        return np.concatenate([waves[:1], 1j * waves[1:]]).astype(np.complex128)

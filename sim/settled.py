@@ -1,0 +1,65 @@
+"""The periodic steady state of what meets in a clearance: run on until one period is like the last.
+
+A clearance that opens twice a period has no balance of harmonics that sweeps could find; it is run
+in time instead, with steps that fit its fastest vibration.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from sim.period import Period
+from sim.signals import FloatArray
+
+_STEP_RAD: Final = 0.1  # of the fastest vibration, at most
+_MOST_DOUBLED: Final = 10
+_SETTLED: Final = 1e-9
+_MOST_PERIODS: Final = 300
+_AVERAGED: Final = 32  # periods, where they never become the same
+
+
+def fine_enough(period: Period, rates: FloatArray) -> Period:
+    """Return the period with points that follow the fastest vibration of a linear system.
+
+    What only decays needs no points: the steps are exact for it.
+    """
+    fastest = float(np.abs(np.linalg.eigvals(rates).imag).max(initial=0.0))
+    points = period.points
+    for _ in range(_MOST_DOUBLED):
+        if fastest / (points * period.frequency_hz) <= _STEP_RAD:
+            break
+        points *= 2
+    return replace(period, points=points)
+
+
+def last_period(
+    run: Callable[[Any, int], tuple[Any, Mapping[str, FloatArray]]],
+    start: Any,
+    watched: tuple[str, ...],
+) -> dict[str, FloatArray]:
+    """Return the signals over a period after which they repeat.
+
+    What never repeats, because it bounces otherwise every time, is averaged over the last periods,
+    as an analysis of a record does.
+
+    Parameters
+    ----------
+    run
+        Takes a state and the number of the period; returns the state after it and its signals.
+    watched
+        The signals that have to repeat.
+    """
+    state, before, kept = start, None, []
+    for turn in range(_MOST_PERIODS):
+        state, found = run(state, turn)
+        now = np.array([found[name] for name in watched])
+        if before is not None:
+            size = np.abs(now).max(axis=1, keepdims=True)
+            if (np.abs(now - before) <= _SETTLED * size).all():
+                return dict(found)
+        before = now
+        if turn >= _MOST_PERIODS - _AVERAGED:
+            kept.append(found)
+    return {name: np.mean([one[name] for one in kept], axis=0) for name in kept[0]}

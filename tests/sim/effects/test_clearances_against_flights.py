@@ -1,0 +1,113 @@
+"""Effects of clearances against flights from side to side and plastic impacts."""
+
+import numpy as np
+import pytest
+
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.applied import switch_on
+from sim.effects.d4_gear_backlash import GearBacklash
+from sim.effects.effect import Effect
+from sim.effects.k6b_free_play import FreePlay
+from sim.periodic import steady_run
+from sim.rig import SimulatedRig, vertical_rig
+from tests.sim.effects.against_theory import mismatch
+
+RIG = vertical_rig().ideal()
+HEAVE = SetPoint(1.0, 0.02)
+SET_POINTS = [
+    HEAVE,
+    SetPoint(0.5, 0.02),
+    SetPoint(1.0, 0.03, np.pi),
+    SetPoint(0.7, 0.02, 0.0, 0.0, Medium.AIR),
+]
+
+
+@pytest.mark.parametrize(
+    ("effect", "tolerance"),
+    [
+        # Theory has rigid sides. What meets on springs bounces and rings: less of it the stiffer.
+        (FreePlay(), 0.05),
+        (FreePlay(1e-5, stiffness_n_m=5e6), 0.015),
+        (GearBacklash(), 0.13),
+    ],
+)
+def test_signature(effect: Effect, tolerance: float) -> None:
+    assert mismatch(effect, RIG, SET_POINTS) < tolerance
+
+
+def change(effect: Effect, rig: SimulatedRig, set_point: SetPoint, name: str) -> np.ndarray:
+    nominal = steady_run(rig, set_point).spectra[name]
+    found: np.ndarray = steady_run(*switch_on((effect,), rig, set_point)).spectra[name] - nominal
+    return found
+
+
+def test_free_play_comes_near_the_describing_function() -> None:
+    """4 h/pi at the first order, once the flight takes no time: (h/e)^(1/3) of a period."""
+    set_point = SetPoint(0.5, 0.02, 0.0, 0.0, Medium.AIR)
+    shares = []
+    for half_play_m in (1e-4, 1e-6):
+        play = FreePlay(half_play_m)
+        theory = play.signature(_situation(set_point))
+        without = FreePlay(half_play_m, preload_n=1000.0).signature(_situation(set_point))
+        moved = theory["force_aft", 1] - without["force_aft", 1]
+        inertia = abs(_situation(set_point).impedance(1).sum(axis=1)[0])
+        shares.append(abs(moved) / (inertia * 4.0 * half_play_m / np.pi))
+    assert abs(shares[1] - 1.0) < abs(shares[0] - 1.0)
+    assert shares[1] == pytest.approx(1.0, abs=0.05)
+
+
+def _situation(set_point: SetPoint):  # type: ignore[no-untyped-def]
+    from sim.effects.situation import Situation
+
+    return Situation.of(RIG, set_point)
+
+
+def test_preload_beyond_the_peak_force_closes_the_joints() -> None:
+    stiff = change(FreePlay(1e-4, 1000.0), RIG, HEAVE, "force_aft")
+    wide = change(FreePlay(5e-4, 1000.0), RIG, HEAVE, "force_aft")
+    open_joint = change(FreePlay(5e-4), RIG, HEAVE, "force_aft")
+    assert np.abs(stiff - wide).max() < 1e-9
+    assert np.abs(open_joint - wide).max() > 0.5
+
+
+@pytest.mark.parametrize("set_point", [HEAVE, SetPoint(0.5, 0.02)])
+def test_backlash_moves_the_struts_at_first_and_third_order(set_point: SetPoint) -> None:
+    """y_3 = e beta/pi of a square wave; a late and round one has somewhat less."""
+    found = change(GearBacklash(1e-4), RIG, set_point, "displacement_aft")
+    teeth = change(GearBacklash(1e-7), RIG, set_point, "displacement_aft")
+    third = abs(found[3] - teeth[3]) / (set_point.eccentricity_m * 1e-4 / np.pi)
+    assert 0.6 < third < 1.05
+
+
+def test_a_load_that_does_not_reverse_keeps_the_teeth_together() -> None:
+    """At a strut phase of 60 degrees the mean torque is larger than what varies."""
+    held = SetPoint(1.0, 0.02, np.pi / 3.0)
+    assert mismatch(GearBacklash(), RIG, [held]) < 1e-3
+    wide = change(GearBacklash(0.01), RIG, held, "force_aft")
+    narrow = change(GearBacklash(1e-4), RIG, held, "force_aft")
+    assert np.abs(wide - narrow).max() < 1e-6
+
+
+@pytest.mark.parametrize("effect", [FreePlay(), GearBacklash()])
+def test_time_domain_and_periodic_form_agree(effect: Effect) -> None:
+    rig, set_point = switch_on((effect,), RIG, HEAVE)
+    chain = rig.chain(set_point)
+    _, run = chain.run(chain.start(200.0, 1), 2400)
+    turn = np.exp(-1j * np.outer([1, 2, 3], run["shaft_angle"][-800:]))
+    found = 2.0 * (turn * run["force_aft"][-800:]).mean(axis=1)
+    steady = steady_run(rig, set_point).spectra["force_aft"]
+    assert np.abs(found - steady[1:4]).max() < 5e-4 * abs(steady[1])
+
+
+@pytest.mark.parametrize("effect", [FreePlay(), GearBacklash()])
+def test_blocks_give_the_samples_of_the_whole_run(effect: Effect) -> None:
+    rig, set_point = switch_on((effect,), RIG, HEAVE)
+    chain = rig.chain(set_point)
+    _, whole = chain.run(chain.start(200.0, 1), 300)
+    state, parts = chain.start(200.0, 1), []
+    for count in (1, 7, 92, 200):
+        state, part = chain.run(state, count)
+        parts.append(part["force_aft"])
+    joined = np.concatenate(parts)
+    scale = np.abs(whole["force_aft"]).max()
+    np.testing.assert_allclose(joined, whole["force_aft"], rtol=0.0, atol=1e-11 * scale)

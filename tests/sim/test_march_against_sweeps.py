@@ -1,0 +1,129 @@
+"""Oracle: sweeps over whole blocks in NumPy; and each law's array form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hardware.description.setpoint import SetPoint
+from sim import coupled, hull
+from sim.acting import Acting, Point
+from sim.compiled_laws import law_force
+from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
+from sim.law_table import LAWS, has_number, table_of
+from sim.laws import (
+    ArcSine,
+    Coulomb,
+    Cubic,
+    Exponential,
+    ForceLaw,
+    LoadFriction,
+    Proximity,
+    Quadratic,
+    RubbingSpring,
+    Spring,
+    Stribeck,
+    Tone,
+    Viscous,
+)
+from sim.motor import Cogging, Guides, Servo
+from sim.mounting import Mounting
+from sim.periodic import steady_run
+from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+
+EXAMPLES: list[ForceLaw] = [
+    Viscous(3.0),
+    Quadratic(200.0, 0.02),
+    Cubic(90.0),
+    Spring(5.0, 30.0, 400.0, 2.0),
+    Proximity(3.0, 0.3, 2.0, 1.2),
+    Exponential(3.0, 8.0),
+    Tone(2.0, 1.7, 0.3, 4.0),
+    Coulomb(0.5, 0.1),
+    Stribeck(0.4, 0.02),
+    LoadFriction(0.02, 3.0, 0.7),
+    RubbingSpring(4.0),
+    ArcSine(20.0, 30.0, 900.0),
+]
+CROSS_FLOW = CrossFlow(((30.0, 5.0, 7.0, 2.0), (4.0, 6.0, 3.0, 9.0)), ((80.0, 9.0, 8.0, 7.0),) * 2)
+SET_POINT = SetPoint(0.9, 0.03, 0.8, 1.1)
+
+
+def test_every_numbered_law_has_an_example() -> None:
+    assert [type(one) for one in EXAMPLES] == list(LAWS)
+    assert all(has_number(one) for one in EXAMPLES)
+
+
+@settings(deadline=None)
+@given(
+    st.integers(0, len(EXAMPLES)),
+    st.sampled_from(Point),
+    st.lists(st.floats(-0.1, 0.1), min_size=6, max_size=6),
+    st.floats(-50.0, 50.0),
+)
+def test_a_compiled_law_is_its_array_form(
+    which: int, point: Point, motion: list[float], load: float
+) -> None:
+    laws = (Acting(EXAMPLES[which], point),) if which < len(EXAMPLES) else ()
+    cross_flow = None if laws else CROSS_FLOW
+    rig = vertical_rig()
+    system = rig.chain(SET_POINT).stage("hull").system  # type: ignore[attr-defined]
+    row = np.array([[*motion, load, -0.4 * load]])
+    instants = Instants(np.array([1.3]), 0.005, np.array([1.0]))
+    expected = law_forces(laws, cross_flow, system, ModelMotion(*np.split(row, 4, 1)), instants)
+    found = np.zeros((1, 2))
+    law_force(*table_of(laws, cross_flow, system), row, 0, 1.3, 0.005, 1.0, found, found, 0)
+    np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-12)
+
+
+def _loaded(rig: SimulatedRig, laws: tuple[Acting, ...]) -> SimulatedRig:
+    motor = Servo(cogging=(Cogging(3, 0.5),), guides=Guides(1.0, 2.0))
+    return replace(
+        rig,
+        forces=laws,
+        cross_flow=CROSS_FLOW,
+        mounting=Mounting(2e5, 300.0, 1e6, 4000.0),
+        drive=replace(rig.drive, start_ramp_s=1.0, motor=motor),
+    )
+
+
+@settings(deadline=None, max_examples=6)
+@given(st.lists(st.sampled_from(EXAMPLES[:11]), max_size=3), st.booleans(), st.booleans())
+def test_march_gives_what_sweeps_do(laws: list[ForceLaw], motor: bool, cranks: bool) -> None:
+    rig = _loaded(horizontal_rig(0.8 if cranks else None), tuple(Acting(one) for one in laws))
+    rig = rig if motor else replace(rig, drive=replace(rig.drive, motor=None))
+    found = []
+    with pytest.MonkeyPatch.context() as patch:
+        for swept in (False, True):
+            if swept:
+                patch.setattr(hull, "marching_of", lambda *_: None)
+                patch.setattr(coupled, "coupled_march", lambda *_: None)
+            chain = rig.chain(SET_POINT)
+            found.append(chain.run(chain.start(200.0, 1), 400)[1])
+    for name in ("force_aft", "force_fore", "shaft_speed", "displacement_fore"):
+        scale = np.abs(found[1][name]).max()
+        np.testing.assert_allclose(found[0][name], found[1][name], rtol=0.0, atol=1e-10 * scale)
+
+
+def test_balance_gives_what_sweeps_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    laws = (*(Acting(one) for one in EXAMPLES[:5]), Acting(EXAMPLES[7], Point.AFT))
+    rig = replace(_loaded(vertical_rig().ideal(), laws), drive=vertical_rig().drive)
+    found = steady_run(rig, SET_POINT).spectra["force_aft"]
+    monkeypatch.setattr(hull, "periodic_laws", lambda *_: None)
+    swept = steady_run(rig, SET_POINT).spectra["force_aft"]
+    np.testing.assert_allclose(found, swept, rtol=0.0, atol=1e-11 * np.abs(swept).max())
+
+
+def test_laws_of_ones_own_are_swept_around_the_march() -> None:
+    class Doubled(Quadratic):
+        pass
+
+    rig = replace(vertical_rig().ideal(), mounting=Mounting(2e5, 300.0))
+    runs = []
+    for law in (Doubled(300.0), Quadratic(300.0)):
+        chain = replace(rig, forces=(Acting(law), Acting(Coulomb(0.5)))).chain(SET_POINT)
+        runs.append(chain.run(chain.start(200.0, 1), 400)[1]["force_aft"])
+    assert not has_number(Doubled(300.0))
+    np.testing.assert_allclose(runs[0], runs[1], rtol=0.0, atol=1e-10 * np.abs(runs[1]).max())
