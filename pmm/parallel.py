@@ -1,0 +1,199 @@
+"""Where work over many runs and trials is done: this process, local processes, or a Dask cluster.
+
+All three are a ``concurrent.futures.Executor``; whoever has work calls ``executor.map`` and never
+learns which it is. A task is a plain function of what can be pickled, and random numbers come from
+the task's own number (``SeedSequence(seed, spawn_key=(i,))``), so that the results are the same on
+every engine and with any number of workers. See ``docs/parallel.md``.
+"""
+
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from functools import partial
+from importlib import import_module
+from multiprocessing import get_context
+from typing import Any, Final, TypeVar
+
+from hardware.description.errors import ConfigurationError, DataError
+
+T = TypeVar("T")
+
+MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
+_THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+_TIMEOUT: Final = "10s"  # for a scheduler to answer
+
+
+@contextmanager
+def open_executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
+    """Open an executor for the time of a ``with`` block; nothing is left running after it.
+
+    Parameters
+    ----------
+    jobs
+        Local processes; 1 works in this process, ``None`` takes one for each core.
+    scheduler
+        Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``; its workers need this
+        package, and the recordings under the same paths.
+
+    Raises
+    ------
+    ConfigurationError
+        If both are given, the number is below 1, or the extra ``cluster`` is not installed.
+    DataError
+        If no scheduler answers there, or the workers died again and again.
+    """
+    if scheduler is not None and jobs is not None:
+        raise ConfigurationError("give --jobs or --scheduler, not both: a cluster has its own size")
+    if jobs is not None and jobs < 1:
+        raise ConfigurationError(f"--jobs {jobs}: at least one process is needed")
+    if scheduler is not None:
+        with _cluster(scheduler) as executor:
+            yield executor
+        return
+    count = cores() if jobs is None else jobs
+    local: Executor = InThisProcess() if count == 1 else LocalProcesses(count)
+    try:
+        yield local
+    finally:
+        local.shutdown(wait=True, cancel_futures=True)
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    mine = getattr(os, "sched_getaffinity", None)  # not on every system
+    return len(mine(0)) if mine is not None else os.cpu_count() or 1
+
+
+class InThisProcess(Executor):
+    """An executor that does each task when it is asked for its result, one after the other."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Do a task now and return it done."""
+        done: Future[T] = Future()
+        try:
+            done.set_result(fn(*args, **kwargs))
+        except Exception as error:  # it belongs to whoever asks for the result
+            done.set_exception(error)
+        return done
+
+    def map(
+        self,
+        fn: Callable[..., T],
+        *iterables: Iterable[Any],
+        timeout: float | None = None,
+        chunksize: int = 1,
+    ) -> Iterator[T]:
+        """Yield results as they are asked for, so that no more than one is held."""
+        return map(fn, *iterables)
+
+
+class LocalProcesses(Executor):
+    """Spawned processes; one that is killed costs the time of its tasks, not their results.
+
+    A :class:`ProcessPoolExecutor` fails every task in hand when a worker dies. Here these tasks
+    start again in new processes. Tasks have no effect but their result, so doing one twice is safe.
+    """
+
+    def __init__(self, jobs: int, most_restarts: int = MOST_RESTARTS) -> None:
+        self._jobs = jobs
+        self._left = most_restarts
+        self._lock = threading.Lock()
+        self._pools = [self._new_pool()]  # the last one works, those before it are broken
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Start a task; its result comes through the future that is returned."""
+        outer: Future[T] = Future()
+        self._start(outer, partial(fn, *args, **kwargs))
+        return outer
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes, those of broken pools too."""
+        with self._lock:
+            self._left = 0
+            pools = list(self._pools)
+        for pool in pools:
+            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
+
+    def _new_pool(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self._jobs, get_context("spawn"), initializer=one_thread)
+
+    def _start(self, outer: Future[T], work: Callable[[], T]) -> None:
+        # The lock is never held while a pool is spoken to: a pool that breaks calls back from a
+        # thread that holds the pool's own lock.
+        with self._lock:
+            pool = self._pools[-1]
+        try:
+            inner = pool.submit(work)
+        except BrokenProcessPool:
+            self._again(outer, work, pool)
+            return
+        inner.add_done_callback(lambda done: self._settle(outer, work, pool, done))
+
+    def _settle(
+        self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor, done: Future[T]
+    ) -> None:
+        if done.cancelled():
+            outer.cancel()
+            return
+        error = done.exception()
+        if isinstance(error, BrokenProcessPool):
+            self._again(outer, work, pool)
+        elif not outer.set_running_or_notify_cancel():
+            return
+        elif error is not None:
+            outer.set_exception(error)
+        else:
+            outer.set_result(done.result())
+
+    def _again(self, outer: Future[T], work: Callable[[], T], broken: ProcessPoolExecutor) -> None:
+        with self._lock:
+            if self._pools[-1] is broken and self._left > 0:
+                self._left -= 1
+                self._pools.append(self._new_pool())
+            given_up = self._pools[-1] is broken
+        if not given_up:
+            self._start(outer, work)
+        elif outer.set_running_or_notify_cancel():
+            outer.set_exception(
+                DataError(
+                    "the worker processes ended again and again without being asked to (out of "
+                    "memory, or killed); take fewer with --jobs, 1 for none"
+                )
+            )
+
+
+def one_thread() -> None:
+    """Let numerical libraries use one thread in this process: its siblings have the other cores.
+
+    Acts if it is called before they are loaded.
+    """
+    for name in _THREADS:
+        os.environ.setdefault(name, "1")
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    try:
+        distributed: Any = import_module("distributed")
+    except ImportError:
+        raise ConfigurationError(
+            "--scheduler needs the extra 'cluster': pip install 'pmm[cluster]'"
+        ) from None
+    try:
+        client = distributed.Client(address, timeout=_TIMEOUT, set_as_default=False, name="pmm")
+    except (OSError, ValueError) as error:
+        raise DataError(
+            f"--scheduler {address}: no Dask scheduler answers there within {_TIMEOUT} ({error}); "
+            "start one with 'dask scheduler', or leave the option out"
+        ) from None
+    try:
+        yield client.get_executor(pure=False)
+    except distributed.KilledWorker as error:
+        raise DataError(
+            f"--scheduler {address}: a task's workers died again and again: {error}"
+        ) from error
+    finally:
+        client.close()

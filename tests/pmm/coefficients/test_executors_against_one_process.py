@@ -1,0 +1,116 @@
+"""Every engine gives what one process gives, also when a worker is killed on the way."""
+
+import multiprocessing
+import warnings
+from collections.abc import Iterator
+
+import pytest
+
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.parallel import LocalProcesses, open_executor
+from tests.pmm.coefficients.work import (
+    always_dies,
+    drawn,
+    killed_once,
+    refuses,
+    squared,
+    threads,
+)
+
+COUNT = 12
+
+
+@pytest.fixture(autouse=True)
+def _nothing_runs_on() -> Iterator[None]:
+    yield
+    assert multiprocessing.active_children() == []
+
+
+def test_one_process_yields_each_result_when_it_is_there() -> None:
+    seen: list[int] = []
+
+    def noted(number: int) -> int:
+        seen.append(number)
+        return number
+
+    with open_executor(jobs=1) as executor:
+        results = executor.map(noted, range(3))
+        assert next(results) == 0
+        assert seen == [0]
+        assert executor.submit(noted, 9).result() == 9
+        with pytest.raises(ValueError, match="number 4"):
+            executor.submit(refuses, 4).result()
+
+
+def test_two_processes_draw_the_same_numbers_in_the_same_order() -> None:
+    with open_executor(jobs=2) as executor:
+        assert list(executor.map(drawn, range(COUNT))) == [drawn(k) for k in range(COUNT)]
+        assert set(executor.map(threads, range(4))) == {"1"}
+        with pytest.raises(ValueError, match="number 3"):
+            list(executor.map(refuses, [3]))
+
+
+def test_a_killed_process_costs_no_result(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    tasks = [(str(tmp_path), k) for k in range(COUNT)]
+    with open_executor(jobs=2) as executor:
+        assert list(executor.map(killed_once, tasks)) == [drawn(k) for k in range(COUNT)]
+    assert (tmp_path / "killed").exists()
+
+
+def test_work_that_always_kills_is_given_up() -> None:
+    executor = LocalProcesses(1, most_restarts=1)
+    try:
+        with pytest.raises(DataError, match="--jobs"):
+            executor.submit(always_dies, 1).result(timeout=60)
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def test_what_is_left_is_not_begun_after_an_error() -> None:
+    def stop_early() -> None:
+        with open_executor(jobs=2) as executor:
+            results = executor.map(squared, range(1000))
+            assert next(results) == 0
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stop_early()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"jobs": 0}, "at least one"),
+        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "not both"),
+    ],
+)
+def test_impossible_engines_are_refused(options, message) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ConfigurationError, match=message), open_executor(**options):
+        pass
+
+
+@pytest.mark.slow
+def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    distributed = pytest.importorskip("distributed")
+    tasks = [(str(tmp_path), k) for k in range(COUNT)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # distributed's own, of ports and of the killed worker
+        with (
+            distributed.LocalCluster(
+                n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+            ) as cluster,
+            open_executor(scheduler=cluster.scheduler_address) as executor,
+        ):
+            assert list(executor.map(killed_once, tasks)) == [drawn(k) for k in range(COUNT)]
+    assert (tmp_path / "killed").exists()
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    with (
+        pytest.raises(DataError, match=r"127\.0\.0\.1:9: no Dask scheduler"),
+        open_executor(scheduler="tcp://127.0.0.1:9"),
+    ):
+        pass
