@@ -112,13 +112,6 @@ class Core:
         elif c.run is not None and outcome is not Outcome.COMPLETE and not self._ended(c.run):
             self.outcomes.append(_without_recording(c.run, outcome, self.fault))
 
-    def _closed(self, closing: Closing) -> None:
-        self._closing = None
-        found = closing.result()
-        self.outcomes.append(found)
-        if found.reason and found.outcome == Outcome.COMPLETE:
-            self._alarm(found.reason)
-
     def _ended(self, run: RunPlan) -> bool:
         return any(one.run == run.name for one in self.outcomes)
 

@@ -5,8 +5,9 @@ from typing import Final
 from hardware.description.flags import Severity
 from hardware.errors import HardwareError, Reaction
 from pmm.recorder.run_recorder import Outcome
+from pmm.run.closing import Closing
 from pmm.run.core import Core
-from pmm.run.errors import NotAtRestError, OverspeedError
+from pmm.run.errors import NotAtRestError, OverspeedError, RecordingError
 from pmm.run.phases import at_rest
 from pmm.run.states import State
 
@@ -61,6 +62,14 @@ class Stopping(Core):
             measurement.note(type(error).__name__, Severity.VOID, str(error))
         except HardwareError as also:
             self._alarm(str(also))
+
+    def _closed(self, closing: Closing) -> None:
+        """Keep how a run ended; a recording that could not be completed is a fault."""
+        self._closing = None
+        found = closing.result()
+        self.outcomes.append(found)
+        if found.outcome == Outcome.FAULT and self.fault is None:
+            self._found(RecordingError(f"recorder of {found.run}", found.reason))
 
     def _wind_down(self) -> None:
         """In a fault: wait until the axes rest, take their power off, close the recording."""
