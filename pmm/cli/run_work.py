@@ -119,7 +119,9 @@ def _carry_out(job: Job, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
         rig = stack.enter_context(_rig(job, answers, taps))
         view = _view(stack, answers, quiet=quiet)
         executor = stack.enter_context(_executor(job.real_time))
-        recording = Recording(rig, job.rig_file, job.plan, job.folder, _utc, taps, _provenance(job))
+        recording = stack.enter_context(
+            Recording(rig, job.rig_file, job.plan, job.folder, _utc, taps, _provenance(job))
+        )
         control = RunControl(
             rig, job.rig_file, job.runs, recording.begin, time.monotonic, view, executor
         )

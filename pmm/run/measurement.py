@@ -14,7 +14,7 @@ from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.rig import Rig
-from hardware.roles import Pulse, Sampled
+from hardware.roles import Pulse
 from pmm.plan.run_plan import LoadStep, RunPlan
 from pmm.recorder.live_path import as_record
 from pmm.run.errors import GateVoidError, OverloadError
@@ -22,7 +22,7 @@ from pmm.run.gate import Gate, GateState
 from pmm.run.journal import Journal, kept
 from pmm.run.push import PushRecord
 from pmm.run.readings import needles, rows_at_rest, rows_of, worst_relative
-from pmm.run.sampler import Sampler
+from pmm.run.sampler import Sampler, sampled_devices
 from pmm.run.status import HarmonicRow
 
 FloatArray = NDArray[np.float64]
@@ -292,14 +292,3 @@ class Measurement:
                 f"{value:g} {one.unit} is beyond its safe load, {self._limits[row]:g} {one.unit}; "
                 "reduce amplitude or frequency, and look at the gauge before the next run",
             )
-
-
-def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
-    """Return the devices whose samples a run records: shaft and force channels."""
-    shaft = (rig.shaft,) if rig.shaft is not None and rig.shaft.channels else ()
-    return (*shaft, *rig.forces)
-
-
-def header_channels(rig: Rig) -> tuple[Channel, ...]:
-    """Return the channels of a run in the order of its samples."""
-    return tuple(c for one in sampled_devices(rig) for c in one.channels)

@@ -16,7 +16,8 @@ from pmm.recorder.disk import DiskWatch, bytes_per_s
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.run_recorder import RunRecorder
 from pmm.run.journal import Taps, kept
-from pmm.run.measurement import LiveOptions, Measurement, header_channels, sampled_devices
+from pmm.run.measurement import LiveOptions, Measurement
+from pmm.run.sampler import header_channels, sampled_devices
 
 _SAFE_OVER_FULL: Final = 1.5
 _FRAMES_A_CYCLE: Final = 3.0  # of each node: process data both ways, and its share of the rest
@@ -44,6 +45,15 @@ class Recording:
     utc: Callable[[], str]
     taps: Taps
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __enter__(self) -> "Recording":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Let go of a recorder that was not closed: its journals stay, for ``pmm recover``."""
+        recorder, self.taps.recorder = self.taps.recorder, None
+        if recorder is not None:
+            recorder.__exit__(None, None, None)
 
     def begin(self, run: RunPlan) -> Measurement:
         """Open the recorder of a run and begin to record.

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.channels import Channel  # noqa: TC001
+from hardware.description.channels import Channel
+from hardware.rig import Rig
 from hardware.roles import Block, Sampled
 
 FloatArray = NDArray[np.float64]
@@ -112,3 +113,14 @@ class Sampler:
                 :, start - first : until - first
             ]
         return bool(end <= stop + 1)
+
+
+def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
+    """Return the devices whose samples a run records: shaft and force channels."""
+    shaft = (rig.shaft,) if rig.shaft is not None and rig.shaft.channels else ()
+    return (*shaft, *rig.forces)
+
+
+def header_channels(rig: Rig) -> tuple[Channel, ...]:
+    """Return the channels of a run in the order of its samples."""
+    return tuple(c for one in sampled_devices(rig) for c in one.channels)

@@ -96,7 +96,8 @@ class Stopping(Core):
             self._check_rest(_REST_S + self._ramp_s())
             return
         self._close(self._ending)
-        if self._halting or self._next() is None:
+        ended = {one.run for one in self.outcomes} | {c.present.name}
+        if self._halting or all(one.name in ended for one in self.runs):
             for one in self.rig.powered():
                 one.disable()
         self._go(State.STOPPED if self._halting else State.DONE)

@@ -168,12 +168,12 @@ def bench(
             observers=(taps.frame,),
             line_observers=(taps.line,),
         ) as rig,
+        Recording(
+            rig, rig_file, plan, folder, lambda: "2026-01-01T00:00:00+00:00", taps
+        ) as recording,
     ):
         rig.prepare()
         folder.mkdir(parents=True, exist_ok=True)
-        recording = Recording(
-            rig, rig_file, plan, folder, lambda: "2026-01-01T00:00:00+00:00", taps
-        )
 
         def now_s() -> float:
             return world.time_s
