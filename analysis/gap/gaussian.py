@@ -101,7 +101,7 @@ def misfit(residual: FloatArray, nuisances: Nuisances) -> float:
 
 def cosine(a: FloatArray, b: FloatArray, nuisances: Nuisances) -> float:
     """Return the largest cosine between what the nuisances leave of two effects' columns."""
-    first, second = (np.linalg.qr(_root(nuisances, one))[0] for one in (a, b))
+    first, second = (np.linalg.qr(rooted(nuisances, one))[0] for one in (a, b))
     return float(min(1.0, np.linalg.svd(first.T @ second, compute_uv=False)[0]))
 
 
@@ -110,9 +110,9 @@ def left_over(columns: FloatArray, nuisances: Nuisances) -> float:
     return float(np.sqrt(max(float(np.sum(columns * nuisances.whiten(columns))), 0.0)))
 
 
-def _root(nuisances: Nuisances, columns: FloatArray) -> FloatArray:
+def rooted(nuisances: Nuisances, columns: FloatArray) -> FloatArray:
     """Return ``(1 + N N^T)^(-1/2)`` times columns."""
     u, s, _ = np.linalg.svd(nuisances.columns, full_matrices=False)
     shrink = 1.0 - 1.0 / np.sqrt(1.0 + s**2)
-    rooted: FloatArray = columns - u @ (shrink[:, None] * (u.T @ columns))
-    return rooted
+    left: FloatArray = columns - u @ (shrink[:, None] * (u.T @ columns))
+    return left

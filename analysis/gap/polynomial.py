@@ -1,0 +1,108 @@
+"""The free polynomial control: what a force law without physics makes of the same gap.
+
+Each strut's force may have any polynomial of third degree in that strut's displacement and
+velocity, and its acceleration, in water and in air alike. It is fitted and judged on the withheld
+regimes as the effects are. An effect that predicts no better than that explains nothing.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Component, GapRun, Part, Stack
+from analysis.gap.fit import Fit, Problem
+from analysis.gap.gaussian import left_over, misfit, posterior
+from analysis.gap.observe import FORCES
+
+FloatArray = NDArray[np.float64]
+
+DEGREE: Final = 3
+_POINTS: Final = 128
+_SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a term's prior, in sigma
+
+
+def polynomial(problem: Problem) -> Fit:
+    """Return the control as a hypothesis without a name, its prior as wide as fits best."""
+    stack = problem.simulator.stack
+    raw = np.column_stack([one for channel in FORCES for one in _terms(stack, channel)])
+    raw = raw / stack.uncertainty[:, None]
+    sizes = np.array([left_over(one, problem.nuisances) for one in raw.T])
+    shown = sizes > 1e-6
+    unit = raw[:, shown] / sizes[shown]
+    fits = [_fit(problem, size * unit) for size in _SIZES]
+    return max(fits, key=lambda one: one.log_evidence)
+
+
+def _fit(problem: Problem, columns: FloatArray) -> Fit:
+    """Return the hypothesis that the residual is a sum of columns with unit normal weights."""
+    found = posterior(problem.residual, columns, problem.nuisances)
+    signature = columns @ found.mean
+    cost = misfit(problem.residual - signature, problem.nuisances)
+    cost += float(found.mean @ found.mean)
+    shared = problem.nuisances.log_determinant
+    return Fit((), found.mean, columns, signature, cost, found, shared)
+
+
+def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return displacement, velocity and acceleration of a force's strut over a period.
+
+    Returns
+    -------
+    tuple
+        In m, m/s and m/s², each of shape ``(points,)``, from shaft angle 0 on.
+    """
+    point = run.set_point
+    ahead = point.strut_phase_rad if channel == FORCES[1] else 0.0
+    angle = 2.0 * np.pi * np.arange(_POINTS) / _POINTS + ahead
+    omega, radius = 2.0 * np.pi * point.frequency_hz, point.eccentricity_m
+    return (
+        radius * np.sin(angle),
+        radius * omega * np.cos(angle),
+        -radius * omega**2 * np.sin(angle),
+    )
+
+
+def _terms(stack: Stack, channel: str) -> list[FloatArray]:
+    moved = [motion(run, channel) for run in stack.runs]
+    scale = [max(float(np.abs(run[at]).max()) for run in moved) or 1.0 for at in range(3)]
+    laws = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i) if i + j]
+    found = []
+    for i, j in laws:
+        forces = [(x / scale[0]) ** i * (v / scale[1]) ** j for x, v, _ in moved]
+        found.append(components_of(stack, channel, forces))
+    found.append(components_of(stack, channel, [a / scale[2] for _, _, a in moved]))
+    return found
+
+
+def components_of(stack: Stack, channel: str, forces: Sequence[FloatArray]) -> FloatArray:
+    """Return the components of a force that is given over a period of each run.
+
+    Parameters
+    ----------
+    forces
+        For each run, shape ``(points,)``, from shaft angle 0 on.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(observations,)``; 0 in other channels and in what does not repeat.
+    """
+    spectra = [np.fft.rfft(one) / len(one) for one in forces]
+    return np.array(
+        [
+            _part(one, spectra[run]) if one.channel == channel else 0.0
+            for one, run in zip(stack.components, stack.run, strict=True)
+        ]
+    )
+
+
+def _part(one: Component, spectrum: NDArray[np.complex128]) -> float:
+    if one.part is Part.MEAN:
+        return float(spectrum[0].real)
+    if one.part is Part.IN_PHASE:
+        return -2.0 * float(spectrum[one.order].imag)
+    if one.part is Part.QUADRATURE:
+        return 2.0 * float(spectrum[one.order].real)
+    return 0.0

@@ -1,0 +1,104 @@
+"""A nominal model that is far off: go on about the coefficients that the campaign itself fits.
+
+The diagnosis is linear in the free coefficients about what the campaign states. Where a campaign
+says 40 kg of added mass and the water says 75, that no longer holds; so the rig is moved to what
+fits best, by steps, and the diagnosis begins there. How far it was moved is part of the answer.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
+from analysis.gap.forward import Simulator
+from analysis.gap.free import Free, columns, free_numbers, with_coefficients
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.noise import pooled
+from analysis.gap.priors import Priors
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+from sim.rig import SimulatedRig
+
+FloatArray = NDArray[np.float64]
+
+FAR: Final = 3.0  # prior deviations beyond which a coefficient is moved
+_STEPS: Final = 5
+_LONGEST: Final = 4.0
+_SETTLED: Final = 0.3
+
+
+@dataclass(frozen=True)
+class Recentred:
+    """A rig moved to the coefficients that a campaign fits.
+
+    Attributes
+    ----------
+    rig
+        The one that was given where nothing is far off.
+    units
+        By how many prior deviations each coefficient was moved; empty where nothing was.
+    moved
+        The same in each coefficient's own unit.
+    """
+
+    rig: SimulatedRig
+    units: Mapping[str, float] = field(default_factory=dict)
+    moved: Mapping[str, float] = field(default_factory=dict)
+
+
+def recentred(
+    rig: SimulatedRig,
+    runs: Sequence[GapRun],
+    priors: Priors,
+    on: Sequence[Effect] = (),
+    reference_channel: str | None = None,
+) -> Recentred:
+    """Move a rig to the coefficients that fit, if any of them is far from what was stated."""
+    free = free_numbers(rig, priors)
+    stack = Stack.of([_repeating(one) for one in pooled(runs)])
+    simulator = Simulator(rig, stack, tuple(on), reference_channel)
+    owned = np.array([one.is_coefficient for one in free])
+    total = np.zeros(len(free))
+    for number in range(_STEPS):
+        step = np.where(owned, _step(simulator, free, priors), 0.0)
+        if number == 0 and not (np.abs(step) > FAR).any():
+            return Recentred(rig)
+        try:
+            there = with_coefficients(rig, free, list(total + step))
+            Simulator(there, simulator.stack, simulator.on, reference_channel).steady(())
+        except PmmError:
+            break
+        total, simulator = total + step, simulator.with_rig(there)
+        if np.abs(step).max() < _SETTLED:
+            break
+    return _result(simulator.rig, free, total)
+
+
+def _repeating(run: GapRun) -> GapRun:
+    """Return a run without what does not repeat with the shaft: coefficients do not change that."""
+    seen = run.observed
+    kept = [at for at, one in enumerate(seen.components) if one.part in STEADY_PARTS]
+    parts = tuple(seen.components[at] for at in kept)
+    return replace(run, observed=Observation(parts, seen.values[kept], seen.uncertainty[kept]))
+
+
+def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recentred:
+    pairs = [
+        (one, float(unit)) for one, unit in zip(free, total, strict=True) if one.is_coefficient
+    ]
+    return Recentred(
+        rig,
+        {one.name: unit for one, unit in pairs},
+        {one.name: unit * one.deviation for one, unit in pairs},
+    )
+
+
+def _step(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
+    stack = simulator.stack
+    nuisances = Nuisances(columns(simulator, free, priors))
+    left = (stack.values - simulator.steady(())) / stack.uncertainty
+    units = nuisances.fitted(left)[: len(free)]
+    return np.asarray(units * min(1.0, _LONGEST / max(float(np.abs(units).max()), 1e-12)))
