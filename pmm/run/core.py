@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Final, Protocol
 
-from hardware.errors import HardwareError
+from hardware.errors import HardwareError, Reaction
 from hardware.rig import Rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -85,10 +85,17 @@ class Core:
             return
         try:
             measurement.cycle(lateness_s, self._clock())
-        except HardwareError:
+        except HardwareError as error:
             if self.state is not State.FAULT:
                 raise
-            self._mute = True
+            self._worse(error)
+            self._mute = error.reaction < Reaction.QUICK_STOP
+
+    def _worse(self, error: HardwareError) -> None:
+        """Stop more quickly if what was found in a fault asks for more than the fault did."""
+        if all(one.reaction < error.reaction for one in self.rig.faults):
+            self._alarm(str(error))
+            self.rig.latch(error)
 
     def _go(self, state: State) -> None:
         c = self._conduct

@@ -61,7 +61,7 @@ class Stopping(Core):
             measurement.collect()
             measurement.note(type(error).__name__, Severity.VOID, str(error))
         except HardwareError as also:
-            self._alarm(str(also))
+            self._worse(also)
 
     def _closed(self, closing: Closing) -> None:
         """Keep how a run ended; a recording that could not be completed is a fault."""

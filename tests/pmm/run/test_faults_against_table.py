@@ -148,6 +148,17 @@ def test_a_gauge_beyond_its_safe_load_quick_stops(tmp_path: Path) -> None:
         assert recorded_to(tmp_path) - came_s < 1.0
 
 
+def test_a_load_beyond_the_safe_one_makes_a_profile_stop_a_quick_one(tmp_path: Path) -> None:
+    gauges = (Gauge("force_fore", 400.0, safe_load_n=485.0),)
+    with bench(tmp_path, [oscillation(periods=30, max_periods=30)], gauges=gauges) as one:
+        came_s = run_into(one, "push force_fore 600")  # shown as 490 N: saturated
+        assert names(one) == "BridgeSaturatedError"
+        assert any("safe load" in alarm for alarm in one.control.status().alarms)
+        assert one.at_rest()
+        # 1 Hz at 5 Hz/s takes 0.2 s; along the profile it would take 0.5 s.
+        assert recorded_to(tmp_path) - came_s < 0.35
+
+
 def test_an_unplugged_photocell_stops_along_the_profile(tmp_path: Path) -> None:
     tables = {**TABLES, "photocell": {"driver": "timestamper"}}
     runs = [oscillation(periods=30, max_periods=30)]
