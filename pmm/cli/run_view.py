@@ -91,7 +91,7 @@ class LiveView:
             return Group(Text("opening the rig"))
         parts: list[RenderableType] = [
             _head(status),
-            _bar(status),
+            _bar(status, len(self._outcomes)),
             harmonics_table(status.harmonics),
         ]
         parts += [Text(outcome_line(one), style="dim") for one in self._outcomes[-5:]]
@@ -149,16 +149,15 @@ def _head(status: Status) -> "Table":
     return grid
 
 
-def _bar(status: Status) -> "Table":
+def _bar(status: Status, ended: int) -> "Table":
     from rich.progress_bar import ProgressBar
     from rich.table import Table
 
     grid = Table.grid(padding=(0, 2))
     share = status.periods / status.wanted_periods if status.wanted_periods else 0.0
-    done = max(status.run_number - 1, 0) + share
     grid.add_row(
         f"run {status.run_number} of {status.run_count}",
-        ProgressBar(total=max(status.run_count, 1), completed=done, width=30),
+        ProgressBar(total=max(status.run_count, 1), completed=ended + share, width=30),
         f"gate {status.gate}, period {status.periods} of {status.wanted_periods}",
         ProgressBar(total=1.0, completed=share, width=30),
     )
