@@ -15,6 +15,7 @@ _COMMANDS = {
     "demo": "pmm.cli.demo",
     "devices": "pmm.cli.devices",
     "inertia": "pmm.cli.inertia",
+    "evaluate": "pmm.cli.run_evaluate",
     "run": "pmm.cli.run",
     "effects": "pmm.cli.effects",
     "plan": "pmm.cli.plan",
