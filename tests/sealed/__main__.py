@@ -43,9 +43,9 @@ def generate_command(
 @click.option("--output", required=True, type=click.Path(path_type=Path))
 def run_command(key: Path, run: Path, output: Path) -> None:
     """Carry out the further RUN (a JSON file) in the reality of the case with this KEY."""
-    from tests.sealed.generator.further import carried_out
+    from tests.sealed.generator.further import carried_out, case_of
 
-    carried_out(key, json.loads(run.read_text()), output)
+    carried_out(case_of(key), json.loads(run.read_text()), output)
 
 
 if __name__ == "__main__":

@@ -75,5 +75,3 @@ def change(effect: Effect, size: float, run: Run = HEAVE, **drawn: float) -> Pha
 def scaled(run: Run, **changes: float) -> Run:
     """Return a run at another frequency or eccentricity."""
     return replace(run, **changes)  # type: ignore[arg-type]
-
-

@@ -196,5 +196,7 @@ def test_dead_weight_takes_up_a_joint_that_the_load_throws_about() -> None:
         p[P.KNOCK] = 1e-4
         return float(abs((phasors(p, run) - clean).of["force"][3]))
 
-    assert third(0.0) > 0.3
+    square_wave = 4.0 * 1e-4 / (3.0 * PI)
+    # Flight and impact can only add to what a square wave of the clearance would load.
+    assert third(0.0) > abs(impedance(3)) * square_wave
     assert third(400.0) < 0.01 * third(0.0)

@@ -70,6 +70,8 @@ _DRIVE = (
            change=_droop, settles=None, parameter="droop_rad_s_n_m"),
     Effect("load-ripple", DRIVE, "light shaft with a loop of 0.1 Hz", 0.02, 0.5,
            change=_load_ripple, settles=None),
+    Effect("gear-backlash", DRIVE, "impacts in the gear's clearance", 5e-4, 5e-3,
+           {P.BACKLASH: 1.0}, settles=None),
     Effect("frequency-error", DRIVE, "set speed off", 1e-3, 0.01, {P.SPEED_ERROR: 1.0},
            signed=True, parameter="relative"),
 )  # fmt: skip
@@ -87,6 +89,8 @@ _MECHANISM = (
            fixed=True),
     Effect("joint-play", MECHANISM, "play taken up exponentially with travel", 5e-5, 5e-4,
            {P.PLAY: 1.0}, sets=CONTACT, settles=1.5, parameter="half_play_m"),
+    Effect("free-play", MECHANISM, "clearance with impacts that the load crosses", 5e-5, 5e-4,
+           {P.KNOCK: 1.0}, sets=CONTACT, settles=None, parameter="half_play_m"),
 )  # fmt: skip
 
 _STRUCTURE = (

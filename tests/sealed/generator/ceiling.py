@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,14 +36,21 @@ class Library:
     norms: FloatArray  # at typical size
 
     @classmethod
-    def of(cls, situation: Situation, projection: Projection, campaign: Campaign) -> "Library":
+    def of(cls, situation: Situation, projection: Projection, campaign: Campaign) -> Self:
         """Return the library of all effects that this rig can have and these runs can show."""
         known = [effect for effect in CATALOGUE if applicable(effect, campaign)]
-        columns = [projection.left(situation.tamed(e, e.typical)[1]) for e in known]
+        return cls.out_of(known, [situation.tamed(e, e.typical)[1] for e in known], projection)
+
+    @classmethod
+    def out_of(
+        cls, effects: Sequence[Effect], signatures: Sequence[FloatArray], projection: Projection
+    ) -> Self:
+        """Return the library of these signatures, those that vanish left out."""
+        columns = [projection.left(signature) for signature in signatures]
         norms = np.array([float(np.linalg.norm(column)) for column in columns])
         seen = np.flatnonzero(norms > VANISHES)
         units = np.column_stack([columns[i] / norms[i] for i in seen])
-        return cls(tuple(known[i] for i in seen), units, norms[seen])
+        return cls(tuple(effects[int(i)] for i in seen), units, norms[seen])
 
     @property
     def names(self) -> list[str]:
@@ -92,13 +100,13 @@ def harmonic_blocks(runs: Sequence[Run], rig: Rig) -> list[NDArray[np.int_]]:
 
 def unknown_power(rest: FloatArray, blocks: Sequence[NDArray[np.int_]]) -> float:
     """Return the probability that a remainder is seen: all features at once, or one block."""
-    from scipy.stats import chi2, ncx2
+    from scipy.special import chdtri, chndtr
 
-    whole = float(rest @ rest)
-    power = ncx2.sf(chi2.ppf(1.0 - FALSE_ALARM / 2.0, len(rest)), len(rest), whole)
-    limit = chi2.ppf(1.0 - FALSE_ALARM / 2.0 / len(blocks), len(blocks[0]))
-    largest = max(float(rest[block] @ rest[block]) for block in blocks)
-    return float(max(power, ncx2.sf(limit, len(blocks[0]), largest)))
+    whole, largest = float(rest @ rest), max(float(rest[b] @ rest[b]) for b in blocks)
+    few, many, part = len(blocks[0]), len(rest), FALSE_ALARM / 2.0
+    missed = chndtr(chdtri(many, part), many, whole)
+    missed_block = chndtr(chdtri(few, part / len(blocks)), few, largest)
+    return float(1.0 - min(missed, missed_block))
 
 
 def _greedy(library: Library, matched: FloatArray) -> NDArray[np.int_]:

@@ -38,8 +38,9 @@ _KEPT = _kept()
 
 def compiled(function: FunctionT) -> FunctionT:
     """Return the function compiled, its code kept for the next process, its type as it was."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = _KEPT
+    settings: Any = numba.config
+    before = settings.CACHE_DIR
+    settings.CACHE_DIR = _KEPT
     try:
         made = numba.njit(
             forceinline=function.__name__ != "integrate",
@@ -50,5 +51,5 @@ def compiled(function: FunctionT) -> FunctionT:
             fastmath={"contract", "arcp", "nsz"},
         )(function)
     finally:
-        numba.config.CACHE_DIR = before
+        settings.CACHE_DIR = before
     return cast("FunctionT", made)

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tests.sealed.generator.gauges import between
 from tests.sealed.generator.parameters import FloatArray
-from tests.sealed.generator.rig import CHANNELS, Record, Rig, Run
+from tests.sealed.generator.rig import CHANNELS, DITHER, Record, Rig, Run
 
 ORDERS = 6
 POINTS = 32  # per revolution; lines beyond 16 per revolution fold, the mains has lines of its own
@@ -70,10 +71,8 @@ def reference(record: Record, run: Run, sensors: tuple[str, ...]) -> Reference:
 
 def resampled(record: Record, ref: Reference, periods: int) -> FloatArray:
     """Return all channels at even angles of whole revolutions, the shaft's less a straight one."""
-    from scipy.interpolate import CubicSpline
-
     times = ref.opens_s + ref.period_s * np.arange(periods * POINTS) / POINTS
-    values = np.asarray(CubicSpline(record.times_s, record.channels, axis=1)(times))
+    values = between(np.ascontiguousarray(record.channels), times * record.sample_rate_hz)
     values[0] -= 2.0 * np.pi * (times - ref.opens_s) / ref.period_s
     return values
 
@@ -98,7 +97,7 @@ def density(rig: Rig, channel: int, frequency_hz: FloatArray) -> FloatArray:
     """Return the spectral density of a channel's noise, a sample's variance for white noise."""
     noise = rig.noise
     flat = (
-        noise.step_rad**2 / 12.0,
+        noise.step_rad**2 * (1.0 / 12.0 + DITHER**2),
         noise.displacement_m**2,
         noise.displacement_m**2,
         noise.white_n**2 + noise.step_n**2 / 12.0,

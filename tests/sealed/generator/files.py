@@ -20,7 +20,7 @@ from tests.sealed.generator.features import (
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.priors import STATED
 from tests.sealed.generator.recordings import FOREIGN, set_point, write_csv, write_netcdf
-from tests.sealed.generator.rig import CHANNELS, Record, Rig, Run
+from tests.sealed.generator.rig import CHANNELS, DITHER, Record, Rig, Run
 
 FOREIGN_SHARE = 0.2
 
@@ -65,7 +65,7 @@ def _acquisition(rig: Rig) -> dict[str, Any]:
     noise = rig.noise
     force = {"noise_rms": round(noise.white_n, 3), "resolution": noise.step_n}
     all_rows = {
-        "shaft_angle": {"resolution": noise.step_rad},
+        "shaft_angle": {"noise_rms": DITHER * noise.step_rad, "resolution": noise.step_rad},
         "displacement_aft": {"noise_rms": noise.displacement_m},
         "displacement_fore": {"noise_rms": noise.displacement_m},
         "force_aft": force,

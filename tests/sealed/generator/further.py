@@ -1,4 +1,4 @@
-"""Further runs: carried out in a case's own reality, and weighed by what they tell."""
+"""Further runs, carried out in a case's own reality."""
 
 import json
 import tomllib
@@ -10,13 +10,9 @@ from typing import Any
 import numpy as np
 
 from tests.sealed.generator.case import Case, make
-from tests.sealed.generator.ceiling import Library
-from tests.sealed.generator.priors import priors
 from tests.sealed.generator.recordings import write_netcdf
 from tests.sealed.generator.rig import Run
-from tests.sealed.generator.signatures import Projection, Situation
 
-DRAWS = 200
 # Number of the noise of a further run; those of the campaign count from 0.
 FIRST = 1000
 _KEYS = {
@@ -54,9 +50,8 @@ def parsed(wanted: Mapping[str, Any], last: Run) -> Run:
     return Run(name="further", kind=kind, hour=last.hour + 0.1, **given)
 
 
-def carried_out(key: Path, wanted: Mapping[str, Any], output: Path, number: int = 0) -> None:
+def carried_out(case: Case, wanted: Mapping[str, Any], output: Path, number: int = 0) -> None:
     """Write the recording of a further run; ``number`` sets the noise of several apart."""
-    case = case_of(key)
     run = parsed(wanted, case.campaign.runs[-1])
     record = case.recorded(run, FIRST + number)
     write_netcdf(output, record, run, case.campaign.rig)
@@ -82,34 +77,3 @@ def possible(case_toml: Path, rng: np.random.Generator) -> dict[str, Any]:
     phase = float(rng.choice(rig["strut_phase_rad"]))
     return {"kind": kind, "frequency_hz": frequency, "strut_phase_rad": phase, "medium": medium,
             **drawn}  # fmt: skip
-
-
-def log_odds(case: Case, extra: tuple[Run, ...] = ()) -> float:
-    """Return the mean log-odds of the true class for a linear matcher with flat priors.
-
-    The matcher weighs each effect by what it explains, over draws of the noise; ``extra`` are
-    further runs beside the campaign's.
-    """
-    campaign = replace(case.campaign, runs=(*case.campaign.runs, *extra))
-    situation = Situation(campaign.rig, campaign.runs, case.situation.parameters)
-    projection = Projection.of(situation, priors(campaign.believed))
-    library = Library.of(situation, projection, campaign)
-    p = situation.parameters
-    for effect in case.content.effects:
-        p = effect.put(p)
-    signature = projection.left(situation.gap(p))
-    rng = np.random.default_rng([case.seed, case.index, 4])
-    scores = library.scores(library.noise(rng)[:DRAWS] + library.units.T @ signature) / 2.0
-    weights = np.exp(scores - scores.max(axis=1, keepdims=True))
-    weights /= weights.sum(axis=1, keepdims=True)
-    right = {name for answer in case.content.right for name in answer}
-    own = weights[:, [name in right for name in library.names]].sum(axis=1)
-    own = np.clip(own, 1e-9, 1.0 - 1e-9)
-    return float(np.mean(np.log(own / (1.0 - own))))
-
-
-def value(key: Path, wanted: Mapping[str, Any]) -> float:
-    """Return by how much a further run raises the log-odds of the true class."""
-    case = case_of(key)
-    run = parsed(wanted, case.campaign.runs[-1])
-    return log_odds(case, (run,)) - log_odds(case)

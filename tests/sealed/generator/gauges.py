@@ -1,4 +1,4 @@
-"""Hysteresis of a gauge as a sum of play operators (Prandtl and Ishlinskii), compiled."""
+"""Loops over the samples of a channel, compiled: hysteresis, filters, reading between samples."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ ELEMENTS = 24
 
 @compiled
 def loop_of(force: FloatArray, strength: float) -> FloatArray:
-    """Return what hysteresis adds to a reading, for the force's whole history.
+    """Return what hysteresis adds to a reading: a sum of play operators (Prandtl, Ishlinskii).
 
     The density of the elements is even up to the largest force, so that the loop's width grows
     with the square of the force, as Rayleigh's does; ``strength`` is his beta, 1/N.
@@ -24,3 +24,33 @@ def loop_of(force: FloatArray, strength: float) -> FloatArray:
             state[i] = min(max(state[i], force[n] - reach), force[n] + reach)
             added[n] += 2.0 * strength * width * (state[i] - force[n])
     return added
+
+
+@compiled
+def recursive(signal: FloatArray, decay: float, late: float, early: float) -> FloatArray:
+    """Return y of ``y_n = decay y_(n-1) + late u_n + early u_(n-1)``, settled at the first u."""
+    out = np.empty(len(signal))
+    out[0] = signal[0] * (late + early) / (1.0 - decay)
+    for n in range(1, len(signal)):
+        out[n] = decay * out[n - 1] + late * signal[n] + early * signal[n - 1]
+    return out
+
+
+@compiled
+def between(rows: FloatArray, places: FloatArray) -> FloatArray:
+    """Return rows ``(channels, samples)`` at places in samples, by the quintic through six."""
+    out = np.empty((rows.shape[0], len(places)))
+    weights = np.empty(6)
+    for i in range(len(places)):
+        first = min(max(int(np.floor(places[i])) - 2, 0), rows.shape[1] - 6)
+        u = places[i] - first
+        for k in range(6):
+            weights[k] = 1.0
+            for other in range(6):
+                if other != k:
+                    weights[k] *= (u - other) / (k - other)
+        for row in range(rows.shape[0]):
+            out[row, i] = 0.0
+            for k in range(6):
+                out[row, i] += weights[k] * rows[row, first + k]
+    return out

@@ -21,12 +21,8 @@ def _one_sided(p: FloatArray, size: float) -> None:
 
 
 OUTSIDE: tuple[Effect, ...] = (
-    Effect("gear-backlash", DRIVE, "impacts in the gear's clearance", 5e-4, 5e-3,
-           {P.BACKLASH: 1.0}, settles=None),
     Effect("belt-slip", DRIVE, "belt that creeps with the torque", 1e-4, 5e-3, {P.CREEP: 1.0},
            settles=None),
-    Effect("joint-knock", MECHANISM, "clearance that the load throws about", 5e-5, 5e-4,
-           {P.KNOCK: 1.0}, sets=CONTACT, settles=None),
     Effect("rod-offset", MECHANISM, "guide beside the crank's centre", 0.02, 0.1,
            {P.ROD_OFFSET: 1.0}, signed=True, needs="rod"),
     Effect("carriage-mode", STRUCTURE, "frame at 3.3 Hz, shaken by rails and wheels", 5.0, 300.0,

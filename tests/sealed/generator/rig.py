@@ -20,6 +20,9 @@ CHANNELS = (
 )
 UNITS = ("rad", "m", "m", "N", "N", "m/s")
 
+# Jitter of the encoder's own light, in steps; without it an even speed makes lines of the steps.
+DITHER = 0.5
+
 
 @dataclass(frozen=True)
 class Noise:

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from tests.sealed.generator.gauges import loop_of
+from tests.sealed.generator.gauges import between, loop_of, recursive
 from tests.sealed.generator.mechanism import Truth, happen
 from tests.sealed.generator.parameters import FloatArray, P
-from tests.sealed.generator.rig import Record, Rig, Run
+from tests.sealed.generator.rig import DITHER, Record, Rig, Run
 
 WARM_UP_S = 150.0
 
@@ -43,31 +43,19 @@ def _gauges(p: FloatArray, truth: Truth, times: FloatArray, run: Run) -> FloatAr
 
 def low_passed(signal: FloatArray, cutoff_hz: float, poles: int, rate_hz: float) -> FloatArray:
     """Return the signal behind equal poles, exact for what is straight between samples."""
-    from scipy.signal import lfilter
-
     h = 2.0 * math.pi * cutoff_hz / rate_hz
     decay = math.exp(-h)
     late, early = 1.0 - (1.0 - decay) / h, (1.0 - decay) / h - decay
     for _ in range(poles):
-        level = signal[..., :1]
-        start = (decay + early) * level
-        signal, _state = lfilter([late, early], [1.0, -decay], signal, zi=start)
+        signal = np.array([recursive(row, decay, late, early) for row in signal])
     return np.asarray(signal)
 
 
 def delayed(signal: FloatArray, delay_samples: float) -> FloatArray:
-    """Return the signal of ``delay_samples`` ago, by the cubic through four samples."""
-    n = signal.shape[-1]
-    place = np.clip(np.arange(n) - delay_samples, 1.0, n - 3.0)
-    at = np.floor(place).astype(int)
-    u = place - at
-    weights = (
-        -u * (u - 1) * (u - 2) / 6,
-        (u + 1) * (u - 1) * (u - 2) / 2,
-        -(u + 1) * u * (u - 2) / 2,
-        (u + 1) * u * (u - 1) / 6,
-    )
-    return np.asarray(sum(w * signal[..., at + k - 1] for k, w in enumerate(weights)))
+    """Return the signal of ``delay_samples`` ago."""
+    count = len(signal)
+    places = np.clip(np.arange(count) - delay_samples, 0.0, count - 1.0)
+    return between(signal[None, :], places)[0]
 
 
 def _amplifiers(p: FloatArray, shown: FloatArray, times: FloatArray, rate_hz: float) -> FloatArray:
@@ -83,14 +71,13 @@ def _amplifiers(p: FloatArray, shown: FloatArray, times: FloatArray, rate_hz: fl
 
 def _noise(rig: Rig, count: int, rng: np.random.Generator) -> FloatArray:
     """Return noise of all channels, shape ``(6, count)``."""
-    from scipy.signal import lfilter
-
     noise, draws = rig.noise, rng.standard_normal((8, count))
     keep = math.exp(-1.0 / (noise.colour_s * rig.sample_rate_hz))
     fresh = math.sqrt(1.0 - keep * keep)
-    first = draws[6:, :1] * keep
-    coloured, _ = lfilter([fresh], [1.0, -keep], draws[6:], zi=first)
+    draws[6:, 0] *= (1.0 - keep) / fresh
+    coloured = np.array([recursive(row, keep, fresh, 0.0) for row in draws[6:]])
     out = np.zeros((6, count))
+    out[0] = DITHER * noise.step_rad * draws[0]
     out[1:3] = noise.displacement_m * draws[1:3]
     out[3:5] = noise.white_n * draws[3:5] + noise.coloured_n * coloured
     out[5] = noise.carriage_m_s * draws[5]

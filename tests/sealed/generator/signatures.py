@@ -136,9 +136,14 @@ class Projection:
     def of(cls, situation: Situation, priors: tuple[Prior, ...]) -> Self:
         """Return the projection of a situation with these priors."""
         given = [situation.of_prior(prior) for prior in priors]
-        columns = np.column_stack([*given, situation.of_pulses()])
+        return cls.out_of(np.column_stack([*given, situation.of_pulses()]))
+
+    @classmethod
+    def out_of(cls, columns: FloatArray) -> Self:
+        """Return the projection for nuisances' signatures, ``(features, nuisances)``."""
         stacked = np.vstack([columns, np.eye(columns.shape[1])])
-        return cls(np.linalg.qr(stacked)[0])
+        root = np.linalg.cholesky(stacked.T @ stacked)
+        return cls(np.ascontiguousarray(np.linalg.solve(root, stacked.T).T))
 
     def left(self, signatures: FloatArray) -> FloatArray:
         """Return what is left of signatures, ``(features + nuisances, ...)``."""
