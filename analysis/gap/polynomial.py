@@ -23,16 +23,23 @@ _POINTS: Final = 128
 _SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a term's prior, in sigma
 
 
-def polynomial(problem: Problem) -> Fit:
-    """Return the control as a hypothesis without a name, its prior as wide as fits best."""
+def polynomial(problem: Problem, fitted: NDArray[np.bool_] | None = None) -> Fit:
+    """Return the control as a hypothesis without a name, its prior as wide as fits best.
+
+    Parameters
+    ----------
+    fitted
+        Observations by which to judge that, shape ``(observations,)``; all if not given.
+    """
+    rows = np.ones(len(problem.residual), dtype=bool) if fitted is None else fitted
     stack = problem.simulator.stack
     raw = np.column_stack([one for channel in FORCES for one in _terms(stack, channel)])
     raw = raw / stack.uncertainty[:, None]
     sizes = np.array([left_over(one, problem.nuisances) for one in raw.T])
     shown = sizes > 1e-6
     unit = raw[:, shown] / sizes[shown]
-    fits = [_fit(problem, size * unit) for size in _SIZES]
-    return max(fits, key=lambda one: one.log_evidence)
+    size = max(_SIZES, key=lambda one: log_evidence(problem, one * unit, rows))
+    return _fit(problem, size * unit)
 
 
 def _fit(problem: Problem, columns: FloatArray) -> Fit:
@@ -43,6 +50,14 @@ def _fit(problem: Problem, columns: FloatArray) -> Fit:
     cost += float(found.mean @ found.mean)
     shared = problem.nuisances.log_determinant
     return Fit((), found.mean, columns, signature, cost, found, shared)
+
+
+def log_evidence(problem: Problem, columns: FloatArray, rows: NDArray[np.bool_]) -> float:
+    """Return the evidence of a sum of columns with unit normal weights, on some observations."""
+    part, residual = problem.nuisances.among(rows), problem.residual[rows]
+    found = posterior(residual, columns[rows], part)
+    cost = misfit(residual - columns[rows] @ found.mean, part) + float(found.mean @ found.mean)
+    return -0.5 * (cost + part.log_determinant) + found.log_volume
 
 
 def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -58,7 +58,7 @@ def recentred(
 ) -> Recentred:
     """Move a rig to the coefficients that fit, if any of them is far from what was stated."""
     free = free_numbers(rig, priors)
-    stack = Stack.of([_repeating(one) for one in pooled(runs)])
+    stack = Stack.of([repeating_only(one) for one in pooled(runs)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_coefficient for one in free])
     total = np.zeros(len(free))
@@ -77,7 +77,7 @@ def recentred(
     return _result(simulator.rig, free, total)
 
 
-def _repeating(run: GapRun) -> GapRun:
+def repeating_only(run: GapRun) -> GapRun:
     """Return a run without what does not repeat with the shaft: coefficients do not change that."""
     seen = run.observed
     kept = [at for at, one in enumerate(seen.components) if one.part in STEADY_PARTS]

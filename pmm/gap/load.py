@@ -1,5 +1,6 @@
 """A campaign's folder as the gap diagnosis wants it."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -7,7 +8,9 @@ from pathlib import Path
 from analysis.gap.components import GapRun
 from analysis.gap.observe import Observed, observe
 from analysis.readers import read_recording
-from hardware.description.errors import DataError, PmmError
+from analysis.recording import Recording
+from hardware.description.errors import PmmError
+from hardware.description.oscillator import Range
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
 from sim.rig import SimulatedRig
@@ -33,7 +36,10 @@ class Loaded:
 
 
 def load_campaign(
-    path: Path, withheld: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None
+    path: Path,
+    withheld: Sequence[str] = (),
+    progress: Callable[[str], None] = lambda _: None,
+    sensors: Sequence[str] = (),
 ) -> Loaded:
     """Read and observe the runs of a campaign that oscillate.
 
@@ -43,17 +49,17 @@ def load_campaign(
         The folder, or its ``campaign.toml``.
     withheld
         Runs that are left out, by name: nobody looks at them.
+    sensors
+        Channels to use, ``"photocell"`` among them; all if empty.
 
     Raises
     ------
     ConfigurationError
         If the campaign does not say what the simulation needs.
-    DataError
-        If runs have different references: some with a photocell, some without.
     """
     path = path / CAMPAIGN_FILE if path.is_dir() else path
     campaign = read_campaign(path)
-    rig = campaign.rig()
+    rig = _unlimited(campaign.rig())
     left_out: dict[str, str] = {}
     found: list[tuple[Run, Observed]] = []
     for run in campaign.runs:
@@ -61,22 +67,52 @@ def load_campaign(
             continue
         progress(run.name)
         try:
-            found.append((run, _observed(campaign, run, path.parent)))
+            found.append((run, _observed(campaign, run, path.parent, sensors)))
         except (PmmError, OSError) as error:
             left_out[run.name] = str(error)
-    references = {one.reference_channel for _, one in found}
-    if len(references) > 1:
-        raise DataError(
-            f"{path}: some runs have a photocell and some have none; diagnose them apart"
-        )
-    runs = tuple(_gap_runs(campaign, found))
-    return Loaded(campaign, rig, runs, left_out, next(iter(references), None))
+    reference = _usual_reference(found)
+    for run, one in found:
+        if one.reference_channel != reference:
+            own = one.reference_channel or "the photocell"
+            left_out[run.name] = f"its phase comes from {own}, not as in most runs"
+    kept = [pair for pair in found if pair[0].name not in left_out]
+    return Loaded(campaign, rig, tuple(_gap_runs(campaign, kept)), left_out, reference)
 
 
-def _observed(campaign: Campaign, run: Run, folder: Path) -> Observed:
+def _unlimited(rig: SimulatedRig) -> SimulatedRig:
+    """Return a rig that refuses nothing: the runs were made, and settings are off by a tolerance.
+
+    A run at the oscillator's highest frequency has to be simulated a little above it too.
+    """
+    everything = Range(0.0, math.inf)
+    free = replace(
+        rig.oscillator,
+        frequency_hz=everything,
+        eccentricity_m=everything,
+        force_per_strut_n=math.inf,
+    )
+    return replace(rig, oscillator=free)
+
+
+def _usual_reference(found: Sequence[tuple[Run, Observed]]) -> str | None:
+    """Return the reference that most runs have: phases from different ones cannot be compared."""
+    references = [one.reference_channel for _, one in found]
+    return max(references, key=references.count) if references else None
+
+
+def _observed(campaign: Campaign, run: Run, folder: Path, sensors: Sequence[str]) -> Observed:
     recording = read_recording(run.recording_path(folder), campaign.columns)
+    recording = _only(recording, sensors)
     latency_s = campaign.reference.latency_s
     return observe(replace(recording, name=run.name, set_point=run.set_point), latency_s)
+
+
+def _only(recording: Recording, sensors: Sequence[str]) -> Recording:
+    if not sensors:
+        return recording
+    edges = recording.photocell_edges_s if "photocell" in sensors else None
+    names = [one for one in recording.channel_names if one in sensors]
+    return replace(recording.select(names), photocell_edges_s=edges)
 
 
 def _gap_runs(campaign: Campaign, found: Sequence[tuple[Run, Observed]]) -> Iterator[GapRun]:

@@ -1,0 +1,57 @@
+"""Effects that no oscillation tells apart, or hardly one, and the measurement that does.
+
+The classes of a campaign are computed from its own runs (:mod:`analysis.gap.verdict`); this table
+only says what to measure once a class has more than one member.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Final
+
+_REST = "a record at rest, before and after: an offset stays, friction does not"
+_WEIGHT = "a check weight: a gain shows in it, jitter does not"
+_INJECTION = "a sine fed into all force amplifiers in place of the bridges"
+_AIR = "the same runs in air, without the water's part"
+_PRELOAD = "the same run with a dead weight that takes up the play"
+_SLOW = "a record at rest over the same time: a drift goes on, waves die out"
+
+_SEPARATED: Final = {
+    frozenset(pair): how
+    for how, pairs in {
+        _REST: [("zero-offset", "coulomb-friction"), ("zero-offset", "surface-suction")],
+        _WEIGHT: [
+            ("gain-error", "trigger-jitter"),
+            ("gain-error", "eccentricity-error"),
+            ("gain-error", "cross-talk"),
+        ],
+        _INJECTION: [
+            ("amplifier-lag", "channel-skew"),
+            ("amplifier-lag", "photocell-delay"),
+            ("channel-skew", "photocell-delay"),
+            ("amplifier-lag", "viscous-guides"),
+        ],
+        _AIR: [
+            ("mass-error", "added-mass-error"),
+            ("inertia-error", "added-mass-error"),
+            ("mass-error", "gauge-compliance"),
+            ("viscous-guides", "damping-error"),
+            ("guide-friction", "damping-error"),
+            ("cable", "mass-error"),
+            ("coulomb-friction", "quadratic-damping"),
+            ("gauge-hysteresis", "quadratic-damping"),
+        ],
+        _PRELOAD: [
+            ("joint-play", "gear-backlash"),
+            ("free-play", "joint-play"),
+            ("free-play", "speed-ripple"),
+        ],
+        _SLOW: [("zero-drift", "residual-waves"), ("zero-drift", "temperature")],
+    }.items()
+    for pair in pairs
+}
+
+
+def separating_measurements(names: Sequence[str]) -> tuple[str, ...]:
+    """Return what to measure to tell the members of a class apart; empty where nothing is known."""
+    found = [_SEPARATED.get(frozenset(pair), "") for pair in combinations(sorted(names), 2)]
+    return tuple(dict.fromkeys(one for one in found if one))
