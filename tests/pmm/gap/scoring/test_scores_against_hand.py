@@ -1,0 +1,87 @@
+"""Hand-made answers are scored as the page works them out."""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pmm.gap.scoring.board import read_board
+from pmm.gap.scoring.columns import COLUMNS
+from pmm.gap.scoring.score import Score, score
+from tests.pmm.gap.scoring import handmade
+
+
+def _carry_out(
+    wanted: Sequence[tuple[str, Mapping[str, Any] | None]],
+) -> dict[str, tuple[float, float]]:
+    """Return what the page says that the further runs are worth."""
+    assert [case for case, run in wanted if run is None] == ["case-0012"]
+    assert {case for case, _ in wanted} == set(handmade.gains())
+    return handmade.gains()
+
+
+@pytest.fixture
+def found(board: Path) -> Score:
+    """Return the board's score, its further runs carried out."""
+    return score(read_board(board), _carry_out)
+
+
+def test_every_column_is_worked_out_on_the_page(found: Score) -> None:
+    rows = handmade.page_table("column", "over all but the hidden")
+    stated = {row["column"]: float(row["over all but the hidden"]) for row in rows}
+    reached = {key: figure.value for key, figure in found.rows[0].bins[-1].figures.items()}
+    assert reached == pytest.approx(stated, abs=1e-9)
+    assert set(stated) == {column.key for column in COLUMNS} | {"auroc"}
+
+
+def test_mean_ceiling_and_the_hidden_are_as_on_the_page(found: Score) -> None:
+    row = found.rows[0]
+    stated = re.search(r"mean of the columns is .*? = ([0-9.]+)\. The", handmade.PAGE.read_text())
+    assert stated is not None
+    assert row.mean == pytest.approx(float(stated[1]), abs=1e-9)
+    by_class = row.figure("all", "top_1_by_class")
+    hidden = row.figure("hidden", "brier")
+    assert by_class is not None
+    assert hidden is not None
+    assert by_class.ceiling == pytest.approx(0.92)
+    assert hidden.value == pytest.approx(0.98)
+    assert {one.key: one.cases for one in row.bins} == {
+        "no_gap": 3, "coefficients": 1, "hidden": 1, "low": 1, "middle": 3, "high": 3, "all": 11,
+    }  # fmt: skip
+
+
+def test_angles_split_what_is_outside_the_catalogue(found: Score) -> None:
+    near, far = found.rows[0].angles
+    assert (near.low_deg, near.unknown.value, far.low_deg, far.unknown.value) == (0, 0, 50, 1)
+    assert near.auroc is not None
+    assert far.auroc is not None
+    assert near.auroc.value == pytest.approx(4.5 / 5)
+    assert far.auroc.value == 1.0
+
+
+def test_nobody_gains_by_a_larger_gap_before(board: Path) -> None:
+    plain = score(read_board(board)).rows[0].figure("all", "shrinkage")
+    (board / "answers").rename(board / "answers-honest")
+    (board / "answers").mkdir()
+    for path in (board / "answers-honest").iterdir():
+        row = next(
+            r for r in handmade.page_table("case", "probabilities") if r["case"] == path.stem
+        )
+        boasting = handmade.answer({**row, "off before": str(100.0 * float(row["off before"]))})
+        (board / "answers" / path.name).write_text(json.dumps(boasting))
+    boast, honest = score(read_board(board)).rows
+    assert boast.figure("all", "shrinkage") == honest.figure("all", "shrinkage") == plain
+
+
+def test_an_empty_column_counts_nothing_reached(board: Path) -> None:
+    (board / "answers-silent").mkdir()
+    for row in handmade.page_table("case", "probabilities"):
+        silent = {**handmade.answer(row), "before": {}, "after": {}}
+        path = board / "answers-silent" / f"{row['case']}.json"
+        path.write_text(json.dumps(silent))
+    full, silent_row = score(read_board(board)).rows
+    assert silent_row.figure("all", "shrinkage") is None
+    assert silent_row.mean == pytest.approx(full.mean - 0.9 / 11)
