@@ -14,6 +14,7 @@ _COMMANDS = {
     "analyse": "pmm.cli.analyse",
     "demo": "pmm.cli.demo",
     "devices": "pmm.cli.devices",
+    "gap": "pmm.cli.gap",
     "inertia": "pmm.cli.inertia",
     "evaluate": "pmm.cli.run_evaluate",
     "run": "pmm.cli.run",
