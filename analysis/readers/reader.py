@@ -5,19 +5,23 @@ from dataclasses import replace
 from pathlib import Path
 
 from analysis.readers.columns import ColumnMap
+from analysis.readers.mat import read_mat
 from analysis.readers.netcdf import read_netcdf
+from analysis.readers.tdms import read_tdms
 from analysis.readers.text_recording import read_text_recording
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
 
 TEXT_SUFFIXES = (".csv", ".txt", ".dat", ".asc", ".tsv")
 NETCDF_SUFFIX = ".nc"
+MAT_SUFFIX = ".mat"
+TDMS_SUFFIX = ".tdms"
 
 
 def read_recording(
     path: str | Path, columns: ColumnMap | None = None, *, sample_rate_hz: float | None = None
 ) -> Recording:
-    """Read a recording: ``.nc`` as this project writes it, or text, plain or gzip.
+    """Read a recording: ``.nc`` as this project writes it, text, plain or gzip, MAT or TDMS.
 
     Samples come in SI units on an even grid. What was noticed or repaired is in ``flags``; their
     codes are in ``docs/formats.md``. Samples of a NetCDF file stay on disk until they are sliced.
@@ -25,9 +29,10 @@ def read_recording(
     Parameters
     ----------
     columns
-        Which column of a text file is what; ``None`` believes its headers.
+        Which column of a text file (variable of a MAT, channel of a TDMS file) is what; ``None``
+        believes its headers.
     sample_rate_hz
-        Rate of a text file's samples, in place of its time column, if it has one.
+        Rate of these files' samples, in place of their time column, if they have one.
 
     Raises
     ------
@@ -53,6 +58,10 @@ def read_recording(
     rate = columns.sample_rate_hz
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise ConfigurationError(f"{path}: a sample rate of {rate:g} Hz; it should be above 0")
+    if kind == MAT_SUFFIX:
+        return read_mat(path, columns, name)
+    if kind == TDMS_SUFFIX:
+        return read_tdms(path, columns, name)
     return read_text_recording(path, columns, name)
 
 
@@ -60,9 +69,10 @@ def _kind(path: Path) -> tuple[str, str]:
     """Return the kind of a file, told from its name, and its name without endings."""
     plain = path.with_suffix("") if path.suffix.lower() == ".gz" else path
     kind = plain.suffix.lower()
-    known = (*TEXT_SUFFIXES, NETCDF_SUFFIX) if plain is path else TEXT_SUFFIXES
+    others = (NETCDF_SUFFIX, MAT_SUFFIX, TDMS_SUFFIX)
+    known = (*TEXT_SUFFIXES, *others) if plain is path else TEXT_SUFFIXES
     if kind not in known:
-        endings = ", ".join((*TEXT_SUFFIXES, ".csv.gz", NETCDF_SUFFIX))
+        endings = ", ".join((*TEXT_SUFFIXES, ".csv.gz", *others))
         raise DataError(f"{path}: the kind of file is not known; its name should end in {endings}")
     return kind, plain.stem
 

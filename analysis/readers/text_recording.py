@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,26 @@ READER = "csv"
 Table = Mapping[Header, FloatArray]
 
 
+@dataclass(frozen=True)
+class Origin:
+    """Where columns come from.
+
+    Attributes
+    ----------
+    name
+        Of the recording.
+    reader
+        Which one read them.
+    sha256
+        Of the whole file.
+    """
+
+    path: Path
+    name: str
+    reader: str
+    sha256: str
+
+
 def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
     """Read a recording from a text file; see :func:`analysis.readers.read_recording`."""
     data, where = read_bytes(path), str(path)
@@ -31,6 +51,32 @@ def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
     plan = plan_columns(layout.headers, columns, where)
     values, text_flags = read_numbers(text, layout, plan.wanted, where)
     table = dict(zip(plan.wanted, values, strict=True))
+    origin = Origin(path, name, READER, hashlib.sha256(data).hexdigest())
+    return from_columns(plan, table, columns, origin, text_flags)
+
+
+def from_columns(
+    plan: ColumnPlan,
+    table: Table,
+    columns: ColumnMap,
+    origin: Origin,
+    noticed: tuple[Flag, ...] = (),
+) -> Recording:
+    """Return a recording of columns of numbers, whatever file they stood in.
+
+    Parameters
+    ----------
+    table
+        At least the plan's wanted columns, all of one length.
+    noticed
+        What the file's own reader says of it.
+
+    Raises
+    ------
+    DataError, ConfigurationError
+        As :func:`analysis.readers.read_recording`.
+    """
+    path, where = origin.path, str(origin.path)
     plan = without_idle(plan, table, where)
     base = _time_base(plan, table, columns, where)
     resolved = [channel.resolve() for channel in plan.channels]
@@ -38,18 +84,18 @@ def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
     samples = np.empty((len(channels), base.sample_count))
     for row, part, (_, factor, _) in zip(samples, plan.channels, resolved, strict=True):
         row[:] = _on_grid(table[part.header], base) * factor
-    edges, edges_flags = _edges(columns.photocell, plan, table, base, path, name)
+    edges, edges_flags = _edges(columns.photocell, plan, table, base, path, origin.name)
     repair_flags = repair_missing(samples, channels, where)
     return Recording(
-        name=name,
+        name=origin.name,
         channels=channels,
         samples=samples,
         sample_rate_hz=base.sample_rate_hz,
         start_s=base.start_s,
         photocell_edges_s=edges,
-        provenance=_provenance(path, data, columns),
+        provenance=_provenance(origin, columns),
         flags=(
-            *text_flags,
+            *noticed,
             *plan.flags,
             *base.flags,
             *(flag for _, _, flags in resolved for flag in flags),
@@ -108,10 +154,10 @@ def _edges(
     return edges, edge_flags(edges, None)
 
 
-def _provenance(path: Path, data: bytes, columns: ColumnMap) -> dict[str, str]:
+def _provenance(origin: Origin, columns: ColumnMap) -> dict[str, str]:
     return {
-        "reader": READER,
-        "source_file": path.name,
-        "sha256": hashlib.sha256(data).hexdigest(),
+        "reader": origin.reader,
+        "source_file": origin.path.name,
+        "sha256": origin.sha256,
         "column_map": columns.origin,
     }

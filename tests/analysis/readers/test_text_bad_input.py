@@ -85,7 +85,7 @@ def test_gzip_of_nothing(tmp_path: Path) -> None:
     refused(path, "the file is empty")
 
 
-@pytest.mark.parametrize("name", ["run.mat", "run", "run.nc.gz"])
+@pytest.mark.parametrize("name", ["run.xls", "run", "run.nc.gz"])
 def test_unknown_kind(tmp_path: Path, name: str) -> None:
     refused(written(tmp_path, GOOD, name), r"kind of file is not known.*\.csv")
 

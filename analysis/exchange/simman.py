@@ -1,0 +1,218 @@
+"""SIMMAN's deliverables of a PMM run, out and in.
+
+The workshops ask for ASCII, SI units, model scale: one averaged cycle with t, X, Y, N, x, y, psi,
+u, v, r and the accelerations, the Fourier coefficients, and a description. X, Y and N are those of
+the water and of the model's inertia on the model: the opposite of what the struts exert, which is
+what a dynamometer between them reads. The vertical plane delivers Z and M with z, theta, w and q in
+the same layout. Files: :mod:`analysis.exchange.simman_files`.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+
+SAMPLES: Final = 200  # of the averaged cycle
+
+# Of each plane: force, moment, displacements, velocities and accelerations.
+NAMES: Final[Mapping[Plane, tuple[str, ...]]] = {
+    Plane.HORIZONTAL: ("Y", "N", "y", "psi", "v", "r", "dv/dt", "dr/dt"),
+    Plane.VERTICAL: ("Z", "M", "z", "theta", "w", "q", "dw/dt", "dq/dt"),
+}
+UNITS: Final = ("N", "N m", "m", "rad", "m/s", "rad/s", "m/s2", "rad/s2")
+AHEAD: Final = ("x", "u", "du/dt")
+AHEAD_UNITS: Final = ("m", "m/s", "m/s2")
+
+
+@dataclass(frozen=True)
+class Description:
+    """What stands beside the numbers; ``None`` where it is not known.
+
+    Attributes
+    ----------
+    scale
+        Ship over model.
+    inertia_kg_m2, cg_x_m
+        About and ahead of the origin, the midpoint between the struts.
+    logging_rate_hz, periods
+        Of the recording, and how many of its periods were averaged.
+    """
+
+    run: str
+    campaign: str = ""
+    scale: float | None = None
+    length_m: float | None = None
+    mass_kg: float | None = None
+    inertia_kg_m2: float | None = None
+    cg_x_m: float | None = None
+    water_temperature_deg_c: float | None = None
+    density_kg_m3: float | None = None
+    logging_rate_hz: float | None = None
+    periods: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Deliverables:
+    """One run as SIMMAN asks for it.
+
+    Attributes
+    ----------
+    speed_m_s, drift_rad
+        Of the carriage, and steady.
+    columns
+        The averaged cycle by name, each of :data:`SAMPLES`; ``t`` in seconds.
+    mean, sine, cosine
+        Fourier coefficients by name: ``A0``, and ``S_n``, ``C_n`` of n = 1 to N, of
+        ``A0 + sum S_n sin(n theta) + C_n cos(n theta)``.
+    """
+
+    plane: Plane
+    frequency_hz: float
+    speed_m_s: float
+    drift_rad: float
+    description: Description
+    columns: Mapping[str, FloatArray]
+    mean: Mapping[str, float]
+    sine: Mapping[str, FloatArray]
+    cosine: Mapping[str, FloatArray]
+
+
+def deliverables_of(cycle: Cycle, description: Description, samples: int = SAMPLES) -> Deliverables:
+    """Return a run's averaged cycle and Fourier coefficients.
+
+    Raises
+    ------
+    DataError
+        If the run does not oscillate.
+    """
+    if not cycle.frequency_hz > 0.0:
+        raise DataError(f"{cycle.name}: a run that does not oscillate has no cycle to average")
+    phasors = _all_phasors(cycle)
+    angle = 2.0 * math.pi * np.arange(samples) / samples
+    columns = {"t": angle / (2.0 * math.pi * cycle.frequency_hz)}
+    columns |= {name: _wave(own, samples) for name, own in phasors.items()}
+    columns |= _ahead(cycle, columns)
+    return Deliverables(
+        cycle.plane,
+        cycle.frequency_hz,
+        cycle.speed_m_s,
+        cycle.drift_rad,
+        description,
+        columns,
+        {name: float(own[0].real) for name, own in phasors.items()},
+        {name: own[1:].real.copy() for name, own in phasors.items()},
+        {name: own[1:].imag.copy() for name, own in phasors.items()},
+    )
+
+
+def _all_phasors(cycle: Cycle) -> dict[str, ComplexArray]:
+    """Loads, motion, velocities through the water and accelerations by name, order 0 real."""
+    translation, rotation, force, moment = (_rows(cycle, name) for name in CHANNELS)
+    rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
+    side = 1.0 if cycle.plane is Plane.VERTICAL else -1.0
+    ahead = cycle.speed_m_s * math.cos(cycle.drift_rad)
+    velocity = rate * translation + side * ahead * rotation
+    velocity[0] += side * cycle.speed_m_s * math.sin(cycle.drift_rad)
+    turning = rate * rotation
+    values = (-force, -moment, translation, rotation, velocity, turning,
+              rate * velocity, rate * turning)  # fmt: skip
+    found = dict(zip(NAMES[cycle.plane], values, strict=True))
+    if cycle.has_surge:
+        found = {"X": -_rows(cycle, SURGE_FORCE), **found}
+    return found
+
+
+def _rows(cycle: Cycle, name: str) -> ComplexArray:
+    places = [cycle.phasors.index(at_order(name, n)) for n in range(cycle.orders + 1)]
+    return np.array(cycle.phasors.values[places])
+
+
+def _ahead(cycle: Cycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return x, u and du/dt of a carriage that keeps its speed while the model's heading turns.
+
+    ``u = U cos(beta + psi) + y' sin(psi)``, in the vertical plane ``- z' sin(theta)``: what
+    carriage and struts move along the model's own axis.
+    """
+    names = NAMES[cycle.plane]
+    angle, turning = columns[names[3]], columns[names[5]]
+    side = -1.0 if cycle.plane is Plane.VERTICAL else 1.0
+    rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
+    across, faster = (_wave(rate**k * _rows(cycle, CHANNELS[0]), len(angle)) for k in (1, 2))
+    heading = cycle.drift_rad + angle
+    along = cycle.speed_m_s * np.cos(heading) + side * across * np.sin(angle)
+    slope = -cycle.speed_m_s * np.sin(heading) * turning
+    slope += side * (faster * np.sin(angle) + across * np.cos(angle) * turning)
+    return {"x": cycle.speed_m_s * columns["t"], "u": along, "du/dt": slope}
+
+
+def _wave(phasors: ComplexArray, samples: int) -> FloatArray:
+    """Return one cycle of a quantity from its phasors, of which the first is the mean."""
+    angle = 2.0 * math.pi * np.arange(samples) / samples
+    turns = np.exp(1j * np.arange(1, len(phasors))[:, None] * angle)
+    return np.asarray((phasors[1:, None] * turns).imag.sum(axis=0) + phasors[0].real)
+
+
+def fourier(
+    columns: Mapping[str, FloatArray], orders: int = 6
+) -> tuple[dict[str, float], dict[str, FloatArray], dict[str, FloatArray]]:
+    """Return mean, sines and cosines of an evenly sampled cycle that does not repeat its start."""
+    count = len(columns["t"])
+    angle = 2.0 * math.pi * np.arange(count) / count
+    highest = min(orders, (count - 1) // 2)
+    turns = 2.0 / count * np.exp(-1j * np.arange(1, highest + 1)[:, None] * angle)
+    mean, sine, cosine = {}, {}, {}
+    for name, values in columns.items():
+        if name in ("t", *AHEAD):
+            continue
+        found = turns @ values  # C_n - i S_n
+        mean[name], sine[name], cosine[name] = float(values.mean()), -found.imag, found.real
+    return mean, sine, cosine
+
+
+def _phasor(one: Deliverables, name: str, order: int) -> complex:
+    if order == 0:
+        return complex(one.mean[name])
+    return complex(one.sine[name][order - 1], one.cosine[name][order - 1])
+
+
+def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> Cycle:
+    """Return deliverables as a cycle, so that another tank's runs give coefficients too.
+
+    Parameters
+    ----------
+    half_spacing_m
+        A length that makes rotations comparable with translations; any of the model's size does.
+    """
+    names = NAMES[one.plane][:4]
+    signs = dict(zip(names, (-1.0, -1.0, 1.0, 1.0), strict=True))
+    order: tuple[str, ...] = (names[2], names[3], names[0], names[1])
+    channels: tuple[str, ...] = CHANNELS
+    if "X" in one.mean:
+        order, channels = (*order, "X"), (*CHANNELS, SURGE_FORCE)
+        signs["X"] = -1.0
+    orders = len(one.sine[names[0]])
+    values, labels = [], []
+    for n in range(orders + 1):
+        for name, channel in zip(order, channels, strict=True):
+            values.append(signs[name] * _phasor(one, name, n))
+            labels.append(at_order(channel, n))
+    units = ("m", "rad", "N", "N m", "N")[: len(channels)] * (orders + 1)
+    phasors = Phasors(tuple(labels), units, np.array(values, dtype=np.complex128))
+    return Cycle(
+        one.description.run,
+        one.plane,
+        half_spacing_m,
+        one.frequency_hz,
+        one.speed_m_s,
+        phasors,
+        orders,
+        drift_rad=one.drift_rad,
+        mean_known=True,
+    )

@@ -1,0 +1,184 @@
+"""SIMMAN's deliverables as files: averaged cycle, Fourier coefficients, description; out and in."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray
+from analysis.exchange.ascii_table import read_table, write_table
+from analysis.exchange.simman import (
+    AHEAD,
+    AHEAD_UNITS,
+    NAMES,
+    UNITS,
+    Deliverables,
+    Description,
+    fourier,
+)
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+
+CYCLE_FILE: Final = "cycle.dat"
+FOURIER_FILE: Final = "fourier.dat"
+DESCRIPTION_FILE: Final = "description.txt"
+_FILES: Final = (CYCLE_FILE, FOURIER_FILE, DESCRIPTION_FILE)
+_LOADS_ARE: Final = "of the water and of the model's inertia on the model"
+
+
+def write_simman(one: Deliverables, folder: Path, *, overwrite: bool = False) -> Path:
+    """Write ``cycle.dat``, ``fourier.dat`` and ``description.txt`` into a folder.
+
+    Raises
+    ------
+    DataError
+        If one of them is there and may not be replaced.
+    """
+    there = [name for name in _FILES if (folder / name).exists()]
+    if there and not overwrite:
+        raise DataError(f"{folder}: {', '.join(there)} there already; choose another folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    units = _units(one.plane)
+    names = [name for name in ("t", *units) if name in one.columns]
+    title = f"{one.description.run}: one averaged cycle, SI units, model scale"
+    write_table(
+        folder / CYCLE_FILE,
+        title,
+        [(name, "s" if name == "t" else units[name]) for name in names],
+        np.stack([one.columns[name] for name in names], axis=1),
+    )
+    orders = len(next(iter(one.sine.values())))
+    heads = [("channel", ""), ("A0", "SI")]
+    heads += [(f"{part}{n}", "SI") for n in range(1, orders + 1) for part in "SC"]
+    rows = []
+    for name in one.mean:
+        parts = np.stack((one.sine[name], one.cosine[name]), axis=1).ravel()
+        rows.append([one.mean[name], *parts])
+    write_table(
+        folder / FOURIER_FILE,
+        f"{one.description.run}: A0 + sum Sn sin(n theta) + Cn cos(n theta), theta = 0 at t = 0",
+        heads,
+        np.array(rows),
+        labels=list(one.mean),
+    )
+    (folder / DESCRIPTION_FILE).write_text(_description_text(one), encoding="utf-8")
+    return folder
+
+
+def _units(plane: Plane) -> dict[str, str]:
+    names = NAMES[plane]
+    first = dict(zip(("X", *names[:2]), ("N", *UNITS[:2]), strict=True))
+    return first | dict(zip(AHEAD, AHEAD_UNITS, strict=True)) | dict(
+        zip(names[2:], UNITS[2:], strict=True)
+    )  # fmt: skip
+
+
+def _description_text(one: Deliverables) -> str:
+    rows: list[tuple[str, Any]] = [
+        ("plane", str(one.plane)),
+        ("frequency_hz", one.frequency_hz),
+        ("speed_m_s", one.speed_m_s),
+        ("drift_rad", one.drift_rad),
+        ("loads", _LOADS_ARE),
+        ("axes", "x ahead, y to starboard, z down, origin midway between the struts"),
+    ]
+    rows += [(item.name, getattr(one.description, item.name)) for item in fields(one.description)]
+    lines = (f"{key} = {_shown(value)}" for key, value in rows if value not in (None, ""))
+    return "\n".join(lines) + "\n"
+
+
+def _shown(value: Any) -> str:
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def read_simman(folder: Path) -> Deliverables:
+    """Read deliverables: what :func:`write_simman` wrote, or another tank in the same layout.
+
+    Without ``fourier.dat`` the Fourier coefficients are taken from the averaged cycle.
+
+    Raises
+    ------
+    DataError
+        If a file or a column is missing, or a value is not a number; the message names it.
+    """
+    said = _read_description(folder / DESCRIPTION_FILE)
+    plane = _plane(folder, said)
+    heads, values, _ = read_table(folder / CYCLE_FILE)
+    columns = dict(zip(heads, values.T, strict=True))
+    needed = ("t", *NAMES[plane][:4])
+    missing = [name for name in needed if name not in columns]
+    if missing:
+        raise DataError(
+            f"{folder / CYCLE_FILE}: no column {', '.join(missing)} (columns: {', '.join(heads)})"
+        )
+    if (folder / FOURIER_FILE).exists():
+        mean, sine, cosine = _read_fourier(folder / FOURIER_FILE)
+    else:
+        mean, sine, cosine = fourier(columns)
+    return Deliverables(
+        plane,
+        _number(folder, said, "frequency_hz"),
+        _number(folder, said, "speed_m_s"),
+        float(said.get("drift_rad", 0.0)),
+        _description(folder, said),
+        columns,
+        mean,
+        sine,
+        cosine,
+    )
+
+
+def _read_fourier(
+    path: Path,
+) -> tuple[dict[str, float], dict[str, FloatArray], dict[str, FloatArray]]:
+    _, values, labels = read_table(path, labelled=True)
+    return (
+        {name: float(row[0]) for name, row in zip(labels, values, strict=True)},
+        {name: row[1::2].copy() for name, row in zip(labels, values, strict=True)},
+        {name: row[2::2].copy() for name, row in zip(labels, values, strict=True)},
+    )
+
+
+def _read_description(path: Path) -> dict[str, str]:
+    if not path.exists():
+        raise DataError(f"{path}: no such file; it says speed, frequency and plane of the run")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    pairs = (line.partition("=") for line in lines if "=" in line)
+    return {key.strip(): value.strip() for key, _, value in pairs}
+
+
+def _plane(folder: Path, said: Mapping[str, str]) -> Plane:
+    text = said.get("plane", str(Plane.HORIZONTAL))
+    try:
+        return Plane(text)
+    except ValueError:
+        raise DataError(
+            f"{folder / DESCRIPTION_FILE}: plane = {text!r}; it is {' or '.join(Plane)}"
+        ) from None
+
+
+def _number(folder: Path, said: Mapping[str, str], key: str) -> float:
+    try:
+        return float(said[key])
+    except KeyError:
+        raise DataError(f"{folder / DESCRIPTION_FILE}: {key} is missing") from None
+    except ValueError:
+        raise DataError(
+            f"{folder / DESCRIPTION_FILE}: {key} = {said[key]!r} is not a number"
+        ) from None
+
+
+def _description(folder: Path, said: Mapping[str, str]) -> Description:
+    given: dict[str, Any] = {"run": said.get("run", folder.name)}
+    for item in fields(Description):
+        if item.name not in said or item.name == "run":
+            continue
+        if item.name == "campaign":
+            given[item.name] = said[item.name]
+        elif item.name == "periods":
+            given[item.name] = int(_number(folder, said, item.name))
+        else:
+            given[item.name] = _number(folder, said, item.name)
+    return Description(**given)

@@ -1,0 +1,154 @@
+"""Deliverables out and in again are the same, and hold what theory says of the motion."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.coefficients.cycle import SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.phasors import Phasors
+from analysis.exchange.simman import Deliverables, Description, cycle_of, deliverables_of, fourier
+from analysis.exchange.simman_files import read_simman, write_simman
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+
+ORDERS, SPEED, FREQUENCY = 3, 1.2, 0.2
+ABOUT = Description(
+    "yaw-1", "autumn", 45.7, 7.0, 3085.0, 9700.0, -0.02, 17.5, 998.7, 200.0, 5
+)  # fmt: skip
+
+
+def cycle(plane: Plane = Plane.HORIZONTAL, *, drift_rad: float = 0.0, surge: bool = True) -> Cycle:
+    generator = np.random.default_rng(4)
+    channels = ["translation", "rotation", "force", "moment", *([SURGE_FORCE] if surge else [])]
+    sizes = {"translation": 0.1, "rotation": 0.15, "force": 30.0, "moment": 12.0, SURGE_FORCE: 9.0}
+    names, values = [], []
+    for n in range(ORDERS + 1):
+        for name in channels:
+            value = complex(*generator.standard_normal(2)) * sizes[name] / (1 + n) ** 2
+            names.append(at_order(name, n))
+            values.append(value.real if n == 0 else value)
+    units = ("m", "rad", "N", "N m", "N")[: len(channels)] * (ORDERS + 1)
+    phasors = Phasors(tuple(names), units, np.array(values, dtype=complex))
+    return Cycle("yaw-1", plane, 0.5, FREQUENCY, SPEED, phasors, ORDERS, drift_rad=drift_rad)
+
+
+@pytest.mark.parametrize("plane", list(Plane))
+@pytest.mark.parametrize("surge", [True, False])
+def test_out_and_in_is_the_same(tmp_path: Path, plane: Plane, surge: bool) -> None:
+    before = deliverables_of(cycle(plane, drift_rad=0.1, surge=surge), ABOUT)
+    after = read_simman(write_simman(before, tmp_path / "yaw-1"))
+    assert after.description == ABOUT
+    assert (after.plane, after.speed_m_s, after.drift_rad) == (plane, SPEED, 0.1)
+    assert after.frequency_hz == FREQUENCY
+    assert list(after.columns) == [name for name in after.columns if name in before.columns]
+    for name, values in before.columns.items():
+        np.testing.assert_array_equal(after.columns[name], values)
+    for name in before.mean:
+        assert after.mean[name] == before.mean[name]
+        np.testing.assert_array_equal(after.sine[name], before.sine[name])
+        np.testing.assert_array_equal(after.cosine[name], before.cosine[name])
+
+
+@pytest.mark.parametrize("plane", list(Plane))
+def test_deliverables_give_the_cycle_back(plane: Plane) -> None:
+    own = cycle(plane)
+    found = cycle_of(deliverables_of(own, ABOUT))
+    for name in own.phasors.names:
+        expected = own.phasors.values[own.phasors.index(name)]
+        assert found.phasors.values[found.phasors.index(name)] == expected, name
+
+
+def test_the_loads_are_the_opposite_of_what_struts_exert() -> None:
+    own = cycle()
+    found = deliverables_of(own, ABOUT)
+    force = own.phasors.values[own.phasors.index("force 1")]
+    assert found.sine["Y"][0] == -force.real
+    assert found.cosine["Y"][0] == -force.imag
+
+
+def differences(one: Deliverables, name: str) -> np.ndarray:  # type: ignore[type-arg]
+    """Slope of a periodic column, exact for its harmonics."""
+    values, step = one.columns[name], one.columns["t"][1]
+    waves = np.fft.rfft(values)
+    return np.fft.irfft(2j * np.pi * np.fft.rfftfreq(len(values), step) * waves, len(values))
+
+
+@pytest.mark.parametrize(
+    ("plane", "pairs"),
+    [
+        (Plane.HORIZONTAL, [("psi", "r"), ("v", "dv/dt"), ("r", "dr/dt"), ("u", "du/dt")]),
+        (Plane.VERTICAL, [("theta", "q"), ("w", "dw/dt"), ("q", "dq/dt"), ("u", "du/dt")]),
+    ],
+)
+def test_rates_are_the_slopes(plane: Plane, pairs: list[tuple[str, str]]) -> None:
+    one = deliverables_of(cycle(plane, drift_rad=0.15), ABOUT, samples=512)
+    for name, rate in pairs:
+        size = np.abs(one.columns[rate]).max()
+        np.testing.assert_allclose(one.columns[rate], differences(one, name), atol=1e-9 * size)
+
+
+def test_sway_velocity_is_that_through_the_water() -> None:
+    drift = 0.12
+    one = deliverables_of(cycle(drift_rad=drift), ABOUT)
+    own = differences(one, "y") - SPEED * (math.sin(drift) + math.cos(drift) * one.columns["psi"])
+    np.testing.assert_allclose(one.columns["v"], own, atol=1e-12)
+
+
+def test_speed_ahead_is_the_carriage_turned_into_the_model() -> None:
+    drift = 0.12
+    one = deliverables_of(cycle(drift_rad=drift), ABOUT)
+    heading = drift + one.columns["psi"]
+    along = SPEED * np.cos(heading) + differences(one, "y") * np.sin(one.columns["psi"])
+    np.testing.assert_allclose(one.columns["u"], along, atol=1e-12)
+
+
+def test_another_tanks_cycle_without_fourier_file(tmp_path: Path) -> None:
+    before = deliverables_of(cycle(), ABOUT)
+    folder = write_simman(before, tmp_path / "run")
+    (folder / "fourier.dat").unlink()
+    after = read_simman(folder)
+    for name, own in before.sine.items():
+        size = max(1e-12, float(np.abs(own).max()))
+        np.testing.assert_allclose(after.sine[name][:ORDERS], own, atol=1e-12 * max(1, size))
+        np.testing.assert_allclose(after.sine[name][ORDERS:], 0.0, atol=1e-11 * max(1, size))
+    mean, _, _ = fourier(before.columns)
+    assert mean["Y"] == pytest.approx(before.mean["Y"])
+
+
+def spoiled(folder: Path, file: str, old: str, new: str) -> None:
+    text = (folder / file).read_text()
+    assert old in text
+    (folder / file).write_text(text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "message"),
+    [
+        ("description.txt", "frequency_hz = 0.2", "", r"description\.txt: frequency_hz is missing"),
+        ("description.txt", "speed_m_s = 1.2", "speed_m_s = fast", "'fast' is not a number"),
+        ("description.txt", "horizontal", "sideways", "plane = 'sideways'; it is"),
+        ("cycle.dat", "  psi", "  phi", "no column psi"),
+        ("cycle.dat", "0.0000000000000000e+00", "nan", "line 4: a value is not finite"),
+        ("cycle.dat", "0.0000000000000000e+00", "one", "line 4: not all of"),
+        ("cycle.dat", "0.0000000000000000e+00", "", "row 2: 1[0-9] values, "),
+    ],
+)
+def test_spoiled_files_are_named(
+    tmp_path: Path, file: str, old: str, new: str, message: str
+) -> None:
+    folder = write_simman(deliverables_of(cycle(), ABOUT), tmp_path / "run")
+    spoiled(folder, file, old, new)
+    with pytest.raises(DataError, match=message):
+        read_simman(folder)
+
+
+def test_nothing_is_lost(tmp_path: Path) -> None:
+    one = deliverables_of(cycle(), ABOUT)
+    write_simman(one, tmp_path)
+    with pytest.raises(DataError, match=r"cycle\.dat, fourier\.dat, description\.txt there"):
+        write_simman(one, tmp_path)
+    write_simman(one, tmp_path, overwrite=True)
+    with pytest.raises(DataError, match="no such file"):
+        read_simman(tmp_path / "elsewhere")
