@@ -116,7 +116,9 @@ def _options(
         yield from ((one.name, value) for value in _CHOICES[one.name])
     elif magnitude:
         scale = _TYPICAL * _size(one, kind.parameters())
-        yield Axis(one, 0.0, scale, False, (one.typical or 0.1 * scale) / scale)
+        # The logarithm of a scatter is far from linear: one start does not see the others' slope.
+        for share in (1.0,) if kind.repeats or len(kind.parameters()) > 1 else (1.0, 0.1, 0.03):
+            yield Axis(one, 0.0, scale, False, share * (one.typical or 0.1 * scale) / scale)
     elif not kind.repeats:  # of what does not keep step only the size shows, and in which band
         yield from ((one.name, value) for value in _held(one, frequencies_hz))
     elif is_phase(one):

@@ -32,6 +32,7 @@ from analysis.gap.where import Walk, remaining, unknown_stage, walk
 from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium
+from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
@@ -137,9 +138,17 @@ def _problem(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
     stack = Stack.of(pooled(runs))
-    simulator = Simulator(rig, stack, settings.on, settings.reference_channel)
+    on = (*settings.on, *_always(rig, settings.priors))
+    simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = Nuisances(columns(simulator, free, settings.priors))
     return Problem(simulator, nuisances, tuple(one.name for one in free))
+
+
+def _always(rig: SimulatedRig, priors: Priors) -> tuple[Effect, ...]:
+    """Return what every rig has: pulses that scatter a little."""
+    if rig.photocell is None or not priors.pulse_scatter_rad:
+        return ()
+    return (TriggerJitter(priors.pulse_scatter_rad),)
 
 
 def _with_coefficients(

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
+from analysis.gap.observe import STRUTS
 from analysis.gap.priors import Priors
+from hardware.description.channels import SHAFT_ANGLE
 from sim.effects.a3_photocell_angle import PhotocellAngle
 from sim.effects.effect import Effect
 from sim.effects.h11_carriage_speed import CarriageSpeedError
@@ -144,28 +146,67 @@ def with_coefficients(
 def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
     """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
 
-    After those of ``free`` there is a column for each run's frequency and one for each channel's
-    noise: a rig that is noisier than believed has no gap for that.
+    After those of ``free`` there is a column for each displacement sensor, for each run's frequency
+    and phase reference, and for each kind of noise of each channel: a rig that is noisier than believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
-    runs = _frequencies(simulator, base, priors.frequency_relative)
-    return np.column_stack([*found, *runs, *_noise_levels(simulator.stack)])
-
-
-def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> Iterator[FloatArray]:
-    """Yield what a run's own frequency changes, a column for each run."""
+    sensors = _sensors(simulator.stack, base, priors.displacement_gain_relative)
     stack = simulator.stack
-    step = 0.01 * relative
-    moved = replace(simulator, frequency_ratio=1.0 + step).steady(())
-    change = (moved - base) / 0.01 / stack.uncertainty
+    own = [
+        *_by_run(stack, _frequencies(simulator, base, priors.frequency_relative)),
+        *_by_run(stack, _turned(stack, base, priors.reference_rad)),
+    ]
+    return np.column_stack([*found, *sensors, *own, *_noise_levels(stack)])
+
+
+def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:
+    """Yield what a displacement sensor's gain changes, a column for each."""
+    for channel in STRUTS:
+        own = np.array([one.channel == channel for one in stack.components])
+        yield np.where(own, relative * base / stack.uncertainty, 0.0)
+
+
+def _by_run(stack: Stack, change: FloatArray) -> Iterator[FloatArray]:
+    """Yield a change that is each run's own, a column for each run."""
     for number in range(len(stack.runs)):
         yield np.where(stack.run == number, change, 0.0)
 
 
+def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> FloatArray:
+    """Return what a prior deviation of the frequency changes."""
+    moved = replace(simulator, frequency_ratio=1.0 + 0.01 * relative).steady(())
+    return np.asarray((moved - base) / 0.01 / simulator.stack.uncertainty, np.float64)
+
+
+def _turned(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
+    """Return what it changes to count the shaft's angle from a little later."""
+    other = {Part.IN_PHASE: (Part.QUADRATURE, -1.0), Part.QUADRATURE: (Part.IN_PHASE, 1.0)}
+    keys = zip(stack.run.tolist(), stack.components, strict=True)
+    at = {(run, one): number for number, (run, one) in enumerate(keys)}
+    change = np.zeros(len(base))
+    for (run, one), number in at.items():
+        if one.part in other:
+            part, sign = other[one.part]
+            partner = at.get((run, replace(one, part=part)))
+            if partner is not None:
+                change[number] = sign * one.order * angle_rad * base[partner]
+            if one.channel == SHAFT_ANGLE.name:
+                change[number] = 0.0
+    return change / stack.uncertainty
+
+
+# One standard deviation of the logarithm of what no specification tells.
+_LOUDNESS: Final = {
+    Part.BETWEEN: 2.0,
+    Part.LINE: 0.3,
+    Part.CYCLE_SCATTER: 1.0,
+    Part.PERIOD_SCATTER: 0.3,
+}
+
+
 def _noise_levels(stack: Stack) -> Iterator[FloatArray]:
-    """Yield a column for each channel's noise, with a prior of a factor of e."""
-    loud = {Part.BETWEEN: 2.0, Part.CYCLE_SCATTER: 1.0, Part.PERIOD_SCATTER: 1.0}
-    for channel in sorted({one.channel for one in stack.components if one.part in loud}):
-        own = [loud.get(one.part, 0.0) * (one.channel == channel) for one in stack.components]
+    """Yield a column for each kind of noise of each channel, the same in all runs."""
+    for kind in dict.fromkeys(one for one in stack.components if one.part in _LOUDNESS):
+        own = [_LOUDNESS[kind.part] * (one == kind) for one in stack.components]
         yield np.array(own) / stack.uncertainty

@@ -25,8 +25,14 @@ class Priors:
         Of the photocell's mark.
     frequency_relative
         Of each run's frequency, which is measured besides.
+    pulse_scatter_rad
+        By which the photocell's pulses scatter on any rig; not a tolerance but a belief.
+    reference_rad
+        Of each run's phase reference: pulses that scatter, a shaft that does not turn quite evenly.
     carriage_speed_relative
         Of the carriage's mean speed.
+    displacement_gain_relative
+        Of each strut's displacement sensor.
     """
 
     added_mass_relative: float = 0.2
@@ -42,7 +48,10 @@ class Priors:
     strut_phase_rad: float = 1e-3
     photocell_angle_rad: float = 1e-3
     frequency_relative: float = 1e-4
+    pulse_scatter_rad: float = 2e-4
+    reference_rad: float = 1e-4
     carriage_speed_relative: float = 1e-3
+    displacement_gain_relative: float = 5e-4
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 

@@ -24,7 +24,7 @@ SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a cell's devia
 _OWN = 0.2  # share of a cell's variance that is every run's own
 _SWEEPS = 2
 _NOWHERE = 6.0  # log odds against a deviation that shows in no cell
-_CHOICE = 3.0  # log odds against any one cell
+_CHOICE = 7.0  # log odds against any one cell of some sixty, and any one size
 
 
 @dataclass(frozen=True, eq=False)
