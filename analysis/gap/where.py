@@ -98,7 +98,7 @@ BESIDE: Final = "beside the harmonics"
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
     stack = problem.simulator.stack
-    left = remaining(problem, problem.residual)
+    left = left_by_step(problem, problem.residual)
     steps = [gap_of(stack.components, left, what, inside) for what, inside in _STEPS.items()]
     fed = _fed(problem)
     if fed is not None:
@@ -110,6 +110,23 @@ def walk(problem: Problem) -> Walk:
 def remaining(problem: Problem, residual: FloatArray) -> FloatArray:
     """Return what the free numbers leave of a whitened difference."""
     return residual - problem.nuisances.columns @ problem.nuisances.fitted(residual)
+
+
+def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
+    """Return what the free numbers leave, each step judged by itself and those upstream of it.
+
+    Fitted to everything at once, the settings of the drive would take up what the forces show, and
+    the strut's motion would seem to deviate.
+    """
+    parts = problem.simulator.stack.components
+    found, upstream = np.zeros_like(residual), np.zeros(len(parts), dtype=bool)
+    for inside in _STEPS.values():
+        own = np.array([inside(one) for one in parts])
+        upstream |= own
+        part = problem.nuisances.among(upstream)
+        fitted = part.fitted(residual[upstream])
+        found[own] = residual[own] - problem.nuisances.columns[own] @ fitted
+    return found
 
 
 _STEPS: Final[dict[str, Callable[[Component], bool]]] = {

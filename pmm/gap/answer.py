@@ -3,7 +3,7 @@
 ``docs/sealed.md`` has the keys; :data:`SCHEMA` names them.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -54,7 +54,7 @@ def answer(
             sorted([own, *(other for other, _ in alike)])
             for own, alike in diagnosis.classes.items()
         ],
-        "effects": [] if best is None else list(_effects(best)),
+        "effects": [] if best is None else list(effect_rows(best)),
         "next_run": None if not diagnosis.proposals else next_run(diagnosis.proposals[0]),
     }
     return found | foretold.as_dict()
@@ -66,7 +66,7 @@ def _summing_to_one(shares: Mapping[str, float]) -> dict[str, float]:
     return {name: share / total for name, share in rounded.items()}
 
 
-def _effects(fit: Fit) -> Any:
+def effect_rows(fit: Fit) -> Iterator[dict[str, Any]]:
     """Yield each effect with its parameters and their 95 % intervals."""
     spread = np.sqrt(np.diagonal(fit.posterior.covariance))
     at = 0

@@ -1,0 +1,52 @@
+"""``pmm gap CAMPAIGN``: where rig and simulation differ, why, and how far the gap shrinks."""
+
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.argument("campaign", metavar="CAMPAIGN")
+@click.option(
+    "--effects",
+    multiple=True,
+    metavar="NAME|FILE.py",
+    help="Consider this effect only, or those of a Python file of your own too; repeatable.",
+)
+@click.option(
+    "--without",
+    multiple=True,
+    metavar="NAME",
+    help="Take an effect out of the catalogue; repeatable.",
+)
+@click.option(
+    "--sensors",
+    metavar="NAME,NAME",
+    help='Use these channels only; "photocell" is one.  [default: all]',
+)
+@click.option(
+    "--hold-out",
+    multiple=True,
+    metavar="RUN|KEY=VALUE",
+    help="Withhold this run, or those with this frequency (Hz), amplitude (mm), phase (deg), speed "
+    "(m/s) or medium, and predict them; repeatable.  [default: each regime in its turn]",
+)
+@click.option("--page", metavar="FILE.html", help="Write a page with figures.")
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")
+@click.option("--scheduler", metavar="ADDRESS", help="A Dask scheduler in place of processes.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
+def diagnose(**options: Any) -> None:
+    """Say where rig and simulation differ, which effect causes it, and how far the gap shrinks.
+
+    CAMPAIGN is a folder with a campaign.toml and a recording per run; a case.toml beside it may say
+    tolerances and what the rig can do next (docs/gap.md). "No gap beyond u" is an answer.
+
+    \b
+    pmm gap my-campaign --hold-out frequency=1.1 --page gap.html
+    pmm gap add my-campaign
+
+    Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
+    """  # noqa: D301
+    from pmm.cli.gap_diagnose_work import Request, run
+
+    run(Request(**options))

@@ -1,0 +1,182 @@
+"""The tables of ``pmm gap CAMPAIGN``."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pmm.gap.report import GapReport, Ranked
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+_SHOWN_REGIMES = 12
+_MOVED = 1.0  # standard uncertainties: a coefficient that moves less is not worth a row
+
+
+def print_report(console: "Console", report: GapReport) -> None:
+    """Print a diagnosis for people."""
+    console.print(f"{report.campaign}: {report.sentence}", style="bold", soft_wrap=True)
+    _print_used(console, report)
+    _print_where(console, report)
+    _print_which(console, report)
+    _print_how_far(console, report)
+    _print_coefficients(console, report)
+    _print_remains(console, report)
+    _print_next(console, report)
+
+
+def _table(*headings: str, text: int = 1) -> "Table":
+    """Return a table whose first ``text`` columns are words and the others numbers."""
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for number, heading in enumerate(headings):
+        table.add_column(heading, justify="left" if number < text else "right", overflow="fold")
+    return table
+
+
+def _print_used(console: "Console", report: GapReport) -> None:
+    held = f", {len(report.held_out)} withheld" if report.held_out else ""
+    console.print(f"{len(report.runs)} runs used{held}, {len(report.left_out)} left out")
+    for name, reason in report.left_out.items():
+        console.print(f"LEFT OUT {name}: {reason}", soft_wrap=True)
+    for note in report.notes:
+        console.print(f"NOTE     {note}", soft_wrap=True)
+
+
+def _print_where(console: "Console", report: GapReport) -> None:
+    console.print("\nwhere: E/u after the free coefficients, rms; 1 is noise alone", style="bold")
+    table = _table("along the chain", "verdict", "rms", "numbers", "largest", text=2)
+    for one in report.walk:
+        verdict = "gap" if one.beyond else "no gap"
+        table.add_row(one.what, verdict, f"{one.gap_u:.2f}", str(one.count), one.worst)
+    console.print(table)
+    if report.verdict not in ("none", "coefficients"):
+        shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
+        console.print(f"stage: {', '.join(shares)}")
+    largest = sorted(report.contrasts, key=lambda one: -one.gap_u)[:3]
+    if any(one.beyond for one in largest):
+        said = ", ".join(f"{one.what} ({one.gap_u:.2f})" for one in largest)
+        console.print(f"largest in: {said}", soft_wrap=True)
+
+
+def _print_which(console: "Console", report: GapReport) -> None:
+    console.print("\nwhich", style="bold")
+    table = _table("answer", "stage", "parameters (95 %)", "probability", text=3)
+    for one in report.ranking:
+        table.add_row(one.answer, one.stage, _parameters(one), f"{one.probability:.4f}")
+    console.print(table)
+    for one in report.ranking:
+        if one.alike:
+            said = ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
+            console.print(f"these runs cannot tell from {one.answer}: {said}", soft_wrap=True)
+        if one.measure and one is report.ranking[0]:
+            console.print(f"what would: {'; '.join(one.measure)}", soft_wrap=True)
+    if report.hidden:
+        console.print(
+            f"{len(report.hidden)} effects cannot be seen in these runs: "
+            f"{', '.join(report.hidden)}",
+            style="dim",
+        )
+
+
+def _parameters(one: Ranked) -> str:
+    return "\n".join(
+        f"{name} = {value['value']:.4g} ({value['low']:.4g} to {value['high']:.4g})"
+        for effect in one.effects
+        for name, value in _of(effect).items()
+    )
+
+
+def _of(effect: Mapping[str, Any]) -> Mapping[str, Mapping[str, float]]:
+    found: Mapping[str, Mapping[str, float]] = effect["parameters"]
+    return found
+
+
+def _print_how_far(console: "Console", report: GapReport) -> None:
+    if not report.regimes:
+        return
+    said = "the withheld runs" if report.held_out else "each regime, predicted from the others"
+    console.print(f"\nhow far: gap of {said}, in u, noise taken off", style="bold")
+    table = _table("answer", "before", "after", "shrinks", "95 %")
+    for one in report.controls:
+        interval = f"{100.0 * one.low:.0f} to {100.0 * one.high:.0f} %"
+        share = f"{100.0 * one.share:.0f} %" if one.before_u > 0.0 else "-"
+        table.add_row(one.what, f"{one.before_u:.2f}", f"{one.after_u:.2f}", share, interval)
+    console.print(table)
+    table = _table("withheld", "before", "after", "wrong effect", "polynomial")
+    for row in report.regimes[:_SHOWN_REGIMES]:
+        values = (row.before, row.after, row.wrong_effect, row.polynomial)
+        table.add_row(row.regime, *(_number(one) for one in values))
+    console.print(table)
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.2f}"
+
+
+def _print_coefficients(console: "Console", report: GapReport) -> None:
+    effect = report.verdict in ("effect", "unknown")
+    chosen = [
+        one
+        for one in report.coefficients
+        if abs(one.with_effect - one.without) > _MOVED * one.u_with
+        or abs(one.with_effect - one.stated) > 2.0 * _MOVED * one.u_with
+    ]
+    if not chosen:
+        console.print("\nno coefficient moves by more than its uncertainty")
+        return
+    console.print("\nwhat it does to the coefficients", style="bold")
+    headings = ("coefficient", "unit", "stated", "fitted without effect", "with it")
+    table = _table(*headings[: 5 if effect else 4], text=2)
+    for one in chosen:
+        cells = [f"{one.stated:.6g}", f"{one.without:.6g} ± {2 * one.u_without:.2g}"]
+        if effect:
+            cells.append(f"{one.with_effect:.6g} ± {2 * one.u_with:.2g}")
+        table.add_row(one.name, one.unit, *cells)
+    console.print(table)
+
+
+def _print_remains(console: "Console", report: GapReport) -> None:
+    beyond = [one for one in report.remains if one.beyond]
+    console.print("\nwhat remains", style="bold")
+    if not beyond:
+        console.print("nothing beyond u")
+    for one in beyond:
+        console.print(f"{one.what}: {one.gap_u:.2f} u rms, largest {one.worst}", soft_wrap=True)
+    if report.description is not None:
+        for line in described(report):
+            console.print(line, soft_wrap=True)
+
+
+def described(report: GapReport) -> Sequence[str]:
+    """Return the description of a remainder, a sentence each; it names no cause."""
+    one = report.description
+    if one is None:
+        return ()
+    orders = sorted(one.orders.items(), key=lambda pair: -pair[1])[:3]
+    lines = [
+        "its form, not its cause: harmonics "
+        + ", ".join(f"{n} ({100.0 * share:.0f} %)" for n, share in orders),
+        "a curve over one quantity carries "
+        + ", ".join(f"{100.0 * share:.0f} % ({name})" for name, share in one.follows.items()),
+    ]
+    laws = [("frequency", one.frequency_power), ("amplitude", one.amplitude_power)]
+    powers = [f"{name}^{power:.1f}" for name, power in laws if math.isfinite(power)]
+    if powers:
+        lines.append(f"it grows as {', '.join(powers)}")
+    if math.isfinite(one.air_over_water):
+        lines.append(f"in air it is {one.air_over_water:.2f} times as large as in water")
+    if one.law.terms:
+        terms = ", ".join(f"{channel}: {n:+.3g} N {term}" for channel, term, n in one.law.terms)
+        lines.append(f"few terms that carry {100.0 * one.law.explained:.0f} % of it: {terms}")
+    return lines
+
+
+def _print_next(console: "Console", report: GapReport) -> None:
+    if not report.next_runs:
+        return
+    console.print("\nnext: the run that tells the leading answers apart best", style="bold")
+    for one in report.next_runs[:3]:
+        console.print(f"{one['said']}: {one['gain_log_odds']:.1f} expected log odds")

@@ -1,0 +1,95 @@
+"""What ``pmm gap CAMPAIGN`` does: examine the campaign, then print, write the page, keep it."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from pmm.cli.folders import check_folder
+from pmm.cli.hints import pasted
+from pmm.cli.screen import messages, output
+from pmm.gap.examine import Examined, Options, examine
+from pmm.gap.report import gap_report
+from pmm.parallel import open_executor
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of the command, by their names there."""
+
+    campaign: str
+    effects: tuple[str, ...]
+    without: tuple[str, ...]
+    sensors: str | None
+    hold_out: tuple[str, ...]
+    page: str | None
+    jobs: int | None
+    scheduler: str | None
+    as_json: bool
+
+
+def run(request: Request) -> None:
+    """Diagnose a campaign.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign or an option is wrong.
+    DataError
+        If too few runs can be used.
+    """
+    if request.page is not None:
+        check_folder(Path(request.page).parent, "--page")
+    report = gap_report(examined(request))
+    if request.as_json:
+        click.echo(json.dumps(report.as_dict(), indent=1, allow_nan=False))
+    else:
+        from pmm.cli.gap_diagnose_print import print_report
+
+        print_report(output(), report)
+        if report.verdict == "effect":
+            output().print(pasted("gap", "add", request.campaign), soft_wrap=True)
+    if request.page is not None:
+        from pmm.report.gap_page import write_gap_page
+
+        command = pasted("gap", request.campaign, "--page", request.page)
+        write_gap_page(report, Path(request.page), command=command)
+        messages().print(f"page: {request.page}")
+
+
+def examined(request: Request) -> Examined:
+    """Examine the campaign that is asked for, with progress on a terminal."""
+    sensors = tuple(one.strip() for one in (request.sensors or "").split(",") if one.strip())
+    options = Options(request.effects, request.without, sensors, request.hold_out)
+    jobs = _jobs(request)
+    with (
+        progress() as told,
+        open_executor(jobs, request.scheduler) as executor,
+    ):
+        alone = jobs == 1 and request.scheduler is None
+        return examine(Path(request.campaign), options, None if alone else executor, told)
+
+
+def _jobs(request: Request) -> int | None:
+    files = [one for one in request.effects if one.endswith(".py")]
+    if files and (request.scheduler is not None or (request.jobs or 1) > 1):
+        raise ConfigurationError(
+            f"--effects {files[0]}: effects of your own are known in this process only; leave "
+            "--jobs and --scheduler out"
+        )
+    return request.jobs if request.scheduler is not None else request.jobs or 1
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[str], None]]:
+    """Say what is being done, on a terminal, for as long as the context lasts."""
+    console = messages()
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("reading") as status:
+        yield lambda said: status.update(said)

@@ -1,0 +1,78 @@
+"""Where the difference lies, cell by cell: stage, channel, harmonic and run."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Component, Part
+from analysis.gap.where import BESIDE, FORCE, MOTION, SHAFT, TIMING, Gap, gap_of, left_by_step
+from hardware.description.channels import SHAFT_ANGLE
+from pmm.gap.examine import Examined
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StepRow:
+    """One step of the walk, or one contrast."""
+
+    what: str
+    gap_u: float
+    count: int
+    beyond: bool
+    worst: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of the heat map: E/u of a harmonic of a channel in a run."""
+
+    stage: str
+    channel: str
+    order: int
+    run: str
+    before: float
+    after: float
+
+
+def step_row(one: Gap) -> StepRow:
+    """Return a part of the difference as a row."""
+    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst)
+
+
+def remains(examined: Examined, after: FloatArray) -> Iterator[StepRow]:
+    """Yield what is left after the best answer, step by step along the chain."""
+    problem = examined.diagnosis.problem
+    left = left_by_step(problem, after)
+    parts = problem.simulator.stack.components
+    for what in (SHAFT, TIMING, MOTION, FORCE, BESIDE):
+        rows = np.array([_stage_of(one) == what for one in parts])
+        if rows.any():
+            yield step_row(gap_of(parts, left, what, rows))
+
+
+def _stage_of(one: Component) -> str:
+    if not one.channel:
+        return TIMING
+    if one.channel == SHAFT_ANGLE.name:
+        return SHAFT
+    if one.channel.startswith("displacement"):
+        return MOTION
+    return FORCE if one.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE) else BESIDE
+
+
+def heat_cells(examined: Examined, after: FloatArray) -> Iterator[Cell]:
+    """Yield both parts of a harmonic as one number, and what has no parts by itself."""
+    problem = examined.diagnosis.problem
+    stack = problem.simulator.stack
+    sizes: dict[tuple[str, str, int, str], list[int]] = {}
+    for at, (one, run) in enumerate(zip(stack.components, stack.run, strict=True)):
+        if _stage_of(one) != BESIDE:
+            key = (_stage_of(one), one.channel, one.order, stack.runs[run].name)
+            sizes.setdefault(key, []).append(at)
+    first, second = left_by_step(problem, problem.residual), left_by_step(problem, after)
+    for (stage, channel, order, run), rows in sizes.items():
+        old, new = (float(np.sqrt(np.mean(left[rows] ** 2))) for left in (first, second))
+        yield Cell(stage, channel, order, run, old, new)

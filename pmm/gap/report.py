@@ -1,0 +1,247 @@
+"""An examined campaign as plain rows: the same numbers for the table, the JSON and the page."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from analysis.gap.description import Description
+from analysis.gap.propose import Proposal
+from analysis.gap.regimes import describe as in_words
+from analysis.gap.twins import separating_measurements
+from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, answer_of
+from analysis.gap.withheld import Predicted, Shrinkage, gap_of, shrinkage
+from pmm.gap.answer import effect_rows, next_run
+from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
+from pmm.gap.coefficients import CoefficientRow, coefficient_rows
+from pmm.gap.examine import Examined
+
+if TYPE_CHECKING:
+    from analysis.gap.fit import Fit
+
+JSON_SCHEMA: Final = "pmm-gap-1"
+_SHOWN: Final = 8  # hypotheses of the ranking
+_LEAST: Final = 1e-4
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One answer with its probability.
+
+    Attributes
+    ----------
+    alike
+        Effects that these runs cannot tell from it, with the sigma that they leave.
+    measure
+        What would tell them apart.
+    """
+
+    answer: str
+    probability: float
+    stage: str
+    effects: list[dict[str, Any]]
+    alike: dict[str, float]
+    measure: list[str]
+
+
+@dataclass(frozen=True)
+class ControlRow:
+    """How one answer does on the withheld runs; gaps in u with the noise floor taken off."""
+
+    what: str
+    before_u: float
+    after_u: float
+    share: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class RegimeRow:
+    """One withheld regime: root mean square in u without and with each answer; NaN for none."""
+
+    regime: str
+    before: float
+    after: float
+    wrong_effect: float
+    polynomial: float
+
+
+@dataclass(frozen=True, eq=False)
+class GapReport:
+    """Everything that is shown of a campaign.
+
+    Attributes
+    ----------
+    verdict
+        ``"none"``, ``"coefficients"``, ``"unknown"`` or ``"effect"``.
+    sentence
+        The verdict for people.
+    remains
+        What the best answer leaves, step by step.
+    """
+
+    campaign: str
+    runs: tuple[str, ...]
+    held_out: tuple[str, ...]
+    left_out: dict[str, str]
+    verdict: str
+    sentence: str
+    notes: tuple[str, ...]
+    walk: tuple[StepRow, ...]
+    contrasts: tuple[StepRow, ...]
+    stages: dict[str, float]
+    ranking: tuple[Ranked, ...]
+    hidden: tuple[str, ...]
+    controls: tuple[ControlRow, ...]
+    regimes: tuple[RegimeRow, ...]
+    coefficients: tuple[CoefficientRow, ...]
+    remains: tuple[StepRow, ...]
+    cells: tuple[Cell, ...]
+    description: Description | None
+    next_runs: tuple[dict[str, Any], ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as a document for programs; what is not known is ``null``."""
+        found: dict[str, Any] = {"schema": JSON_SCHEMA, **_plain(asdict(self))}
+        return found
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers, texts, lists and tables only; NaN and infinity as ``None``."""
+    if isinstance(value, dict):
+        return {str(key): _plain(one) for key, one in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [_plain(one) for one in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def gap_report(examined: Examined) -> GapReport:
+    """Put an examined campaign in rows."""
+    found = examined.diagnosis
+    problem = found.problem
+    after = problem.residual if found.best is None else problem.residual - found.best.fit.signature
+    verdict = _verdict(examined)
+    return GapReport(
+        examined.campaign.name,
+        tuple(run.name for run in problem.simulator.stack.runs),
+        examined.held_out,
+        dict(examined.left_out),
+        verdict,
+        _sentence(examined, verdict),
+        tuple(_notes(examined)),
+        tuple(step_row(one) for one in found.walk.steps),
+        tuple(step_row(one) for one in found.walk.contrasts),
+        dict(sorted(found.stages.items(), key=lambda one: -one[1])),
+        tuple(_ranking(examined)),
+        tuple(sorted(found.weighed.hidden)),
+        tuple(_controls(examined)),
+        tuple(_regimes(examined)),
+        tuple(coefficient_rows(examined)),
+        tuple(remains(examined, after)),
+        tuple(heat_cells(examined, after)),
+        examined.description,
+        tuple(_next(one) for one in found.proposals[:5]),
+    )
+
+
+def _verdict(examined: Examined) -> str:
+    best = examined.diagnosis.probabilities.best
+    if best == NONE and examined.recentred.units:
+        return COEFFICIENTS
+    return best if best in (NONE, COEFFICIENTS, UNKNOWN) else "effect"
+
+
+def _sentence(examined: Examined, verdict: str) -> str:
+    found = examined.diagnosis
+    shares = found.probabilities.by_answer
+    if verdict == NONE:
+        return f"no gap beyond u, probability {shares[NONE]:.2f}"
+    if verdict == COEFFICIENTS:
+        return "no effect is missing: the coefficients are not those that the campaign states"
+    if verdict == UNKNOWN:
+        stage = max(found.stages, key=lambda name: found.stages[name], default="")
+        said = f"something that the catalogue does not have, probability {shares[UNKNOWN]:.2f}"
+        near = found.best
+        like = "" if near is None else f"; nearest, but not it: {_joined(answer_of(near.fit))}"
+        return f"{said}; most likely in {stage}{like}"
+    best = found.probabilities.best
+    alike = sorted({name for members in found.classes.values() for name, _ in members})
+    others = f" or {', '.join(alike)}, which these runs cannot tell from it;" if alike else ";"
+    share = shares[best] + sum(shares.get(name, 0.0) for name in alike)
+    return f"{_joined(best)}{others} probability {share:.2f}; or whatever has its signature"
+
+
+def _joined(answer: str) -> str:
+    return " and ".join(answer.split("+"))
+
+
+def _notes(examined: Examined) -> Iterator[str]:
+    moved = examined.recentred
+    far = sorted(moved.units, key=lambda name: -abs(moved.units[name]))[:3]
+    if far:
+        said = ", ".join(f"{name} {moved.moved[name]:+.4g}" for name in far)
+        yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
+    best = examined.diagnosis.best
+    if best is not None and best.remainder > 0.2:
+        yield (
+            f"{_joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
+            "unexplained: its form is not quite that of the catalogue"
+        )
+
+
+def _ranking(examined: Examined) -> Iterator[Ranked]:
+    found = examined.diagnosis
+    fits: dict[str, Fit] = {}
+    for one in (*found.weighed.singles, *found.weighed.pairs):
+        fits.setdefault(answer_of(one.fit), one.fit)
+    shares = found.probabilities.by_answer
+    ranked = sorted(shares, key=lambda name: -shares[name])
+    kept = [
+        name for number, name in enumerate(ranked[:_SHOWN]) if number < 3 or shares[name] > _LEAST
+    ]
+    for name in kept:
+        fit = fits.get(name)
+        alike = dict(found.classes.get(name, ())) if name == found.probabilities.best else {}
+        stage = "" if fit is None else " and ".join(
+            dict.fromkeys(one.kind.stage.value for one in fit.candidates)
+        )  # fmt: skip
+        effects = [] if fit is None else list(effect_rows(fit))
+        measure = list(separating_measurements([name, *alike]))
+        yield Ranked(name, float(shares[name]), stage, effects, alike, measure)
+
+
+def _controls(examined: Examined) -> Iterator[ControlRow]:
+    found, judged = examined.diagnosis, examined.judged
+    rows: list[tuple[str, Sequence[Predicted]]] = []
+    if found.best is not None:
+        rows.append((_joined(answer_of(found.best.fit)), judged.cured))
+    if found.rival is not None:
+        rows.append((f"wrong effect: {_joined(answer_of(found.rival.fit))}", judged.rival))
+    rows.append(("free polynomial", judged.free_form))
+    for what, after in rows:
+        if judged.plain and after:
+            yield _control(what, shrinkage(judged.plain, after))
+
+
+def _control(what: str, one: Shrinkage) -> ControlRow:
+    return ControlRow(what, one.before, one.after, one.share, one.low, one.high)
+
+
+def _regimes(examined: Examined) -> Iterator[RegimeRow]:
+    judged = examined.judged
+    for number, one in enumerate(judged.plain):
+        after = [
+            gap_of(part[number].left) if part else math.nan
+            for part in (judged.cured, judged.rival, judged.free_form)
+        ]
+        yield RegimeRow(str(one.regime), gap_of(one.left), *after)
+
+
+def _next(one: Proposal) -> dict[str, Any]:
+    said = one.kind if one.set_point is None else in_words(one.set_point)
+    return {"run": next_run(one), "said": said, "gain_log_odds": one.gain}
