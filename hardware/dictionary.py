@@ -3,6 +3,7 @@
 import re
 import struct
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -68,12 +69,18 @@ def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
             f"{where}.eds = {eds!r}: no such file; give a path, or one of {known}"
         )
     try:
-        dictionary = import_od(str(path), node_id)
+        dictionary = _parsed(path, node_id, path.stat().st_mtime_ns)
     except Exception as error:  # a parser meets everything in a broken file
         raise ConfigurationError(f"{where}.eds = {eds!r} cannot be read as EDS: {error}") from error
     if 0x1000 not in dictionary:
         raise ConfigurationError(f"{where}.eds = {eds!r} is no EDS: it has no object 1000")
     return dictionary
+
+
+@lru_cache(maxsize=64)
+def _parsed(path: Path, node_id: int, changed_ns: int) -> canopen.ObjectDictionary:
+    """Parse a file once for each node; nobody writes into a dictionary, so all may share it."""
+    return import_od(str(path), node_id)
 
 
 def variable(dictionary: canopen.ObjectDictionary, at: Entry) -> ODVariable | None:
