@@ -147,7 +147,8 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
     """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
 
     After those of ``free`` there is a column for each displacement sensor, for each run's frequency
-    and phase reference, and for each kind of noise of each channel: a rig that is noisier than believed has no gap for that.
+    and phase reference, and for each kind of noise of each channel: a rig that is noisier than
+    believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
@@ -201,7 +202,7 @@ _LOUDNESS: Final = {
     Part.BETWEEN: 2.0,
     Part.LINE: 0.3,
     Part.CYCLE_SCATTER: 1.0,
-    Part.PERIOD_SCATTER: 0.3,
+    Part.PERIOD_SCATTER: 0.05,
 }
 
 
