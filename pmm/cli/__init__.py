@@ -12,6 +12,7 @@ from hardware.description.errors import DataError, PmmError
 # their top, so that ``pmm --help`` can read their help at once.
 _COMMANDS = {
     "analyse": "pmm.cli.analyse",
+    "coefficients": "pmm.cli.coefficients",
     "demo": "pmm.cli.demo",
     "devices": "pmm.cli.devices",
     "gap": "pmm.cli.gap",
@@ -22,6 +23,7 @@ _COMMANDS = {
     "plan": "pmm.cli.plan",
     "recover": "pmm.cli.recover",
     "replay": "pmm.cli.replay",
+    "report": "pmm.cli.report",
     "simulate": "pmm.cli.simulate",
 }
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended

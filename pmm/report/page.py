@@ -1,9 +1,10 @@
 """One page that holds a report: tables, figures and provenance in a single file, offline."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from analysis.resolver.analyse import Analysis
 from hardware.description.flags import Flag
@@ -57,19 +58,31 @@ def write_page(analyses: Sequence[Analysis], path: Path, *, title: str, command:
     command
         What was run to make it, so that it can be made again.
     """
+    sections = [_section(analysis, f"run{k}") for k, analysis in enumerate(analyses, start=1)]
+    content = {"title": title, "command": command, "sections": sections, "versions": versions()}
+    write_template("page.html.jinja", content, path)
+
+
+def write_template(name: str, content: Mapping[str, Any], path: Path) -> None:
+    """Fill one of this package's templates and write it as a page; all pages share one style.
+
+    Parameters
+    ----------
+    content
+        Plain text by the template's names: all of it is escaped. The drawings alone are markup, and
+        their text was escaped in them.
+    """
     from jinja2 import Environment, StrictUndefined
     from markupsafe import Markup
 
-    # All text is escaped; the drawings alone are markup, and their text was escaped in them.
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["markup"] = Markup
-    template = environment.from_string(
-        files("pmm.report").joinpath("page.html.jinja").read_text(encoding="utf-8")
-    )
-    sections = [_section(analysis, f"run{k}") for k, analysis in enumerate(analyses, start=1)]
-    page = template.render(title=title, command=command, sections=sections, versions=versions())
+    package = files("pmm.report")
+    template = environment.from_string(package.joinpath(name).read_text(encoding="utf-8"))
+    style = package.joinpath("page.css").read_text(encoding="utf-8")
+    page = template.render(style=style, **content)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A file name may hold bytes that are no text; they must not cost the page.
     path.write_bytes(page.encode("utf-8", errors="replace"))

@@ -1,0 +1,225 @@
+"""What ``pmm coefficients`` does: analyse, then print, plot and write."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.campaign import CAMPAIGN_FILE
+from pmm.cli.coefficients import DEFAULT_TRIALS
+from pmm.cli.folders import check_folder
+from pmm.cli.screen import error_line, messages, output
+from pmm.coefficients.provenance import provenance
+from pmm.coefficients.references import beside, check_systems, read_references
+from pmm.coefficients.settings import (
+    DRY,
+    MODEL,
+    ReferenceFile,
+    Settings,
+    System,
+    check_trials,
+    settings_of,
+)
+from pmm.coefficients.solving import Progress
+from pmm.coefficients.systems import check_dimensions, in_system
+from pmm.coefficients.workflow import Outcome, coefficients_of
+from pmm.parallel import open_executor
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
+
+FEW_RUNS = 24  # below it starting processes costs more than they save
+_PLAIN = ("form", "level", "seed", "system", "inertia", "wanted", "leave_out")
+
+
+def run(options: Mapping[str, Any]) -> None:
+    """Analyse campaigns and show their coefficients.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`pmm.coefficients.workflow.coefficients_of`; or a file cannot be written.
+    """
+    _check_outputs(options)
+    outcome, _ = analysed(options)
+    if options["as_json"]:
+        from pmm.coefficients.document import document
+
+        click.echo(json.dumps(document(outcome), indent=1, allow_nan=False))
+    else:
+        from pmm.cli.coefficients_printing import print_outcome
+
+        print_outcome(output(), outcome)
+    for path in _written(outcome, options):
+        messages().print(f"written: {path}")
+    finish(outcome)
+
+
+def finish(outcome: Outcome) -> None:
+    """Name the runs that could not be used, and end with the status that they ask for."""
+    for name in outcome.not_recorded:
+        messages().print(f"not recorded yet: {name}")
+    for one in outcome.failed:
+        shown = one.message if one.name in one.message else f"{one.name}: {one.message}"
+        error_line(shown)
+    if outcome.failed:
+        click.get_current_context().exit(min(one.exit_status for one in outcome.failed))
+
+
+def analysed(
+    options: Mapping[str, Any], *, hashed: bool = False
+) -> tuple[Outcome, tuple[Path, ...]]:
+    """Analyse the campaigns of a command; return the files that were read beside recordings."""
+    folders = [_folder(text) for text in options["campaigns"]]
+    base, path = settings_of(folders[0], options["settings"])
+    settings = merged(base, options)
+    check_trials(settings.trials)
+    check_dimensions(settings.system, settings.ship)
+    jobs = options["jobs"]
+    if jobs is None and options["scheduler"] is None and _few(folders, settings):
+        jobs = 1
+    with open_executor(jobs, options["scheduler"]) as executor, show_steps() as progress:
+        outcome = coefficients_of(folders, settings, executor, progress, hashed=hashed)
+    files = [folder / CAMPAIGN_FILE for folder in folders] + ([path] if path else [])
+    return finished(outcome, settings), tuple(files)
+
+
+def finished(outcome: Outcome, settings: Settings) -> Outcome:
+    """Put reference tables beside the values, and bring both to the system asked for."""
+    found = outcome.result
+    references = read_references(settings.references, found.plane, found.form)
+    check_systems(references, settings.system)
+    found = beside(found, references, System.DIMENSIONAL)
+    found, flags = in_system(found, settings.system, settings.ship, outcome.body, outcome.stated)
+    if settings.system is not System.DIMENSIONAL:
+        found = beside(found, references, settings.system)
+    return replace(outcome, result=found, left_out=(*outcome.left_out, *flags))
+
+
+def merged(base: Settings, options: Mapping[str, Any]) -> Settings:
+    """Return the settings with what the command line says in their place."""
+    from analysis.coefficients.names import Form
+
+    given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
+    if "form" in given:
+        given["form"] = Form(given["form"])
+    if "system" in given:
+        given["system"] = System(given["system"])
+    inertia = given.get("inertia", MODEL)
+    if inertia not in (MODEL, DRY) and not Path(inertia).is_file():
+        raise ConfigurationError(
+            f"--inertia {inertia}: no such file; name one that `pmm inertia --output` wrote, or "
+            f"say {MODEL} or {DRY}"
+        )
+    if options["references"]:
+        more = tuple(ReferenceFile(one) for one in options["references"])
+        given["references"] = (*base.references, *more)
+    return replace(base, **given, trials=_trials(base, options))
+
+
+def _trials(base: Settings, options: Mapping[str, Any]) -> int:
+    wanted, trials = options["uncertainty"], options["trials"]
+    if wanted == "linear" and trials is not None:
+        raise ConfigurationError("--trials belongs to --uncertainty monte-carlo")
+    if wanted == "linear":
+        return 0
+    if wanted is None and trials is None:
+        return base.trials
+    return int(trials or base.trials or DEFAULT_TRIALS)
+
+
+def _folder(text: str) -> Path:
+    path = Path(text)
+    if path.name == CAMPAIGN_FILE and path.is_file():
+        return path.parent
+    if not path.is_dir():
+        raise ConfigurationError(f"{path}: no such folder; name one that holds a {CAMPAIGN_FILE}")
+    if not (path / CAMPAIGN_FILE).exists():
+        raise ConfigurationError(
+            f"{path}: a folder without a {CAMPAIGN_FILE}; write one (docs/campaigns.md)"
+        )
+    return path
+
+
+def _few(folders: Sequence[Path], settings: Settings) -> bool:
+    """Whether there is too little to do for starting processes."""
+    from pmm.campaign_file import read_campaign
+
+    count = sum(len(read_campaign(folder / CAMPAIGN_FILE).runs) for folder in folders)
+    return count < FEW_RUNS and settings.trials <= DEFAULT_TRIALS
+
+
+@contextmanager
+def show_steps() -> Iterator[Progress]:
+    """Show how far each step is, on a terminal."""
+    from rich.progress import Progress as Bars
+
+    console = messages()
+    with Bars(console=console, transient=True, disable=not console.is_terminal) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def progress(done: int, total: int, what: str) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what, total=total)
+            bars.update(tasks[what], completed=done, total=total)
+
+        yield progress
+
+
+def _check_outputs(options: Mapping[str, Any]) -> None:
+    for name, option in (("plot", "--plot"), ("simman", "--simman")):
+        if options[name] is not None:
+            check_folder(Path(options[name]), option)
+    for name, option in (("csv_file", "--csv"), ("netcdf", "--netcdf")):
+        if options[name] is not None:
+            check_file(Path(options[name]), option, overwrite=options["overwrite"])
+
+
+def check_file(path: Path, option: str, *, overwrite: bool) -> None:
+    """Refuse a file that would be lost or cannot be written, before any work is done.
+
+    Raises
+    ------
+    ConfigurationError
+        If its folder cannot be written to.
+    DataError
+        If it is there and may not be replaced.
+    """
+    check_folder(path.parent, option)
+    if path.is_dir():
+        raise DataError(f"{option} {path}: a folder; name a file")
+    if path.exists() and not overwrite:
+        raise DataError(f"{option} {path}: there already; choose another name, or --overwrite")
+
+
+def _written(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:
+    if options["csv_file"] is not None:
+        from pmm.coefficients.document import csv_text
+
+        path = Path(options["csv_file"])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(csv_text(outcome.result), encoding="utf-8")
+        yield str(path)
+    if options["netcdf"] is not None:
+        from pmm.coefficients.document import write_netcdf
+
+        path = Path(options["netcdf"])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_netcdf(outcome, path, dict(provenance()))
+        yield str(path)
+    if options["plot"] is not None:
+        from pmm.report.coefficient_plots import save_figures
+
+        written = save_figures(outcome.result, Path(options["plot"]))
+        yield f"{len(written)} figures in {options['plot']}"
+    if options["simman"] is not None:
+        from pmm.coefficients.deliverables import write_deliverables
+
+        folder, overwrite = Path(options["simman"]), bool(options["overwrite"])
+        count = write_deliverables(outcome, folder, overwrite=overwrite)
+        yield f"deliverables of {count} runs in {folder}"

@@ -1,0 +1,163 @@
+"""What a campaign's files say beside its recordings: inertia, restoring, chain, uncertainties."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.phasors import FloatArray
+from analysis.coefficients.stated import Stated
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Oscillator
+from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.coefficients.settings import DRY, MODEL, Settings
+from pmm.coefficients.tasks import Chain
+from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.model_uncertainty import ModelUncertainty, take_uncertainty
+from pmm.run.calibration import read_calibration
+
+_BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
+
+
+def oscillator_of(campaign: Campaign, folder: Path) -> Oscillator:
+    """Return the campaign's oscillator.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file has none.
+    """
+    if campaign.oscillator is None:
+        raise ConfigurationError(
+            f"{folder / CAMPAIGN_FILE}: no table [oscillator]; the struts' plane and spacing are "
+            "needed to make motion and loads of them"
+        )
+    return campaign.oscillator
+
+
+def chain_of(settings: Settings) -> Chain:
+    """Return what is known of the measuring chain.
+
+    Raises
+    ------
+    ConfigurationError
+        If the calibration file is none, or both a file and a matrix are given.
+    """
+    if settings.calibration is not None and settings.calibration_matrix is not None:
+        raise ConfigurationError("calibration and calibration_matrix are both given; one is enough")
+    matrix: FloatArray | None = None
+    if settings.calibration_matrix is not None:
+        matrix = np.array(settings.calibration_matrix)
+    elif settings.calibration is not None:
+        matrix = _from_file(Path(settings.calibration))
+    return Chain(matrix, settings.amplifiers)
+
+
+def _from_file(path: Path) -> FloatArray:
+    """Return force for a reading from the reading for a force that ``pmm evaluate`` wrote."""
+    one = read_calibration(path)
+    wanted = ("force_aft", "force_fore")
+    missing = [name for name in wanted if name not in one.channels]
+    if missing:
+        raise ConfigurationError(
+            f"{path}: nothing of {' and '.join(missing)} (channels: {', '.join(one.channels)})"
+        )
+    rows = [one.channels.index(name) for name in wanted]
+    return np.asarray(np.linalg.inv(one.matrix[np.ix_(rows, rows)]))
+
+
+def body_of(
+    campaign: Campaign, inertia: str | None, *, has_dry: bool
+) -> tuple[Body | None, ModelUncertainty | None]:
+    """Return the body that is taken off and its uncertainty; ``None`` where dry runs are.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such table, file or run: the message says what would do it.
+    """
+    if inertia == DRY or (inertia is None and campaign.model is None and has_dry):
+        if not has_dry:
+            raise ConfigurationError(
+                f"campaign {campaign.name!r}: no dry run to take off; run the same set-points in "
+                'air (kind = "dry"), or give the inertia'
+            )
+        return None, None
+    if inertia is not None and inertia != MODEL:
+        return _model_file(Path(inertia))
+    if campaign.model is None:
+        raise ConfigurationError(
+            f"campaign {campaign.name!r}: no inertia to take off: copy [model] of `pmm inertia "
+            "... --output model.toml` (a swing or a bifilar test) into the campaign file, name "
+            'that file with --inertia, or add a dry run (kind = "dry") at each set-point'
+        )
+    return campaign.model, campaign.model_uncertainty
+
+
+def _model_file(path: Path) -> tuple[Body, ModelUncertainty | None]:
+    original: dict[str, Any] = read_toml(path)
+    table = dict(original)
+    faults: list[Fault] = list(limit_faults(table))
+    uncertainty = take_uncertainty(table, faults)
+    model = table.get("model")
+    if not isinstance(model, dict):
+        faults.append(Fault(("model",), "is missing; `pmm inertia ... --output` writes it"))
+        model = {}
+    body = validate(Body, model, faults)
+    if body is None or faults:
+        raise as_error(path, faults, original)
+    return body, uncertainty
+
+
+def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
+    """Return the hydrostatic restoring about the midpoint, shape ``(2, 2)``."""
+    given = settings.restoring
+    return np.array(campaign.hull.restoring if given is None else given, dtype=np.float64)
+
+
+def stated_of(campaign: Campaign, settings: Settings, model: ModelUncertainty | None) -> Stated:
+    """Return the standard uncertainties: the settings', else the inertia's and the set-points'."""
+    stated = settings.uncertainty
+    found: dict[str, float] = {}
+    if model is not None:
+        found |= {name: getattr(model, name) for name in _BODY}
+    runs = campaign.runs
+    found["amplitude_relative"] = max(
+        (one.u_eccentricity_m / one.eccentricity_m for one in runs if one.eccentricity_m > 0.0),
+        default=0.0,
+    )
+    found["strut_phase_rad"] = max((one.u_strut_phase_rad for one in runs), default=0.0)
+    known = {one.name for one in fields(Stated)}
+    return replace(
+        stated,
+        **{
+            name: value
+            for name, value in found.items()
+            if name in known and getattr(stated, name) == 0.0
+        },
+    )
+
+
+def without_dry(cycle: Cycle, dry: list[Cycle]) -> Cycle:
+    """Return a cycle less the dry run of its motion.
+
+    Raises
+    ------
+    ConfigurationError
+        If none of them has it; the message says which would do.
+    """
+    refused = []
+    for one in dry:
+        try:
+            return cycle.without_dry(one)
+        except ConfigurationError as error:
+            refused.append(str(error))
+    amplitude = abs(cycle.run().motion.values)
+    raise ConfigurationError(
+        f"{cycle.name}: no dry run has its motion; run it in air at {cycle.frequency_hz:g} Hz with "
+        f"{1e3 * amplitude[0]:.3g} mm and {amplitude[1]:.3g} rad, or give the inertia"
+        + (f" ({refused[0]})" if len(refused) == 1 else "")
+    )

@@ -1,0 +1,24 @@
+"""What made the numbers: program, commit, Python and the libraries that were used."""
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+from pmm.cli.version import version_line
+
+_PACKAGES = ("numpy", "scipy", "GTC", "h5netcdf", "matplotlib")
+
+
+def provenance() -> tuple[tuple[str, str], ...]:
+    """Return pairs of what and which version."""
+    return (
+        ("program", version_line()),
+        ("system", f"{platform.system()} {platform.machine()}"),
+        *((name, _version(name)) for name in _PACKAGES),
+    )
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"

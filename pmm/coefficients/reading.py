@@ -1,0 +1,232 @@
+"""One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
+
+import hashlib
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+from analysis.coefficients.corrections import (
+    Delay,
+    LowPass,
+    Response,
+    ZeroReading,
+    zero_at,
+    zero_reading,
+)
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.measured import DISPLACEMENTS, FORCES
+from analysis.coefficients.phasors import Phasors
+from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
+from analysis.readers import read_recording
+from analysis.recording import Recording
+from analysis.resolver.analyse import Analysis, analyse
+from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
+from hardware.description.errors import DataError, PmmError
+from hardware.description.flags import Flag, Severity
+from pmm.coefficients.settings import Amplifier
+from pmm.coefficients.tasks import Done, Failed, Task, Zero
+from pmm.recorder.files import EVENTS
+from pmm.recorder.texts import read_lines
+
+_USED = (*DISPLACEMENTS, *FORCES, FORCE_X.name)
+_SPEED_OFF = 0.01
+_BLOCK = 1 << 20
+
+
+def read_zero(task: Task) -> Done | Failed:
+    """Read what the gauges show at rest."""
+    try:
+        recording = _recording(task)
+        part = _gated(recording, task.path)
+        zero = Zero(
+            task.name, _utc_s(recording), task.number, zero_reading(part, 0.0, _gauges(part))
+        )
+        return _done(task, recording, None, zero)
+    except PmmError as error:
+        return _failed(task, error)
+
+
+def read_cycle(task: Task) -> Done | Failed:
+    """Read a run and return motion and loads of the model, zeros taken off."""
+    try:
+        recording = _recording(task)
+        if task.kind.oscillates:
+            return _turning(task, recording)
+        return _towed(task, recording)
+    except PmmError as error:
+        return _failed(task, error)
+
+
+def _recording(task: Task) -> Recording:
+    return replace(read_recording(task.path, task.columns), name=task.name)
+
+
+def _turning(task: Task, recording: Recording) -> Done:
+    channels = tuple(name for name in _USED if name in recording.channel_names)
+    missing = [name for name in FORCES if name not in channels]
+    if missing:
+        raise DataError(
+            f"no channel {' or '.join(missing)} (channels: {', '.join(recording.channel_names)}); "
+            "name the columns in [columns] of the campaign file"
+        )
+    if not all(name in channels for name in DISPLACEMENTS):
+        channels = tuple(name for name in channels if name not in DISPLACEMENTS)
+    analysis = analyse(recording, task.choice, replace(task.settings, channels=channels))
+    struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
+    struts, flags = _zeroed(struts, task, recording)
+    flags = (*analysis.flags, *flags, *_speed_flags(task, recording))
+    periods = analysis.readings[0].periods
+    return _done(task, recording, _model(task, struts), None, periods, flags, analysis)
+
+
+def _towed(task: Task, recording: Recording) -> Done:
+    part = _gated(recording, task.path)
+    reading = zero_reading(part, 0.0, _gauges(part))
+    speed = task.set_point.carriage_speed_m_s
+    struts = static_cycle(task.name, reading, task.oscillator, speed)
+    struts, flags = _zeroed(struts, task, recording)
+    if not struts.mean_known:
+        raise DataError(
+            f"{task.name}: its mean force is all that it tells, and no zero run is named; make one "
+            "before and after, and name them as zero_before and zero_after"
+        )
+    return _done(task, recording, _model(task, struts), None, 0, flags)
+
+
+def _model(task: Task, struts: StrutCycle) -> Cycle:
+    chain = task.chain
+    if chain.calibration is not None:
+        struts = struts.calibrated(chain.calibration)
+    known = set(struts.phasors.names)
+    responses = {
+        name: response_of(one) for name, one in chain.amplifiers.items() if f"{name} 0" in known
+    }
+    if responses:
+        struts = struts.without_response(responses)
+    return struts.model(drift_rad=task.drift_rad)
+
+
+def response_of(one: Amplifier) -> Response:
+    """Return an amplifier's response: its lag, gain and filter in a chain."""
+    late = Delay(one.lag_s, one.gain)
+    if one.cutoff_hz is None:
+        return late
+    filtered = LowPass(one.cutoff_hz, one.order, one.kind)
+    return lambda s: late(s) * filtered(s)
+
+
+def _zeroed(
+    struts: StrutCycle, task: Task, recording: Recording
+) -> tuple[StrutCycle, tuple[Flag, ...]]:
+    """Take the zero runs off the means, with their drift between them."""
+    before, after = task.zeros
+    if before is None and after is None:
+        return struts, ()
+    if before is None or after is None or before.name == after.name:
+        only = before or after
+        assert only is not None  # noqa: S101 - one of them is there
+        text = f"only one zero run, {only.name}: what drifted since is not known"
+        return _taken(struts, only.reading.offsets), (_note("zero_one_sided", text, task.name),)
+    places = _places(before, after, task, recording)
+    first, last = (
+        ZeroReading(at, zero.reading.offsets)
+        for at, zero in ((places[0], before), (places[2], after))
+    )
+    return _taken(struts, zero_at(first, last, places[1])), ()
+
+
+def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
+    known = {name.rpartition(" ")[0] for name in struts.phasors.names}
+    return struts.without_zero(offsets.select([one for one in offsets.names if one in known]))
+
+
+def _places(
+    before: Zero, after: Zero, task: Task, recording: Recording
+) -> tuple[float, float, float]:
+    """Times of zero, run and zero on one clock: UTC, else the order of the runs."""
+    utc = (before.utc_s, _utc_s(recording), after.utc_s)
+    numbers = (before.number, task.number, after.number)
+    for clock in (utc, numbers):
+        if None not in clock:
+            first, own, last = (float(at) for at in clock if at is not None)
+            return first, own, last
+    return 0.0, 0.5, 1.0
+
+
+def _utc_s(recording: Recording) -> float | None:
+    started = recording.provenance.get("started_utc")
+    if started is None:
+        return None
+    half_s = (recording.end_s - recording.start_s) / 2.0
+    return datetime.fromisoformat(started).timestamp() + half_s
+
+
+def _gauges(recording: Recording) -> tuple[str, ...]:
+    surge = (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
+    return (*FORCES, *surge)
+
+
+def _gated(recording: Recording, path: Path) -> Recording:
+    """Return the part of a record at rest in which the gate was open, where that was written."""
+    if not (path.parent / EVENTS).exists():
+        return recording
+    events, _ = read_lines(path.parent / EVENTS)
+    times = {one["text"]: float(one["time_s"]) for one in events if one["kind"] == "state"}
+    if not {"gate open", "hold"} <= set(times):
+        return recording
+    return recording.between(times["gate open"], times["hold"])
+
+
+def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
+    """Say where the carriage did not do what the campaign says."""
+    if CARRIAGE_SPEED.name not in recording.channel_names:
+        return ()
+    asked = task.set_point.carriage_speed_m_s
+    found = float(recording.values(CARRIAGE_SPEED.name).mean())
+    if abs(found - asked) <= _SPEED_OFF * max(abs(asked), 0.1):
+        return ()
+    text = (
+        f"the carriage ran at {found:.4g} m/s on average, the campaign says {asked:g} m/s (limit "
+        f"{100.0 * _SPEED_OFF:g} %); correct carriage_speed_m_s in the campaign file"
+    )
+    return (Flag("speed_differs", Severity.WARNING, text, CARRIAGE_SPEED.name),)
+
+
+def _note(code: str, text: str, name: str) -> Flag:
+    return Flag(code, Severity.NOTE, f"{name}: {text}", None)
+
+
+def _done(
+    task: Task,
+    recording: Recording,
+    cycle: Cycle | None,
+    zero: Zero | None,
+    periods: int = 0,
+    flags: tuple[Flag, ...] = (),
+    analysis: Analysis | None = None,
+) -> Done:
+    own = recording.flags if analysis is None else ()
+    return Done(
+        task.name,
+        str(task.path),
+        cycle,
+        zero,
+        periods,
+        recording.sample_rate_hz,
+        recording.end_s - recording.start_s,
+        (*own, *flags),
+        sha256_of(task.path) if task.hashed else "",
+    )
+
+
+def _failed(task: Task, error: PmmError) -> Failed:
+    return Failed(task.name, str(task.path), str(error), error.exit_status)
+
+
+def sha256_of(path: Path) -> str:
+    """Return the hash of a file, read a stretch at a time."""
+    found = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK):
+            found.update(block)
+    return found.hexdigest()

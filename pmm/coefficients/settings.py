@@ -1,0 +1,231 @@
+"""``coefficients.toml``: what a campaign's recordings do not tell and its coefficients need."""
+
+from copy import deepcopy
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Any, ClassVar, Final, TypeGuard
+
+from analysis.coefficients.names import Form
+from analysis.coefficients.stated import Stated
+from hardware.description.errors import ConfigurationError
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+
+SETTINGS_FILE: Final = "coefficients.toml"
+MODEL: Final = "model"
+DRY: Final = "dry"
+
+_ABOVE_0 = ("length_m", "draught_m", "volume_m3", "density_kg_m3", "gravity_m_s2")
+_PAIR = "should be two rows of two numbers"
+
+
+class System(StrEnum):
+    """A system that a table of coefficients is in."""
+
+    DIMENSIONAL = "dimensional"
+    PRIME = "prime"
+    MMG = "mmg"
+    SEAKEEPING = "seakeeping"
+
+
+@dataclass(frozen=True)
+class Ship:
+    """The model, as systems without dimensions and SIMMAN's description need it.
+
+    Attributes
+    ----------
+    volume_m3
+        Displaced; ``None`` takes the mass over the density.
+    scale
+        Ship over model; for a description alone.
+    """
+
+    length_m: float | None = None
+    draught_m: float | None = None
+    volume_m3: float | None = None
+    density_kg_m3: float = 998.8
+    gravity_m_s2: float = STANDARD_GRAVITY_M_S2
+    scale: float | None = None
+    water_temperature_deg_c: float | None = None
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """What is known of one channel's amplifier and sampling; taken out of its harmonics.
+
+    Attributes
+    ----------
+    lag_s, gain
+        By how much it is late, and what it reads over the truth.
+    cutoff_hz, order, kind
+        Of its low-pass filter, if it has one: ``"butterworth"`` or ``"bessel"``.
+    """
+
+    lag_s: float = 0.0
+    gain: float = 1.0
+    cutoff_hz: float | None = None
+    order: int = 1
+    kind: str = "butterworth"
+
+
+@dataclass(frozen=True)
+class ReferenceFile:
+    """A table from elsewhere; see :mod:`pmm.coefficients.references`.
+
+    Attributes
+    ----------
+    allowance_relative
+        Uncertainty of the table itself.
+    speed_m_s
+        Where the file does not say it.
+    body
+        Which one of a table with several hulls.
+    """
+
+    file: str
+    name: str | None = None
+    allowance_relative: float = 0.0
+    speed_m_s: float = 0.0
+    body: str | None = None
+    rotation_sign: int = 1
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a campaign's coefficients are had.
+
+    Attributes
+    ----------
+    form, wanted, level, system
+        As in :class:`analysis.coefficients.campaign_plan.Request`, and the table's system.
+    inertia
+        ``"model"`` (the campaign's own table), ``"dry"`` (its runs in air), or a file that
+        ``pmm inertia`` wrote; ``None`` takes the model, else dry runs.
+    harmonics
+        Highest that is resolved.
+    leave_out
+        Names of runs that are not used.
+    point_ahead_m
+        Of the midpoint between the struts: where the coefficients are wanted.
+    restoring
+        Hydrostatic, about the midpoint; ``None`` takes that of ``[hull]``.
+    calibration
+        File of ``pmm evaluate`` whose matrix is applied.
+    calibration_matrix
+        The same by hand: force for a reading, aft and fore.
+    uncertainty
+        Standard uncertainties; what is 0 here is taken from the campaign where it says more.
+    """
+
+    form: Form = Form.MANOEUVRING
+    wanted: tuple[str, ...] = ()
+    level: float = 0.95
+    system: System = System.DIMENSIONAL
+    inertia: str | None = None
+    harmonics: int = 3
+    leave_out: tuple[str, ...] = ()
+    point_ahead_m: float = 0.0
+    restoring: tuple[tuple[float, ...], ...] | None = None
+    calibration: str | None = None
+    calibration_matrix: tuple[tuple[float, ...], ...] | None = None
+    nonlinear: bool = True
+    zero_frequency: bool = True
+    trials: int = 0
+    seed: int = 0
+    ship: Ship = field(default_factory=Ship)
+    uncertainty: Stated = field(default_factory=Stated)
+    amplifiers: dict[str, Amplifier] = field(default_factory=dict)
+    references: tuple[ReferenceFile, ...] = ()
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+
+def read_settings(path: Path) -> Settings:
+    """Read a settings file; files that it names lie beside it.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot be read, or for unknown keys, wrong types and impossible values: all errors of
+        the file in one message.
+    """
+    table = read_toml(path)
+    faults: list[Fault] = list(limit_faults(table))
+    faults += _value_faults(table)
+    found = validate(Settings, _with_folder(table, path.parent), faults)
+    if found is None or faults:
+        raise as_error(path, faults, table)
+    return found
+
+
+def settings_of(folder: Path, given: str | None) -> tuple[Settings, Path | None]:
+    """Return the settings of a campaign's folder, or those of the file that was given.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`read_settings`.
+    """
+    path = folder / SETTINGS_FILE if given is None else Path(given)
+    if given is None and not path.exists():
+        return Settings(), None
+    return read_settings(path), path
+
+
+def _value_faults(table: dict[str, Any]) -> list[Fault]:
+    faults = []
+    ship = table.get("ship")
+    for key in _ABOVE_0 if isinstance(ship, dict) else ():
+        value = ship.get(key) if isinstance(ship, dict) else None
+        if _is_number(value) and not value > 0.0:
+            faults.append(Fault(("ship", key), f"= {value:g} should be above 0"))
+    stated = table.get("uncertainty")
+    for key, value in stated.items() if isinstance(stated, dict) else ():
+        if _is_number(value) and value < 0.0:
+            faults.append(Fault(("uncertainty", key), f"= {value:g} should be 0 or more"))
+    pairs = ("restoring", "calibration_matrix")
+    faults += [Fault((key,), _PAIR) for key in pairs if key in table and not _is_pair(table[key])]
+    level = table.get("level")
+    if _is_number(level) and not 0.0 < level < 1.0:
+        faults.append(Fault(("level",), f"= {level:g} is no probability between 0 and 1"))
+    return faults
+
+
+def _is_number(value: Any) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_pair(value: Any) -> bool:
+    rows = value if isinstance(value, list) else []
+    return len(rows) == 2 and all(
+        isinstance(row, list) and len(row) == 2 and all(map(_is_number, row)) for row in rows
+    )
+
+
+def _with_folder(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the table with the files that it names seen from here."""
+    found = deepcopy(table)
+    for key in ("inertia", "calibration"):
+        if isinstance(found.get(key), str) and found[key] not in (MODEL, DRY):
+            found[key] = str(folder / found[key])
+    references = found.get("references")
+    for one in references if isinstance(references, list) else []:
+        if isinstance(one, dict) and isinstance(one.get("file"), str):
+            one["file"] = str(folder / one["file"])
+    return found
+
+
+def check_trials(trials: int) -> None:
+    """Refuse so few trials that an interval's ends are chance.
+
+    Raises
+    ------
+    ConfigurationError
+        If there are any, but fewer than 1000.
+    """
+    if 0 < trials < 1000:
+        raise ConfigurationError(
+            f"{trials} trials: the ends of a 95 % interval would rest on "
+            f"{max(1, trials // 40)} of them; take 1000 or more"
+        )

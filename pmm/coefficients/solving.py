@@ -1,0 +1,130 @@
+"""Groups of runs solved, and their trials drawn, side by side on any executor.
+
+The numbers are those of :func:`analysis.coefficients.campaign.campaign_coefficients`: only the work
+is cut finer, a block of trials a task, so that one large group keeps all workers busy.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.campaign import assemble
+from analysis.coefficients.campaign_plan import Group, GroupKind, Request, check_campaign, plan
+from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_solve import Block, solve_group
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.model import Problem
+from analysis.coefficients.phasors import FloatArray
+from analysis.coefficients.repeats import repeatability, with_repeats
+from analysis.coefficients.solve import problem_of
+from analysis.coefficients.stated import Stated
+from analysis.coefficients.uncertainty import TRIALS_AT_ONCE, draw
+
+Progress = Callable[[int, int, str], None]
+"""Takes how many are done, of how many, and what of."""
+
+
+@dataclass(frozen=True)
+class GroupSolver:
+    """Solve a group for a request; an object, so that it can be sent to another process."""
+
+    request: Request
+
+    def __call__(self, group: Group) -> Block:
+        """Return the group's block, without trials."""
+        return solve_group(group, replace(self.request, trials=0))
+
+
+@dataclass(frozen=True, eq=False)
+class TrialBlock:
+    """One block of trials of one group.
+
+    Attributes
+    ----------
+    block
+        Its number, from which its random numbers follow.
+    """
+
+    problem: Problem
+    stated: Stated
+    count: int
+    seed: int
+    block: int
+
+
+def draw_block(one: TrialBlock) -> FloatArray:
+    """Return the coefficients of each trial, shape ``(count, n)``."""
+    return draw(one.problem, one.stated, one.count, (one.seed, one.block))
+
+
+def solve_campaign(
+    cycles: Sequence[Cycle], request: Request, executor: Executor, progress: Progress
+) -> CampaignCoefficients:
+    """Return all coefficients of a campaign.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`analysis.coefficients.campaign.campaign_coefficients`.
+    """
+    check_campaign(cycles)
+    known = repeatability(cycles)
+    widened = [with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in cycles]
+    groups = plan(widened, request)
+    solver = GroupSolver(request)
+    blocks = list(_counted(executor.map(solver, groups), len(groups), "solving", progress))
+    if request.trials:
+        blocks = _with_trials(blocks, groups, request, executor, progress)
+    return assemble(blocks, widened, known, request)
+
+
+def _counted(
+    results: Iterator[Block], total: int, what: str, progress: Progress
+) -> Iterator[Block]:
+    for k, one in enumerate(results, 1):
+        progress(k, total, what)
+        yield one
+
+
+def _with_trials(
+    blocks: Sequence[Block],
+    groups: Sequence[Group],
+    request: Request,
+    executor: Executor,
+    progress: Progress,
+) -> list[Block]:
+    """Draw the trials of all linear groups; results come in order, one group after the other."""
+    linear = [
+        k for k, group in enumerate(groups) if group.kind is GroupKind.LINEAR and blocks[k].entries
+    ]
+    work = {k: _trial_blocks(groups[k], request) for k in linear}
+    total = sum(map(len, work.values()))
+    drawn = executor.map(draw_block, [one for k in linear for one in work[k]])
+    found, done = list(blocks), 0
+    for k in linear:
+        own = []
+        for _ in work[k]:
+            own.append(next(drawn))
+            done += 1
+            progress(done, total, "drawing trials")
+        found[k] = replace(found[k], trials=columns(np.concatenate(own), request.level))
+    return found
+
+
+def _trial_blocks(group: Group, request: Request) -> list[TrialBlock]:
+    problem = problem_of([cycle.run() for cycle in group.cycles], request.form)
+    starts = range(0, request.trials, TRIALS_AT_ONCE)
+    counts = [min(TRIALS_AT_ONCE, request.trials - start) for start in starts]
+    return [
+        TrialBlock(problem, request.stated, count, request.seed, k)
+        for k, count in enumerate(counts)
+    ]
+
+
+def columns(values: FloatArray, level: float) -> TrialColumns:
+    """Return what a campaign's table holds of trials, shape ``(trials, n)``."""
+    tail = (1.0 - level) / 2.0
+    low, high = np.quantile(values, (tail, 1.0 - tail), axis=0)
+    return TrialColumns(len(values), values.std(axis=0, ddof=1), low, high)

@@ -1,0 +1,84 @@
+"""The system without dimensions that a table is asked for in, by the model's own dimensions."""
+
+from typing import NoReturn
+
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.campaign_systems import System as BySpeed
+from analysis.coefficients.campaign_systems import without_dimensions
+from analysis.coefficients.normalisation import mmg, prime, seakeeping
+from analysis.coefficients.stated import Stated
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
+from pmm.coefficients.settings import SETTINGS_FILE, Ship, System
+
+_NEEDS = {
+    System.PRIME: ("length_m",),
+    System.MMG: ("length_m", "draught_m"),
+    System.SEAKEEPING: ("length_m",),
+}
+
+
+def in_system(
+    found: CampaignCoefficients, system: System, ship: Ship, body: Body | None, stated: Stated
+) -> tuple[CampaignCoefficients, tuple[Flag, ...]]:
+    """Return the campaign in a system; what has no meaning there is left out, and said.
+
+    Raises
+    ------
+    ConfigurationError
+        If a dimension of the model is missing, or nothing was measured at speed.
+    """
+    if system is System.DIMENSIONAL:
+        return found, ()
+    by_speed = _system(system, ship, body)
+    if system is System.SEAKEEPING:
+        return without_dimensions(found, by_speed, stated), ()
+    moving = [k for k, entry in enumerate(found.entries) if entry.speed_m_s > 0.0]
+    if not moving:
+        raise ConfigurationError(
+            f"--system {system} divides by the speed, and nothing was measured at speed; take "
+            "--system seakeeping or dimensional"
+        )
+    left = len(found.entries) - len(moving)
+    flags: tuple[Flag, ...] = ()
+    if left:
+        text = f"{left} values at rest have no meaning in the system {system} and are left out"
+        flags = (Flag("at_rest_left_out", Severity.NOTE, text),)
+    return without_dimensions(found.taken(moving), by_speed, stated), flags
+
+
+def check_dimensions(system: System, ship: Ship) -> None:
+    """Refuse a system whose lengths are not given, before any work is done.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming what is missing and where it is written.
+    """
+    missing = [name for name in _NEEDS.get(system, ()) if getattr(ship, name) is None]
+    if missing:
+        _refuse(system, missing)
+
+
+def _refuse(system: System, missing: list[str]) -> NoReturn:
+    raise ConfigurationError(
+        f"--system {system} needs {' and '.join(missing)}: write it in the table [ship] of "
+        f"{SETTINGS_FILE}"
+    )
+
+
+def _system(system: System, ship: Ship, body: Body | None) -> BySpeed:
+    check_dimensions(system, ship)
+    volume = ship.volume_m3
+    if volume is None and body is not None:
+        volume = body.mass_kg / ship.density_kg_m3
+    if system is System.SEAKEEPING and volume is None:
+        _refuse(system, ["volume_m3"])
+    length, density = ship.length_m or 0.0, ship.density_kg_m3
+    if system is System.PRIME:
+        return lambda speed: prime(length, speed, density)
+    if system is System.MMG:
+        return lambda speed: mmg(length, ship.draught_m or 0.0, speed, density)
+    by_gravity = seakeeping(length, volume or 0.0, density, ship.gravity_m_s2)
+    return lambda _: by_gravity

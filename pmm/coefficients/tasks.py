@@ -1,0 +1,226 @@
+"""What is to be done with each recording of a campaign: plain values that go to any process."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from analysis.coefficients.corrections import ZeroReading
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.phasors import FloatArray
+from analysis.readers import ColumnMap
+from analysis.resolver.analyse import Settings as ResolverSettings
+from analysis.resolver.choice import ReferenceChoice
+from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.campaign import AtRest, Campaign, Run
+from pmm.coefficients.settings import Amplifier
+from pmm.plan.kinds import RunKind
+
+TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
+
+
+@dataclass(frozen=True, eq=False)
+class Zero:
+    """What the gauges read at rest.
+
+    Attributes
+    ----------
+    utc_s
+        Middle of the record, seconds since 1970; ``None`` where the recording does not tell.
+    number
+        Place among all runs of the campaign; ``None`` where the file does not tell.
+    reading
+        Its ``at_s`` says nothing.
+    """
+
+    name: str
+    utc_s: float | None
+    number: int | None
+    reading: ZeroReading
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """What is known of the measuring chain, the same for all runs.
+
+    Attributes
+    ----------
+    calibration
+        Force for a reading, aft and fore.
+    amplifiers
+        By channel.
+    """
+
+    calibration: FloatArray | None = None
+    amplifiers: Mapping[str, Amplifier] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One recording, and all that is needed to make a cycle of it.
+
+    Attributes
+    ----------
+    set_point
+        As the campaign file says, measured where it was; ``None`` for a record at rest.
+    zeros
+        Before and after; either may be missing.
+    hashed
+        Whether the file's SHA-256 is wanted.
+    """
+
+    name: str
+    path: Path
+    kind: RunKind
+    oscillator: Oscillator
+    set_point: SetPoint
+    choice: ReferenceChoice
+    settings: ResolverSettings
+    columns: ColumnMap | None = None
+    drift_rad: float = 0.0
+    number: int | None = None
+    chain: Chain = field(default_factory=Chain)
+    zero_names: tuple[str | None, str | None] = (None, None)
+    zeros: tuple[Zero | None, Zero | None] = (None, None)
+    hashed: bool = False
+
+    def with_zeros(self, zeros: Mapping[str, Zero]) -> "Task":
+        """Return the task with the readings of its zero runs."""
+        before, after = (None if name is None else zeros.get(name) for name in self.zero_names)
+        return replace(self, zeros=(before, after))
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """A recording that was read.
+
+    Attributes
+    ----------
+    cycle
+        Motion and loads of the model, gross; ``None`` for a zero run.
+    zero
+        For a zero run.
+    periods, sample_rate_hz, duration_s
+        What the cycle rests on.
+    sha256
+        Of the file, where it was wanted.
+    """
+
+    name: str
+    file: str
+    cycle: Cycle | None
+    zero: Zero | None
+    periods: int
+    sample_rate_hz: float
+    duration_s: float
+    flags: tuple[Flag, ...] = ()
+    sha256: str = ""
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A recording that could not be used, and why."""
+
+    name: str
+    file: str
+    message: str
+    exit_status: int
+
+
+@dataclass(frozen=True, eq=False)
+class Work:
+    """A campaign's recordings, sorted by what they are for.
+
+    Attributes
+    ----------
+    zeros, runs, dry
+        Records at rest without load; runs in water and tows; runs in air.
+    not_recorded, left_out
+        Names, and for the latter why.
+    """
+
+    zeros: tuple[Task, ...]
+    runs: tuple[Task, ...]
+    dry: tuple[Task, ...]
+    not_recorded: tuple[str, ...]
+    left_out: tuple[Flag, ...]
+
+
+def work_of(
+    campaign: Campaign,
+    folder: Path,
+    oscillator: Oscillator,
+    chain: Chain,
+    *,
+    harmonics: int,
+    leave_out: Sequence[str] = (),
+    hashed: bool = False,
+) -> Work:
+    """Sort a campaign's runs and records at rest into tasks."""
+    settings = replace(campaign.analysis, harmonics=harmonics, gate_periods=None)
+    zeros: list[Task] = []
+    runs: list[Task] = []
+    dry: list[Task] = []
+    missing: list[str] = []
+    flags: list[Flag] = []
+    every: tuple[Run | AtRest, ...] = (*campaign.at_rest, *campaign.runs)
+    for one in every:
+        if (why := _why_not(one, leave_out)) is not None:
+            flags += [_left_out(one.name, why)] if why else []
+            continue
+        path = _path(one, folder)
+        if not path.exists() and isinstance(one, Run) and one.file is None:
+            missing.append(one.name)
+            continue
+        task = Task(
+            one.name,
+            path,
+            one.kind,
+            oscillator,
+            _set_point(one),
+            campaign.reference,
+            settings,
+            None if path.suffix == ".nc" else campaign.columns,
+            one.drift_rad,
+            one.number,
+            chain,
+            (one.zero_before, one.zero_after),
+            hashed=hashed,
+        )
+        kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
+        kept.append(task)
+    return Work(tuple(zeros), tuple(runs), tuple(dry), tuple(missing), tuple(flags))
+
+
+def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:
+    """Say why a run is not used; without words where nobody expects it to be."""
+    if one.name in leave_out:
+        return "it was asked for"
+    if one.outcome != "complete":
+        return f"its outcome is {one.outcome!r}"
+    if isinstance(one, AtRest) and one.kind not in (RunKind.ZERO, *TOWED):
+        return ""
+    if one.kind is RunKind.KNOWN_MASS:
+        return ""
+    return None
+
+
+def _left_out(name: str, why: str) -> Flag:
+    return Flag("run_left_out", Severity.NOTE, f"{name} is left out: {why}", name)
+
+
+def _is_dry(one: Run | AtRest) -> bool:
+    return one.kind is RunKind.DRY or one.medium is Medium.AIR
+
+
+def _path(one: Run | AtRest, folder: Path) -> Path:
+    path = one.recording_path(folder) if isinstance(one, Run) else folder / one.file
+    return path.resolve()
+
+
+def _set_point(one: Run | AtRest) -> SetPoint:
+    if isinstance(one, AtRest):
+        return SetPoint(0.0, 0.0, 0.0, one.carriage_speed_m_s, one.medium)
+    medium = Medium.AIR if _is_dry(one) else one.medium
+    return replace(one.set_point, medium=medium)

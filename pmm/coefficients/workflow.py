@@ -1,0 +1,238 @@
+"""From folders of recordings to a campaign's coefficients, on any executor."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis.coefficients.campaign_plan import Request
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.stated import Stated
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag, Severity
+from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign_file import read_campaign
+from pmm.coefficients.given import (
+    body_of,
+    chain_of,
+    oscillator_of,
+    restoring_of,
+    stated_of,
+    without_dry,
+)
+from pmm.coefficients.reading import read_cycle, read_zero
+from pmm.coefficients.settings import Settings
+from pmm.coefficients.solving import Progress, solve_campaign
+from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A campaign's coefficients and all that they rest on.
+
+    Attributes
+    ----------
+    result
+        In SI units; :mod:`pmm.coefficients.systems` takes the dimensions off.
+    cycles
+        Of the runs that were used, with what was taken off.
+    runs
+        What was read, zeros and dry runs included.
+    flags
+        About runs, by the run's name.
+    """
+
+    names: tuple[str, ...]
+    result: CampaignCoefficients
+    cycles: tuple[Cycle, ...]
+    runs: tuple[Done, ...]
+    failed: tuple[Failed, ...]
+    not_recorded: tuple[str, ...]
+    flags: Mapping[str, tuple[Flag, ...]]
+    left_out: tuple[Flag, ...]
+    stated: Stated
+    body: Body | None
+    settings: Settings
+
+
+_NOTHING_STATED = Flag(
+    "nothing_stated",
+    Severity.WARNING,
+    "no standard uncertainty is stated: the intervals hold the scatter of the periods and nothing "
+    "of mass, inertia, calibration, amplitude or speed; write [uncertainty] in coefficients.toml "
+    "and [model_uncertainty] in the campaign file",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """One campaign's recordings, read."""
+
+    campaign: Campaign
+    cycles: tuple[Cycle, ...]
+    runs: tuple[Done, ...]
+    failed: tuple[Failed, ...]
+    work: Work
+    stated: Stated
+    body: Body | None
+
+
+def coefficients_of(
+    folders: Sequence[Path],
+    settings: Settings,
+    executor: Executor,
+    progress: Progress,
+    *,
+    hashed: bool = False,
+) -> Outcome:
+    """Analyse all runs of some campaigns and return their coefficients.
+
+    Parameters
+    ----------
+    folders
+        Each with a campaign file; several are taken as one campaign of one rig and model.
+    hashed
+        Whether the recordings' hashes are wanted.
+
+    Raises
+    ------
+    ConfigurationError
+        If a file is wrong, inertia is missing, geometry differs, or two runs have one name.
+    DataError
+        If no run can be used, or a wanted coefficient is not determined.
+    """
+    campaigns = [(folder, read_campaign(folder / CAMPAIGN_FILE)) for folder in folders]
+    _check_names(campaigns)
+    parts = [
+        _read(folder, campaign, settings, executor, progress, hashed=hashed)
+        for folder, campaign in campaigns
+    ]
+    cycles = tuple(cycle for part in parts for cycle in part.cycles)
+    failed = tuple(one for part in parts for one in part.failed)
+    missing = tuple(name for part in parts for name in part.work.not_recorded)
+    if not cycles:
+        raise DataError(_nothing(folders, failed, missing))
+    stated = parts[0].stated
+    result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
+    runs = tuple(one for part in parts for one in part.runs)
+    return Outcome(
+        tuple(campaign.name for _, campaign in campaigns),
+        result,
+        cycles,
+        runs,
+        failed,
+        missing,
+        {one.name: one.flags for one in runs if one.flags},
+        (
+            *(flag for part in parts for flag in part.work.left_out),
+            *(() if stated.vector.any() else (_NOTHING_STATED,)),
+        ),
+        stated,
+        parts[0].body,
+        settings,
+    )
+
+
+def request_of(settings: Settings, stated: Stated) -> Request:
+    """Return what is wanted of the campaign."""
+    return Request(
+        settings.form,
+        stated,
+        settings.wanted,
+        settings.level,
+        settings.trials,
+        settings.seed,
+        settings.nonlinear,
+        settings.zero_frequency,
+    )
+
+
+def _check_names(campaigns: Sequence[tuple[Path, Campaign]]) -> None:
+    """Refuse runs of one name before anything is read."""
+    places = [
+        (name, folder)
+        for folder, campaign in campaigns
+        for name in [*(one.name for one in campaign.runs), *(one.name for one in campaign.at_rest)]
+    ]
+    counts = Counter(name for name, _ in places)
+    faults = []
+    for name, count in counts.items():
+        if count > 1:
+            where = " and ".join(str(folder) for own, folder in places if own == name)
+            faults.append(f"two runs are called {name!r} (in {where}); rename one")
+    if faults:
+        raise ConfigurationError("the campaigns cannot be taken together: " + "; ".join(faults))
+
+
+def _read(
+    folder: Path,
+    campaign: Campaign,
+    settings: Settings,
+    executor: Executor,
+    progress: Progress,
+    *,
+    hashed: bool,
+) -> _Read:
+    oscillator = oscillator_of(campaign, folder)
+    work = work_of(
+        campaign,
+        folder,
+        oscillator,
+        chain_of(settings),
+        harmonics=settings.harmonics,
+        leave_out=settings.leave_out,
+        hashed=hashed,
+    )
+    body, model = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
+    tasks = (*work.runs, *(work.dry if body is None else ()))
+    zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
+    by_name = {one.name: one.zero for one in zeros if isinstance(one, Done) and one.zero}
+    found = _all(
+        read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
+    )
+    wet, dry = _sorted(found, {task.name for task in work.dry})
+    restoring = restoring_of(campaign, settings)
+    if body is None:
+        wet = [without_dry(one, dry) if one.frequency_hz > 0.0 else one for one in wet]
+    cycles = [one.without(body, restoring).about(settings.point_ahead_m) for one in wet]
+    return _Read(
+        campaign,
+        tuple(cycles),
+        tuple(one for one in (*zeros, *found) if isinstance(one, Done)),
+        tuple(one for one in (*zeros, *found) if isinstance(one, Failed)),
+        work,
+        stated_of(campaign, settings, model),
+        body,
+    )
+
+
+def _all(
+    read: Callable[[Task], Done | Failed],
+    tasks: Sequence[Task],
+    what: str,
+    executor: Executor,
+    progress: Progress,
+) -> list[Done | Failed]:
+    found = []
+    for one in executor.map(read, tasks):
+        found.append(one)
+        progress(len(found), len(tasks), what)
+    return found
+
+
+def _sorted(found: Sequence[Done | Failed], dry: set[str]) -> tuple[list[Cycle], list[Cycle]]:
+    cycles = [one.cycle for one in found if isinstance(one, Done) and one.cycle is not None]
+    wet = [one for one in cycles if one.name not in dry]
+    return wet, [one for one in cycles if one.name in dry]
+
+
+def _nothing(folders: Sequence[Path], failed: Sequence[Failed], missing: Sequence[str]) -> str:
+    where = ", ".join(map(str, folders))
+    if failed:
+        return f"{where}: none of the runs can be used; the first: {failed[0].message}"
+    if missing:
+        return f"{where}: none of the runs is recorded yet ({', '.join(missing[:5])})"
+    return f"{where}: no runs in water; add a table [[runs]] for each"

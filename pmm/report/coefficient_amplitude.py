@@ -1,0 +1,65 @@
+"""Linear coefficients over the amplitude of the motion, a series for each frequency."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from analysis.coefficients.campaign_records import LINEAR
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.names import PLACES, name_of, place_of
+from pmm.report.coefficient_panels import axis_label, finish, grid, points, settle
+from pmm.report.style import drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SAME = 0.02
+
+
+def has_amplitudes(found: CampaignCoefficients, speed_m_s: float) -> bool:
+    """Whether any coefficient was had at two amplitudes of one frequency."""
+    return bool(_names(found, speed_m_s))
+
+
+def amplitude_figure(found: CampaignCoefficients, speed_m_s: float) -> "Figure":
+    """Draw a panel for each coefficient that was had at several amplitudes."""
+    names = _names(found, speed_m_s)
+    with drawing():
+        title = f"Over amplitude at {speed_m_s:g} m/s; {found.normalisation}"
+        figure, panels = grid(names, title)
+        shown = sorted({f for name in names for f, _ in _series(found, name, speed_m_s)})
+        for name, panel in zip(names, panels, strict=True):
+            used = []
+            for frequency, rows in _series(found, name, speed_m_s):
+                at = [1e3 * _lever(found, k) for k in rows]
+                number = shown.index(frequency)
+                points(panel, found, rows, at, f"{frequency:.3g} Hz", number)
+                used += found.values[rows].tolist()
+            panel.set_ylabel(axis_label(found, name))
+            settle(panel, used)
+        level = f"intervals of {100.0 * found.level:g} %"
+        finish(figure, panels, f"amplitude: translation (mm), or rotation (mrad); {level}")
+    return figure
+
+
+def _names(found: CampaignCoefficients, speed_m_s: float) -> list[str]:
+    linear = [name_of(place, found.plane, found.form) for place in PLACES]
+    return [name for name in linear if any(_series(found, name, speed_m_s))]
+
+
+def _series(
+    found: CampaignCoefficients, name: str, speed_m_s: float
+) -> Iterator[tuple[float, list[int]]]:
+    """Yield frequency and rows where there are two amplitudes or more."""
+    rows = found.rows(name, method=LINEAR, speed_m_s=speed_m_s)
+    for frequency in sorted({round(found.entries[k].frequency_hz, 3) for k in rows}):
+        own = [k for k in rows if abs(found.entries[k].frequency_hz - frequency) < 1e-3]
+        sizes = [_lever(found, k) for k in own]
+        if len(own) > 1 and max(sizes) > (1.0 + _SAME) * min(sizes):
+            yield frequency, own
+
+
+def _lever(found: CampaignCoefficients, row: int) -> float:
+    """Return the amplitude of the motion that the coefficient is of: m or rad."""
+    entry = found.entries[row]
+    column = place_of(entry.name, found.plane, found.form).column
+    return (entry.translation_amplitude_m, entry.rotation_amplitude_rad)[column]

@@ -1,0 +1,94 @@
+"""What the panels of coefficients have in common: a grid, names, units, series with intervals."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from pmm.report.labels import plain
+from pmm.report.style import PALETTE
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MARKS: Final = "osD^vP*X"
+_COLUMNS: Final = 2
+_WIDTH, _HEIGHT = 10.5, 2.1
+
+
+def grid(names: Sequence[str], title: str) -> tuple["Figure", list["Axes"]]:
+    """Return a figure with a panel for each name, in two columns."""
+    from matplotlib.figure import Figure
+
+    rows = math.ceil(len(names) / _COLUMNS)
+    figure = Figure(figsize=(_WIDTH, _HEIGHT * rows + 1.1), layout="constrained")
+    figure.suptitle(plain(title))
+    panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=True).ravel().tolist()
+    for panel in panels[len(names) :]:
+        panel.set_visible(False)
+    return figure, panels[: len(names)]
+
+
+def finish(figure: "Figure", panels: Sequence["Axes"], label: str) -> None:
+    """Label the lowest panel of each column, and put one legend below all of them."""
+    for panel in panels[-_COLUMNS:]:
+        panel.set_xlabel(label)
+        panel.tick_params(labelbottom=True)
+    handles: dict[str, Artist] = {}
+    for panel in panels:
+        for handle, text in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(str(text), handle)
+    if handles:
+        figure.legend(
+            list(handles.values()),
+            list(handles),
+            loc="outside lower center",
+            ncols=min(4, len(handles)),
+        )
+
+
+def axis_label(found: CampaignCoefficients, name: str) -> str:
+    """Return ``name (unit)``; without dimensions the figure's title names the system."""
+    unit = next(entry.unit for entry in found.entries if entry.name == name)
+    return f"{name}\n({'–' if unit == '1' else unit})"
+
+
+def points(
+    panel: "Axes",
+    found: CampaignCoefficients,
+    rows: Sequence[int],
+    at: Sequence[float],
+    label: str,
+    number: int,
+    *,
+    joined: bool = True,
+) -> None:
+    """Draw values with their intervals, in the order of ``at``."""
+    order = np.argsort(at)
+    own = [rows[k] for k in order]
+    panel.errorbar(
+        np.asarray(at)[order],
+        found.values[own],
+        found.half_widths[own],
+        fmt=f"{MARKS[number % len(MARKS)]}{'-' if joined else ''}",
+        color=PALETTE[number % len(PALETTE)],
+        ms=4.0,
+        lw=0.8,
+        elinewidth=1.2,
+        capsize=2.5,
+        label=label,
+    )
+
+
+def settle(panel: "Axes", values: Sequence[float]) -> None:
+    """Keep what is level in looks level too: never less than 2 % of the value from end to end."""
+    low, high = panel.get_ylim()
+    size = float(np.abs(np.asarray(values)).max(initial=0.0))
+    if high - low < 0.02 * size:
+        middle = (low + high) / 2.0
+        panel.set_ylim(middle - 0.01 * size, middle + 0.01 * size)
+    panel.ticklabel_format(axis="y", useOffset=False)
