@@ -78,7 +78,7 @@ def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
 
 
 @lru_cache(maxsize=64)
-def _parsed(path: Path, node_id: int, changed_ns: int) -> canopen.ObjectDictionary:
+def _parsed(path: Path, node_id: int, changed_ns: int) -> canopen.ObjectDictionary:  # noqa: ARG001  part of the key
     """Parse a file once for each node; nobody writes into a dictionary, so all may share it."""
     return import_od(str(path), node_id)
 
