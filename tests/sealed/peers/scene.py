@@ -1,0 +1,96 @@
+"""What peers look at: the residual of a case with coefficients fitted, in the project's own terms.
+
+Peers get the same start as the diagnosis: recordings resolved into harmonics with uncertainties,
+the nominal simulation taken off, and the coefficients fitted within their priors. What they make of
+the remainder is theirs.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import Component, GapRun, Stack
+from analysis.gap.fit import Problem
+from analysis.gap.forecast import forecast, further, planned
+from analysis.gap.forward import Simulator
+from analysis.gap.free import columns, free_numbers
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.noise import pooled
+from pmm.gap.answer import harmonics
+from pmm.gap.case import read_case
+from pmm.gap.load import load_campaign
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Remainder:
+    """Components of some runs, one after the other.
+
+    Attributes
+    ----------
+    values
+        What the nominal simulation with fitted coefficients leaves (fitting runs), or what it
+        foretells (withheld runs), in SI; shape ``(components,)``.
+    sigma
+        One standard deviation of each.
+    run
+        Number of the run of each.
+    """
+
+    runs: tuple[GapRun, ...]
+    components: tuple[Component, ...]
+    run: NDArray[np.intp]
+    values: FloatArray
+    sigma: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One case as a peer sees it."""
+
+    case: str
+    fitting: Remainder
+    withheld: Remainder
+    names: tuple[str, ...]
+
+    def foretold(self, added: FloatArray | None = None) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return ``before`` and ``after``, the latter with something added to the components."""
+        stack = self.withheld
+        before, after = (
+            {
+                name: harmonics(_as_stack(stack), stack.values + extra, number)
+                for number, name in enumerate(self.names)
+            }
+            for extra in (0.0, 0.0 if added is None else added)
+        )
+        return before, after
+
+
+def _as_stack(one: Remainder) -> Stack:
+    return Stack(one.runs, one.components, one.run, one.values, one.sigma)
+
+
+def scene(folder: Path) -> Scene:
+    """Return what a peer sees of a case."""
+    loaded, case = load_campaign(folder), read_case(folder)
+    stack = Stack.of(pooled(loaded.runs))
+    simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
+    free = free_numbers(loaded.rig, case.priors)
+    nuisances = Nuisances(columns(simulator, free, case.priors))
+    problem = Problem(simulator, nuisances, tuple(one.name for one in free))
+    left = problem.residual - nuisances.columns @ nuisances.fitted(problem.residual)
+    runs = [planned(problem, one.set_point, at) for at, one in enumerate(case.held_out)]
+    there = further(problem, runs, free, case.priors)
+    values = forecast(problem, there, None).values(there)
+    ahead = there.simulator.stack
+    return Scene(
+        folder.name,
+        Remainder(stack.runs, stack.components, stack.run, left * stack.uncertainty,
+                  stack.uncertainty),
+        Remainder(ahead.runs, ahead.components, ahead.run, values, ahead.uncertainty),
+        tuple(one.name for one in case.held_out),
+    )  # fmt: skip

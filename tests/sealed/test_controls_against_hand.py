@@ -1,0 +1,165 @@
+"""Controls and peers: what they answer where the right thing to say is plain."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from analysis.gap.components import Component, GapRun, Observation, Part
+from hardware.description.setpoint import SetPoint
+from pmm.gap.scoring.board import read_board
+from pmm.gap.scoring.score import score
+from sim.effects.campaign import CampaignRun
+from sim.effects.catalogue import catalogue
+from tests.pmm.gap.scoring import handmade
+from tests.sealed.__main__ import main
+from tests.sealed.controls import CONTROLS, at_random
+from tests.sealed.peers import by_bic, largest, sparse, structural
+from tests.sealed.peers.scene import Remainder, Scene
+from tests.sealed.peers.terms import TERMS, force_rows, library
+
+PARTS = [Component(channel, Part.MEAN) for channel in ("force_aft", "force_fore")] + [
+    Component(channel, part, order)
+    for channel in ("force_aft", "force_fore")
+    for order in range(1, 7)
+    for part in (Part.IN_PHASE, Part.QUADRATURE)
+]
+POINTS = [SetPoint(f, e, phase) for f, e, phase in
+          ((0.4, 0.02, 0.0), (0.8, 0.02, 1.0), (0.8, 0.04, 3.1), (1.2, 0.03, 0.5))]  # fmt: skip
+
+
+def _remainder(points: list[SetPoint], values: np.ndarray | None = None) -> Remainder:
+    count = len(PARTS)
+    empty = Observation(tuple(PARTS), np.zeros(count), np.full(count, 0.1))
+    runs = tuple(
+        GapRun(f"run-{i}", one, CampaignRun(i, 0.0, 0.0, one), empty, 10, 200.0)
+        for i, one in enumerate(points)
+    )
+    size = count * len(points)
+    return Remainder(runs, tuple(PARTS) * len(points), np.repeat(np.arange(len(points)), count),
+                     np.zeros(size) if values is None else values, np.full(size, 0.1))  # fmt: skip
+
+
+def _scene(law: str | None, size: float, seed: int = 1) -> Scene:
+    """Return a case whose forces hold noise of 0.1 N and one law of each strut's motion."""
+    there = _remainder(POINTS)
+    noise = 0.1 * np.random.default_rng(seed).standard_normal(len(there.values))
+    if law is not None:
+        at = list(TERMS).index(law)
+        columns = library(there)[:, 2 * at : 2 * at + 2].sum(axis=1)
+        noise[force_rows(there)] += size * columns / np.abs(columns).max()
+    return Scene(
+        "case-0001", _remainder(POINTS, noise), _remainder(POINTS[:2]), ("withheld-1", "withheld-2")
+    )
+
+
+@pytest.fixture
+def board(tmp_path: Path) -> Path:
+    """Return the board that docs/sealed-scoring.md works out."""
+    return handmade.write(tmp_path / "board")
+
+
+@pytest.mark.parametrize(
+    ("row", "reached"),
+    [
+        # Of 3 cases without a gap, 7 with one, 5 of them named; none of these is a zero offset.
+        ("no-gap", {"false_alarms": 0, "detection": 0, "top_1": 0, "unknown": 0, "stage": 0}),
+        (
+            "commonest",
+            {"false_alarms": 1, "detection": 1, "top_1": 0, "unknown": 0, "stage": 1 / 7},
+        ),
+    ],
+)
+def test_trivial_row_reaches_what_it_must(board: Path, row: str, reached: dict[str, float]) -> None:
+    done = CliRunner().invoke(main, ["rows", str(board), "--only", row])
+    assert done.exit_code == 0, done.output
+    found = score(read_board(board)).rows[1]
+    figures = {key: found.figure("all", key) for key in reached}
+    assert found.name == row
+    assert {key: one.value for key, one in figures.items() if one} == pytest.approx(reached)
+
+
+def test_random_answers_are_the_same_each_time_and_spread_over_everything() -> None:
+    cases = [Path(f"case-{i:04d}") for i in range(1500)]
+    said = [next(iter(at_random(case)["probabilities"])) for case in cases]
+    assert said == [next(iter(at_random(case)["probabilities"])) for case in cases]
+    assert set(said) == {"none", "coefficients", "unknown", *catalogue()}
+    counts = np.unique(said, return_counts=True)[1]
+    # A multinomial share of 1500 draws stays within 5 deviations.
+    expected = 1500 / len(counts)
+    assert np.abs(counts - expected).max() < 5.0 * np.sqrt(expected)
+
+
+@pytest.mark.parametrize("row", CONTROLS)
+def test_stages_go_with_what_is_said(row: str) -> None:
+    for number in range(40):
+        found = CONTROLS[row](Path(f"case-{number:04d}"))
+        for name in set(found["probabilities"]) & set(catalogue()):
+            assert found["stages"] == {catalogue()[name].stage.value: 1.0}
+
+
+def test_leave_out_lists_right_effects_of_named_gaps(board: Path, tmp_path: Path) -> None:
+    for key in (board / "keys").iterdir():
+        table = json.loads((key / "truth.json").read_text())
+        table["determinable"] = table["snr"] >= 3.0
+        (key / "truth.json").write_text(json.dumps(table))
+    target = tmp_path / "leave-out.json"
+    done = CliRunner().invoke(main, ["leave-out", str(board), "--output", str(target)])
+    assert done.exit_code == 0, done.output
+    assert json.loads(target.read_text()) == {
+        "case-0006": ["gain-error"],
+        "case-0007": ["coulomb-friction"],
+        "case-0008": ["cable", "memory"],
+        "case-0011": ["amplifier-lag", "channel-skew"],
+        "case-0012": ["quadratic-damping"],
+    }
+
+
+def _said(found: dict[str, dict[str, float]]) -> str:
+    return max(found["probabilities"], key=lambda name: found["probabilities"][name])
+
+
+@pytest.mark.parametrize(
+    ("law", "size", "said"),
+    [(None, 0.0, "none"), ("sign v", 3.0, "coulomb-friction"), ("v|v|", 3.0, "quadratic-damping")],
+)
+def test_lmfit_names_a_law_that_is_there(
+    monkeypatch: pytest.MonkeyPatch, law: str | None, size: float, said: str
+) -> None:
+    pytest.importorskip("lmfit", reason="optional dependency peers")
+    monkeypatch.setattr(by_bic, "scene", lambda case: _scene(law, size))
+    found = by_bic.lmfit_bic(Path("case-0001"))
+    assert _said(found) == said
+
+
+@pytest.mark.parametrize(("law", "size", "said"), [(None, 0.0, "none"), ("1", 3.0, "zero-offset")])
+def test_pysindy_names_a_law_that_is_there(
+    monkeypatch: pytest.MonkeyPatch, law: str | None, size: float, said: str
+) -> None:
+    pytest.importorskip("pysindy", reason="optional dependency peers")
+    monkeypatch.setattr(sparse, "scene", lambda case: _scene(law, size))
+    assert _said(sparse.pysindy_stlsq(Path("case-0001"))) == said
+
+
+@pytest.mark.parametrize(("law", "size", "said"), [(None, 0.0, "none"), ("1", 3.0, "zero-offset")])
+def test_largest_residual_says_what_sticks_out(
+    monkeypatch: pytest.MonkeyPatch, law: str | None, size: float, said: str
+) -> None:
+    monkeypatch.setattr(largest, "scene", lambda case: _scene(law, size))
+    assert _said(largest.largest_residual(Path("case-0001"))) == said
+
+
+@pytest.mark.parametrize(
+    ("fired", "stages"),
+    [
+        ({"force"}, ["model and water", "structure", "dynamometers", "acquisition"]),
+        ({"displacement", "force"}, ["mechanism"]),
+        ({"shaft", "displacement", "force", "pulse"}, ["drive"]),
+        ({"pulse"}, ["photocell"]),
+    ],
+)
+def test_structure_isolates_as_the_chain_says(fired: set[str], stages: list[str]) -> None:
+    pytest.importorskip("faultdiagnosistoolbox", reason="optional dependency peers")
+    assert structural.isolated(structural.tests_of_chain(), fired) == stages
