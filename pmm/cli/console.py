@@ -1,0 +1,51 @@
+"""``pmm console``: a rig on a screen."""
+
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.argument("rig", metavar="RIG.TOML", default="rig.toml")
+@click.option("--plans", metavar="FOLDER", help="Where plans lie.  [default: beside RIG.TOML]")
+@click.option(
+    "--output",
+    metavar="FOLDER",
+    help="Record campaigns there, a folder each.  [default: the folder that RIG.TOML names]",
+)
+@click.option("--host", default="127.0.0.1", show_default=True, help="Listen on this address.")
+@click.option("--port", default=8063, show_default=True, type=click.IntRange(0, 65535))
+@click.option("--token-file", metavar="FILE", help="Ask for the token in this file.")
+@click.option("--certificate", metavar="FILE", help="Speak HTTPS with this certificate (PEM).")
+@click.option("--key", metavar="FILE", help="The certificate's key (PEM).")
+@click.option(
+    "--earlier",
+    metavar="FOLDER",
+    multiple=True,
+    help="Show the coefficients of this campaign beside; repeatable.",
+)
+@click.option("--reference", metavar="CSV", help="Show this table of coefficients beside.")
+@click.option(
+    "--speed",
+    type=click.FloatRange(min=0.1, max=1000.0),
+    default=1.0,
+    show_default=True,
+    help="Run a simulated rig so many times as fast as the clock.",
+)
+def console(**options: Any) -> None:
+    """Show a rig in the browser and command it from there.
+
+    The page shows needles, phasors, traces, gate, alarms and finished runs, and commands the rig.
+    The control loop runs on when the page is closed. Ctrl-C once stops gently and leaves; twice
+    stops at once.
+
+    Listening beyond this machine needs --token-file; use --certificate and --key there too.
+
+    \b
+    pmm console examples/vertical/rig.toml --output my-campaigns
+
+    Exit status: 0 left by Ctrl-C at rest; 1 the rig says no; 2 the request was wrong.
+    """  # noqa: D301
+    from pmm.cli.console_work import Request, work
+
+    work(Request(**options))

@@ -1,0 +1,226 @@
+"""What ``pmm console`` does: open the rig, start the web server beside it, and run the loop."""
+
+import ssl
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+from socket import AF_INET, AF_INET6, socket
+from socket import create_server as listen
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from hardware.pacing import RealTime
+from hardware.rig import Rig
+from pmm.cli.folders import check_folder
+from pmm.cli.run_console import Interrupts
+from pmm.cli.screen import messages
+from pmm.console.app_settings import Settings
+from pmm.console.asking import Answers
+from pmm.console.link import Link
+from pmm.console.pacing import CountingPacer
+from pmm.console.security import LOCAL, Door
+from pmm.console.station import Station
+from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
+from pmm.run.journal import Taps
+from pmm.run.states import Command, RunStateError
+
+_LEAST_TOKEN: Final = 16
+_JOIN_S: Final = 10.0
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of ``pmm console``, by their names there."""
+
+    rig: str
+    plans: str | None
+    output: str | None
+    host: str
+    port: int
+    token_file: str | None
+    certificate: str | None
+    key: str | None
+    earlier: tuple[str, ...]
+    reference: str | None
+    speed: float
+
+
+def work(request: Request) -> None:
+    """Run the console until Ctrl-C.
+
+    Raises
+    ------
+    ConfigurationError
+        If the rig's file is wrong, the address is taken, or listening there is not safe.
+    """
+    rig_file = read_rig_file(request.rig)
+    _check(request, rig_file)
+    interrupts = Interrupts()
+    with ExitStack() as stack:
+        stack.enter_context(interrupts.counted())
+        listening = stack.enter_context(_listening(request))
+        connection = stack.enter_context(_server(request, rig_file, listening))
+        station = stack.enter_context(_station(request, rig_file, connection))
+        _loop(station, interrupts)
+        if station.control.fault is not None:
+            messages().print(f"fault: {station.control.fault}")
+
+
+def _loop(station: Station, interrupts: Interrupts) -> None:
+    """Step until Ctrl-C, and then until everything rests."""
+    heard, told = 0, False
+    while True:
+        station.step()
+        if interrupts.count > heard:
+            heard += 1
+            with suppress(RunStateError):
+                command = Command.STOP if heard == 1 else Command.QUICK_STOP
+                station.control.request(command)
+        if heard and station.at_rest:
+            return
+        if station.deserted and not told:
+            told = True
+            messages().print("the web server has ended; the rig runs on. Ctrl-C stops it")
+
+
+def _check(request: Request, rig_file: RigFile) -> None:
+    if request.speed != 1.0 and not is_simulated(rig_file.hardware):
+        raise ConfigurationError(
+            f"--speed {request.speed:g}: {rig_file.path} is no simulated rig; only those run "
+            "faster or slower than the clock"
+        )
+    if request.output is not None:
+        check_folder(Path(request.output), "--output")
+    if (request.certificate is None) != (request.key is None):
+        raise ConfigurationError("--certificate and --key belong together; give both or neither")
+    if request.host not in LOCAL and request.token_file is None:
+        raise ConfigurationError(
+            f"--host {request.host}: whoever reaches this address could move the rig; give "
+            f"--token-file with a secret of at least {_LEAST_TOKEN} characters, or listen on "
+            f"{LOCAL[0]}"
+        )
+    for option, name in (("--certificate", request.certificate), ("--key", request.key)):
+        if name is not None and not Path(name).is_file():
+            raise ConfigurationError(f"{option} {name}: no such file")
+    if request.certificate is not None:
+        _check_tls(request.certificate, str(request.key))
+
+
+def _check_tls(certificate: str, key: str) -> None:
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(certificate, key)
+    except (OSError, ssl.SSLError) as error:
+        raise ConfigurationError(f"--certificate {certificate}, --key {key}: {error}") from error
+
+
+def _token(file: str | None) -> str:
+    if file is None:
+        return ""
+    try:
+        token = Path(file).read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"--token-file {file}: {error}") from error
+    if len(token) < _LEAST_TOKEN:
+        raise ConfigurationError(
+            f"--token-file {file}: {len(token)} characters (limit {_LEAST_TOKEN}); make one with "
+            "python -c 'import secrets; print(secrets.token_urlsafe())'"
+        )
+    return token
+
+
+@contextmanager
+def _listening(request: Request) -> Iterator[socket]:
+    family = AF_INET6 if ":" in request.host else AF_INET
+    try:
+        found = listen((request.host, request.port), family=family)
+    except OSError as error:
+        raise ConfigurationError(
+            f"--host {request.host} --port {request.port}: {error.strerror}; is a console running "
+            "already? --port 0 takes a free one"
+        ) from error
+    with found:
+        yield found
+
+
+@contextmanager
+def _server(request: Request, rig_file: RigFile, listening: socket) -> Iterator[Connection]:
+    """Start the server's process; end it when the loop has ended."""
+    from pmm.console.server import serve
+
+    settings = _settings(request, rig_file, listening.getsockname()[1])
+    context = get_context("spawn")
+    ours, theirs = context.Pipe()
+    files = [None if one is None else Path(one) for one in (request.certificate, request.key)]
+    process = context.Process(
+        target=serve, args=(settings, listening, theirs, *files), name="console server"
+    )
+    process.start()
+    theirs.close()
+    scheme = "https" if settings.door.tls else "http"
+    host = f"[{request.host}]" if ":" in request.host else request.host
+    messages().print(f"console of {rig_file.name}: {scheme}://{host}:{settings.door.port}/")
+    try:
+        yield ours
+    finally:
+        ours.close()
+        process.join(_JOIN_S)
+        if process.is_alive():
+            process.kill()
+            process.join()
+
+
+def _settings(request: Request, rig_file: RigFile, port: int) -> Settings:
+    output = None if request.output is None else Path(request.output)
+    return Settings(
+        rig_path=rig_file.path,
+        plans=rig_file.path.parent if request.plans is None else Path(request.plans),
+        output=output,
+        log_folder=output or rig_file.path.parent / rig_file.recorder.folder,
+        door=Door(request.host, port, _token(request.token_file), request.certificate is not None),
+        earlier=tuple(Path(one) for one in request.earlier),
+        reference=None if request.reference is None else Path(request.reference),
+    )
+
+
+@contextmanager
+def _station(request: Request, rig_file: RigFile, connection: Connection) -> Iterator[Station]:
+    from importlib.metadata import version
+
+    period_s = 1.0 / rig_file.sample_rate_hz / request.speed
+    pacer = CountingPacer(
+        RealTime(period_s, time.monotonic, time.sleep), period_s, round(1.0 / period_s)
+    )
+    taps, answers = Taps(), Answers()
+    link = Link(connection)
+    with ExitStack() as stack:
+        stack.callback(link.close)
+        executor = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="closing"))
+        rig = stack.enter_context(
+            Rig(
+                rig_file.hardware,
+                time.monotonic,
+                pacer,
+                answers,
+                observers=(taps.frame,),
+                line_observers=(taps.line,),
+            )
+        )
+        rig.prepare()
+        station = Station(
+            rig, rig_file, link, answers, pacer, taps, time.monotonic, _utc,
+            {"program": f"pmm {version('pmm')}"}, executor, request.speed,
+        )  # fmt: skip
+        link.tell(station.hello())
+        yield station
+        for one in station.close():
+            messages().print(one)
+
+
+def _utc() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -1,0 +1,32 @@
+"""How a console is set up."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pmm.console.security import Door
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a console is set up.
+
+    Attributes
+    ----------
+    rig_path, plans, output
+        The rig's file; where its plans lie; where campaigns are recorded (``None``: as the rig's
+        file says).
+    log_folder
+        Where commands are logged while there is no campaign.
+    earlier
+        Folders of campaigns that finished runs are compared with.
+    reference
+        A table of coefficients over the frequency, as CSV.
+    """
+
+    rig_path: Path
+    plans: Path
+    output: Path | None
+    log_folder: Path
+    door: Door
+    earlier: tuple[Path, ...] = ()
+    reference: Path | None = None

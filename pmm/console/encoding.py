@@ -1,0 +1,144 @@
+"""What the browser is told, as JSON: NaN becomes ``null``, numbers keep six digits."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from pmm.console.messages import FloatArray, Frame, Hello, Needles, Notice, Trace
+from pmm.run.status import HarmonicRow, RunOutcome
+
+_DIGITS = 6
+
+
+def encode(message: Mapping[str, Any]) -> str:
+    """Return a message for the browser; raises ValueError for what JSON does not have."""
+    return json.dumps(message, allow_nan=False, separators=(",", ":"))
+
+
+def number(value: float) -> float | None:
+    """Return a number with as many digits as a screen shows; ``None`` if it is none."""
+    return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
+
+
+def table(values: FloatArray) -> list[list[float | None]]:
+    """Return the rows of a table."""
+    return [[number(value) for value in row] for row in values.tolist()]
+
+
+def hello_picture(hello: Hello) -> dict[str, Any]:
+    """Return what does not change."""
+    return {
+        "rig": hello.rig,
+        "simulated": hello.simulated,
+        "speed": hello.speed,
+        "sample_rate_hz": hello.sample_rate_hz,
+        "trace_rate_hz": hello.trace_rate_hz,
+        "harmonics": hello.harmonics,
+        "channels": [
+            {"name": one.name, "unit": one.unit, "full_scale": number(one.full_scale)}
+            for one in hello.channels
+        ],
+    }
+
+
+def frame_picture(frame: Frame) -> dict[str, Any]:
+    """Return one tick."""
+    status, point = frame.status, frame.set_point
+    return {
+        "type": "frame",
+        "n": frame.number,
+        "cycle": status.cycle,
+        "time_s": round(status.time_s, 4),
+        "state": str(status.state),
+        "run": status.run,
+        "kind": status.kind,
+        "run_number": status.run_number,
+        "run_count": status.run_count,
+        "gate": str(status.gate),
+        "periods": status.periods,
+        "wanted": status.wanted_periods,
+        "opened_s": number_of_time(frame.opened_s),
+        "closed_s": number_of_time(frame.closed_s),
+        "shaft_hz": number(frame.shaft_hz),
+        "set": None if point is None else {k: _plain(v) for k, v in asdict(point).items()},
+        "axes": [[name, unit, number(value)] for name, unit, value in frame.axes],
+        "allowed": frame.allowed,
+        "question": frame.question,
+        "plan": frame.plan,
+        "queue": frame.queue,
+        "next": frame.following,
+        "free_bytes": status.free_bytes,
+        "bus": asdict(frame.bus),
+        "loop": {key: _plain(value) for key, value in asdict(frame.loop).items()},
+        "needles": _needles(frame.needles),
+        "trace": trace_picture(frame.trace),
+    }
+
+
+def trace_picture(trace: Trace) -> dict[str, Any]:
+    """Return the points of a trace."""
+    return {"first": trace.first, "start_s": trace.start_s, "values": table(trace.values)}
+
+
+def notice_picture(notice: Notice, number_of_notice: int, at: str) -> dict[str, Any]:
+    """Return something that happened; ``at`` is when the server heard of it."""
+    return {
+        "type": "notice",
+        "id": number_of_notice,
+        "at": at,
+        "kind": notice.kind,
+        "time_s": round(notice.time_s, 2),
+        "text": notice.text,
+    }
+
+
+def outcome_picture(
+    outcome: RunOutcome, needles: Needles | None, folder: str, at: str
+) -> dict[str, Any]:
+    """Return how a run ended."""
+    return {
+        "run": outcome.run,
+        "kind": outcome.kind,
+        "outcome": outcome.outcome,
+        "periods": outcome.periods,
+        "reason": outcome.reason,
+        "folder": folder,
+        "at": at,
+        "flags": [one.message for one in outcome.flags],
+        "rows": [_row(one) for one in outcome.harmonics],
+        "needles": _needles(needles),
+    }
+
+
+def number_of_time(value: float) -> float | None:
+    """Return a time in seconds, to the microsecond."""
+    return round(value, 6) if math.isfinite(value) else None
+
+
+def _needles(needles: Needles | None) -> dict[str, Any] | None:
+    if needles is None:
+        return None
+    return {
+        "values": table(np.asarray(needles.coefficients)),
+        "widths": table(needles.half_widths),
+        "final": needles.final,
+    }
+
+
+def _row(row: HarmonicRow) -> dict[str, Any]:
+    return {
+        "channel": row.channel,
+        "unit": row.unit,
+        "mean": number(row.mean),
+        "in_phase": number(row.in_phase),
+        "quadrature": number(row.quadrature),
+        "half_width": number(row.half_width),
+    }
+
+
+def _plain(value: Any) -> Any:
+    return number(value) if isinstance(value, float) else value

@@ -1,0 +1,81 @@
+"""The server's end of the pipe to the loop."""
+
+import asyncio
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Final
+
+from hardware.description.errors import PmmError
+from pmm.console.messages import Order, OrderKind, QueuedPlan, Reply, Told
+
+PATIENCE_S: Final = 5.0
+
+
+class RefusedError(PmmError):
+    """The loop does not carry out an order; the message says why."""
+
+
+class LoopSide:
+    """Sends orders and waits for their replies; hands everything else on.
+
+    Parameters
+    ----------
+    take
+        Called in the event loop with every message that is no reply.
+    lost
+        Called in the event loop when the other side has ended.
+    """
+
+    def __init__(
+        self, connection: Connection, take: Callable[[Told], None], lost: Callable[[], None]
+    ) -> None:
+        self._connection, self._take, self._lost = connection, take, lost
+        self._open: dict[int, asyncio.Future[Reply]] = {}
+        self._count = 0
+        self._loop = asyncio.get_running_loop()
+        self._thread = threading.Thread(target=self._receive, name="console loop", daemon=True)
+        self._thread.start()
+
+    async def order(
+        self, kind: OrderKind, text: str = "", question: str = "", plan: QueuedPlan | None = None
+    ) -> str:
+        """Give an order; return what the loop says.
+
+        Raises
+        ------
+        RefusedError
+            If it is refused, or the loop does not answer.
+        """
+        self._count += 1
+        order = Order(self._count, kind, text, question, plan)
+        future: asyncio.Future[Reply] = self._loop.create_future()
+        self._open[order.number] = future
+        try:
+            self._connection.send(order)
+            reply = await asyncio.wait_for(future, PATIENCE_S)
+        except (OSError, TimeoutError) as error:
+            raise RefusedError("the control loop does not answer; look at the rig") from error
+        finally:
+            self._open.pop(order.number, None)
+        if not reply.done:
+            raise RefusedError(reply.text)
+        return reply.text
+
+    def replied(self, reply: Reply) -> None:
+        """Take a reply."""
+        future = self._open.get(reply.number)
+        if future is not None and not future.done():
+            future.set_result(reply)
+
+    def _receive(self) -> None:
+        try:
+            while True:
+                message = self._connection.recv()
+                self._loop.call_soon_threadsafe(self._take, message)
+        except (OSError, EOFError):
+            pass
+        try:
+            self._loop.call_soon_threadsafe(self._lost)
+        except RuntimeError:  # the event loop has ended first
+            return

@@ -1,0 +1,215 @@
+"""What the loop and the web server tell each other: frozen, and small enough to be pickled."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.setpoint import SetPoint
+from pmm.plan.plan import Plan
+from pmm.plan.run_plan import RunPlan
+from pmm.recorder.lateness import CycleStatistics
+from pmm.run.status import RunOutcome, Status
+
+FloatArray = NDArray[np.float64]
+
+
+class OrderKind(StrEnum):
+    """What the server may want of the loop."""
+
+    COMMAND = "command"
+    ANSWER = "answer"  # to a question of the rig
+    QUEUE = "queue"
+    DROP = "drop"
+
+
+@dataclass(frozen=True)
+class QueuedPlan:
+    """A checked plan that waits for its turn.
+
+    Attributes
+    ----------
+    number
+        Of the queue's entries, never used twice.
+    folder
+        Where it is recorded.
+    runs
+        Those that are to be made: what the folder holds complete is left out.
+    """
+
+    number: int
+    plan: Plan
+    folder: Path
+    runs: tuple[RunPlan, ...]
+
+
+@dataclass(frozen=True)
+class Order:
+    """A wish of the server; each gets one :class:`Reply`.
+
+    Attributes
+    ----------
+    text
+        A command's name, an answer, or the number of a queued plan.
+    question
+        What an answer is to.
+    """
+
+    number: int
+    kind: OrderKind
+    text: str = ""
+    question: str = ""
+    plan: QueuedPlan | None = None
+
+
+@dataclass(frozen=True)
+class Reply:
+    """Whether an order was carried out; else why not."""
+
+    number: int
+    done: bool
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class ChannelInfo:
+    """A recorded channel; ``full_scale`` is NaN where nobody knows it."""
+
+    name: str
+    unit: str
+    full_scale: float = math.nan
+
+
+@dataclass(frozen=True)
+class Hello:
+    """What does not change while the rig is open.
+
+    Attributes
+    ----------
+    trace_rate_hz
+        Points of a trace per second.
+    speed
+        How many times as fast as the clock the rig runs; 1 for all that is real.
+    """
+
+    rig: str
+    rig_path: Path
+    simulated: bool
+    channels: tuple[ChannelInfo, ...]
+    sample_rate_hz: float
+    trace_rate_hz: float
+    harmonics: int
+    speed: float
+
+
+@dataclass(frozen=True)
+class Needles:
+    """Readings of all channels, rows as in :attr:`Hello.channels`.
+
+    Attributes
+    ----------
+    coefficients
+        ``[A0, S1, C1, S2, C2, ...]`` of each channel.
+    half_widths
+        95 %, of the same shape; NaN while there are none.
+    final
+        Whether they cover whole periods.
+    """
+
+    coefficients: FloatArray
+    half_widths: FloatArray
+    final: bool
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Something that happened: a state, an alarm, the end of a run, a change of the queue.
+
+    Attributes
+    ----------
+    outcome, needles, plan, folder
+        Of a run that ended: how it did, its last readings, its plan and the campaign's folder.
+    """
+
+    kind: str
+    time_s: float
+    text: str
+    outcome: RunOutcome | None = None
+    needles: Needles | None = None
+    plan: int = 0
+    folder: Path | None = None
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Points since the last frame: shape ``(channels, points)``; the first has number ``first``."""
+
+    first: int
+    start_s: float
+    values: FloatArray
+
+
+@dataclass(frozen=True)
+class Bus:
+    """Health of the bus.
+
+    Attributes
+    ----------
+    ok
+        Whether the heartbeat goes out and no fault of the rig is latched.
+    nodes, error_frames
+        Supervised nodes, and error frames since the rig was opened.
+    """
+
+    ok: bool
+    nodes: int
+    error_frames: int
+    faults: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The picture of one tick.
+
+    Attributes
+    ----------
+    number
+        Counts ticks, so that whoever misses one knows.
+    plan, queue
+        Number of the plan that is under way (0: none), and of those that wait.
+    opened_s, closed_s
+        The gate in the rig's time; NaN where it is not.
+    shaft_hz
+        As it is measured; NaN where nothing measures it.
+    axes
+        Name, unit and reading of each axis; NaN before it is known.
+    allowed
+        Commands that the state takes.
+    question
+        What the operator is asked.
+    loop
+        Lateness of all cycles since the rig was opened.
+    """
+
+    number: int
+    status: Status
+    plan: int
+    queue: tuple[int, ...]
+    set_point: SetPoint | None
+    opened_s: float
+    closed_s: float
+    shaft_hz: float
+    axes: tuple[tuple[str, str, float], ...]
+    allowed: tuple[str, ...]
+    question: str
+    bus: Bus
+    loop: CycleStatistics
+    needles: Needles | None
+    trace: Trace
+    following: tuple[str, ...] = ()
+
+
+Told = Hello | Notice | Frame | Reply

@@ -1,0 +1,140 @@
+// The console: takes the stream, draws once per animation frame, and posts what the operator wants.
+import { Coefficients, Finished } from "./finished.js";
+import { Plans } from "./plans.js";
+import { Readings } from "./readings.js";
+import { Alarms, Facts, showProgress, showState } from "./status.js";
+import { Stream, post } from "./stream.js";
+import { byId, text } from "./svg.js";
+import { Traces } from "./traces.js";
+
+const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
+const finished = new Finished(), coefficients = new Coefficients();
+let holder = "nobody", latest = null, due = false;
+
+function draw() {
+  due = false;
+  const frame = latest;
+  if (!frame) return;
+  traces.gate = [frame.opened_s, frame.closed_s];
+  traces.draw();
+  readings.show(frame.needles);
+  showState(frame);
+  facts.show(frame);
+  alarms.show(frame);
+  showProgress(frame, plans.known);
+  plans.show(frame);
+  showButtons(frame);
+  showQuestion(frame);
+}
+
+function soon() {
+  if (due) return;
+  due = true;
+  requestAnimationFrame(draw);
+}
+
+function takeFrame(frame) {
+  if (latest && frame.run && frame.run !== latest.run) readings.clear();
+  latest = frame;
+  traces.add(frame.trace);
+  soon();
+}
+
+const commands = [...document.querySelectorAll("[data-command]")];
+
+function showButtons(frame) {
+  for (const button of commands) {
+    const quick = button.dataset.command === "quick stop";
+    button.disabled = !quick && (holder !== "you" || !frame.allowed.includes(button.dataset.command));
+  }
+}
+
+function showQuestion(frame) {
+  byId("question").hidden = !frame.question;
+  text(byId("question-text"), frame.question);
+}
+
+function showDesk(desk) {
+  holder = desk.holder;
+  const others = desk.browsers > 1 ? `, ${desk.browsers} browsers` : "";
+  text(byId("desk"), { you: `You have control${others}`, other: `You watch: another browser has control${others}`, nobody: "Nobody has control" }[holder]);
+  byId("take").hidden = holder === "you";
+  document.body.dataset.holder = holder;
+  if (latest) showButtons(latest);
+}
+
+function say(words, refused) {
+  const box = byId("said");
+  text(box, words);
+  box.dataset.tone = refused ? "refused" : "";
+  box.hidden = false;
+  clearTimeout(say.timer);
+  say.timer = setTimeout(() => { box.hidden = true; }, refused ? 15000 : 4000);
+}
+
+async function command(name) {
+  const answer = await post(stream, "/api/command", { command: name });
+  say(answer.ok ? answer.said : answer.error, !answer.ok);
+}
+
+function missed({ frames, seconds, happened }) {
+  const told = happened.filter((one) => ["alarm", "outcome", "plan"].includes(one.kind)).map((one) => `${one.time_s} s ${one.kind}: ${one.text}`);
+  const states = happened.filter((one) => one.kind === "state").length;
+  text(byId("missed-text"), `This page was away for ${seconds.toFixed(1)} s and missed ${frames} frames, ${states} changes of state${told.length ? `; meanwhile ${told.slice(-6).join("; ")}` : ""}.`);
+  byId("missed").hidden = false;
+}
+
+function begin(snapshot) {
+  byId("lost").hidden = snapshot.connected;
+  if (!snapshot.hello) return;
+  text(byId("rig"), snapshot.hello.rig + (snapshot.hello.speed === 1 ? "" : `, ${snapshot.hello.speed} times as fast`));
+  document.title = `${snapshot.hello.rig}: console`;
+  readings.begin(snapshot.hello);
+  traces.begin(snapshot.hello);
+  traces.add(snapshot.trace);
+  finished.begin(snapshot.hello, snapshot.finished);
+  coefficients.take(snapshot.figures);
+  alarms.begin(snapshot.notices);
+  plans.take(snapshot.plans);
+  showDesk(snapshot.desk);
+  if (snapshot.frame) { latest = snapshot.frame; soon(); }
+  document.body.dataset.ready = "yes";
+}
+
+const stream = new Stream({
+  snapshot: begin,
+  frame: takeFrame,
+  missed,
+  desk: showDesk,
+  notice: (one) => alarms.add(one),
+  plans: (one) => plans.take(one.plans),
+  finished: (one) => { finished.add(one.entry); plans.refresh(); },
+  figures: (one) => coefficients.take(one.figures),
+  lost: (words) => {
+    if (words.type) words = "The control loop has ended.";
+    text(byId("lost-text"), words);
+    byId("lost").hidden = false;
+  },
+});
+const plans = new Plans(stream);
+
+commands.forEach((one) => one.addEventListener("click", () => command(one.dataset.command)));
+addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && !byId("take-dialog").open) command("quick stop");
+});
+byId("take").addEventListener("click", () => {
+  if (holder === "other") byId("take-dialog").showModal();
+  else post(stream, "/api/take-control", { confirm: true });
+});
+byId("take-dialog").addEventListener("close", () => {
+  if (byId("take-dialog").returnValue === "yes") post(stream, "/api/take-control", { confirm: true });
+});
+byId("question").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const answer = await post(stream, "/api/answer", { question: latest.question, answer: byId("answer").value });
+  if (answer.ok) byId("answer").value = "";
+  else say(answer.error, true);
+});
+byId("missed-close").addEventListener("click", () => { byId("missed").hidden = true; });
+addEventListener("pmm-theme", () => { if (traces.channels) traces.build(); });
+globalThis.pmmFrames = () => stream.frames;

@@ -1,0 +1,55 @@
+// Plans: chosen, checked, queued; and the pages that campaigns have.
+import { byId, html, text } from "./svg.js";
+import { post } from "./stream.js";
+
+export class Plans {
+  constructor(stream) {
+    this.stream = stream;
+    this.known = {};
+    byId("plan-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.send(event.submitter?.dataset.do ?? "check");
+    });
+    this.refresh();
+  }
+
+  async refresh() {
+    const [plans, pages] = await Promise.all(["/api/plans", "/api/pages"].map(async (path) => (await fetch(path)).json()));
+    const chosen = byId("plan-name").value;
+    byId("plan-name").replaceChildren(...plans.names.map((one) => html("option", one === chosen ? { selected: "" } : {}, one)));
+    byId("pages").replaceChildren(...pages.pages.map((one) =>
+      html("a", { href: one.address, target: "_blank", rel: "noopener" }, `${one.folder}: ${one.name.replace(/\.html$/, "")}`)));
+  }
+
+  async send(what) {
+    const body = { name: byId("plan-name").value, text: byId("plan-text").value };
+    text(byId("plan-said"), what === "check" ? "checking" : "queueing");
+    const answer = await post(this.stream, `/api/plans/${what}`, body);
+    byId("plan-said").replaceChildren(...(answer.ok ? this.said(answer) : [html("p", { "data-verdict": "refuse" }, answer.error)]));
+    if (answer.ok) this.refresh();
+  }
+
+  said({ plan, said }) {
+    const minutes = Math.ceil(plan.runs.reduce((sum, one) => sum + one.duration_s, 0) / 60);
+    const done = plan.complete ? `, ${plan.complete} complete already` : "";
+    const first = html("p", {}, `${said ?? (plan.refused ? "the rig cannot run it" : "it can be run")}: ${plan.runs.length} runs${done}, at most ${minutes} min, to ${plan.folder}`);
+    return [first, ...plan.findings.map((one) => html("p", { "data-verdict": one.verdict }, one.run ? `${one.run}: ${one.message}` : one.message))];
+  }
+
+  take(plans) { this.known = plans; this.key = ""; }
+
+  show(frame) {
+    const numbers = [frame.plan, ...frame.queue].filter((one) => this.known[one]);
+    const key = numbers.join() + (frame.run_number ? "u" : "");
+    if (key === this.key) return;
+    this.key = key;
+    byId("queue").replaceChildren(...numbers.map((one, k) => {
+      const button = html("button", { class: "small" }, "Take out");
+      button.addEventListener("click", async () => {
+        const answer = await post(this.stream, "/api/plans/drop", { number: one });
+        text(byId("plan-said"), answer.ok ? answer.said : answer.error);
+      });
+      return html("li", {}, `${this.known[one].name}, ${this.known[one].runs.length} runs ${k || frame.plan !== one ? "(waits) " : ""}`, button);
+    }));
+  }
+}

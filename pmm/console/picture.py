@@ -1,0 +1,83 @@
+"""From a rig and its run control to one frame."""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from analysis.resolver.harmonics import Harmonics
+from hardware.rig import Rig
+from pmm.console.messages import Bus, ChannelInfo, FloatArray, Needles
+from pmm.plan.rig_file import RigFile
+from pmm.run.measurement import Measurement
+from pmm.run.run_control import RunControl
+from pmm.run.sampler import header_channels
+from pmm.run.states import ALLOWED
+from pmm.run.status import HarmonicRow
+
+HARMONICS: Final = 3
+
+
+def channels_of(rig: Rig, rig_file: RigFile) -> tuple[ChannelInfo, ...]:
+    """Return the recorded channels with the ranges of their needles."""
+    gauges = {one.channel: one.full_scale_n for one in rig_file.gauges}
+    return tuple(
+        ChannelInfo(one.name, one.unit, gauges.get(one.name, one.full_scale or math.nan))
+        for one in header_channels(rig)
+    )
+
+
+def bus_of(rig: Rig) -> Bus:
+    """Return how the bus is."""
+    master = rig.master
+    faults = tuple(str(one) for one in rig.faults)
+    if master is None:
+        return Bus(not faults, 0, 0, faults)
+    return Bus(master.healthy and not faults, len(master.nodes), master.error_frames.total, faults)
+
+
+def axes_of(rig: Rig) -> tuple[tuple[str, str, float], ...]:
+    """Return name, unit and reading of the axes."""
+    return tuple(
+        (name, axis.unit, math.nan if axis.reading is None else axis.reading.value)
+        for name, axis in (("eccentricity", rig.eccentricity), ("phase", rig.phase))
+        if axis is not None
+    )
+
+
+def allowed(control: RunControl) -> tuple[str, ...]:
+    """Return the commands that the present state takes."""
+    return tuple(str(one) for one, states in ALLOWED.items() if control.state in states)
+
+
+class NeedleReader:
+    """Reads the needles: all harmonics, with the interval of the last final reading."""
+
+    def __init__(self) -> None:
+        self._last: Harmonics | None = None
+        self._widths: FloatArray | None = None
+
+    def read(
+        self, measurement: Measurement | None, rows: tuple[HarmonicRow, ...]
+    ) -> Needles | None:
+        """Return the needles; ``None`` where nothing is known yet."""
+        if measurement is None or not rows:
+            return None
+        final = measurement.reading
+        shape = (len(rows), 2 * HARMONICS + 1)
+        widths = self._half_widths(final)
+        values = np.full(shape, math.nan) if final is None else final.coefficients.copy()
+        first = [(one.mean, one.in_phase, one.quadrature) for one in rows]
+        values[:, :3] = first
+        if widths is None or widths.shape != values.shape:
+            widths = np.full(values.shape, math.nan)
+            widths[:, 0] = [one.half_width for one in rows]
+        return Needles(values, widths, final=all(one.final for one in rows))
+
+    def _half_widths(self, reading: Harmonics | None) -> FloatArray | None:
+        """Compute the intervals once for each reading."""
+        if reading is not self._last:
+            self._last, self._widths = reading, None
+            if reading is not None and np.isfinite(reading.covariance).any():
+                self._widths = reading.half_width()
+        return self._widths

@@ -1,0 +1,175 @@
+"""Plans that the console offers: found beside the rig's file, read and checked as ``pmm run`` does."""
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hardware.description.errors import ConfigurationError, PmmError
+from pmm.configuration import read_toml
+from pmm.console.encoding import number
+from pmm.console.messages import QueuedPlan
+from pmm.plan.checks import Verdict, check_plan, require_possible
+from pmm.plan.duration import duration_rows
+from pmm.plan.findings import Finding
+from pmm.plan.plan import read_plan_and_rig
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+from pmm.run.campaign_folder import chosen_runs, folder_of, keep_sources
+
+LARGEST_TEXT = 1 << 20
+
+
+@dataclass(frozen=True)
+class CheckedPlan:
+    """A plan, read against its rig.
+
+    Attributes
+    ----------
+    durations_s
+        Of the runs in :attr:`waiting`, at most.
+    """
+
+    waiting: QueuedPlan
+    rig: RigFile
+    findings: tuple[Finding, ...]
+    durations_s: tuple[float, ...]
+
+    @property
+    def refused(self) -> bool:
+        """Whether the rig cannot run it."""
+        return any(one.verdict is Verdict.REFUSE for one in self.findings)
+
+
+class Plans:
+    """Reads plans of one rig.
+
+    Parameters
+    ----------
+    rig_path
+        The rig's file; plans that name another one are refused.
+    folder
+        Where plans lie; by default beside the rig's file.
+    output
+        Where campaigns are recorded, one folder each; by default as ``pmm run`` does.
+    """
+
+    def __init__(self, rig_path: Path, folder: Path, output: Path | None) -> None:
+        self._rig_path, self._folder, self._output = rig_path, folder, output
+        self._count = 0
+
+    def names(self) -> list[str]:
+        """Return the files in the folder that hold a plan, by their names."""
+        found = sorted(self._folder.glob("*.toml"))
+        return [one.name for one in found if _is_plan(one)]
+
+    def check(self, name: str, text: str) -> CheckedPlan:
+        """Read and check a plan: one of the folder's files, or the text of one.
+
+        Raises
+        ------
+        ConfigurationError
+            With everything that is wrong with it.
+        """
+        if text:
+            with self._written(text) as path:
+                return self._read(path)
+        return self._read(self._known(name))
+
+    def queue(self, name: str, text: str) -> CheckedPlan:
+        """Read a plan that is to be run; a text is kept beside the other plans.
+
+        Raises
+        ------
+        ConfigurationError, PlanRefusedError
+            If it is wrong, or the rig cannot run it.
+        """
+        if text:
+            with self._written(text) as path:
+                self._read(path)
+            name = f"console-{_digest(text)}.toml"
+            (self._folder / name).write_text(text, encoding="utf-8")
+        found = self._read(self._known(name))
+        require_possible(found.waiting.plan, found.rig)
+        found.waiting.folder.mkdir(parents=True, exist_ok=True)
+        keep_sources(found.waiting.plan, found.waiting.folder)
+        return found
+
+    def _known(self, name: str) -> Path:
+        names = self.names()
+        if name not in names:
+            known = ", ".join(names) or "none"
+            raise ConfigurationError(f"{self._folder}: no plan {name!r}; there are: {known}")
+        return self._folder / name
+
+    @contextmanager
+    def _written(self, text: str) -> Iterator[Path]:
+        path = self._folder / f".console-{_digest(text)}.toml"
+        try:
+            path.write_text(text, encoding="utf-8")
+            yield path
+        except OSError as error:
+            raise ConfigurationError(f"{self._folder}: cannot keep the plan: {error}") from error
+        finally:
+            path.unlink(missing_ok=True)
+
+    def _read(self, path: Path) -> CheckedPlan:
+        plan, rig = read_plan_and_rig(path)
+        if plan.rig_path.resolve() != self._rig_path.resolve():
+            raise ConfigurationError(
+                f"{path}: is for {plan.rig_path}, and this console has {self._rig_path}; name it "
+                "as rig"
+            )
+        folder = folder_of(plan, rig.recorder.folder, None)
+        if self._output is not None:
+            folder = self._output / plan.name
+        runs = chosen_runs(plan, folder, (), resume=True)
+        self._count += 1
+        waiting = QueuedPlan(self._count, plan, folder, runs)
+        return CheckedPlan(waiting, rig, check_plan(plan, rig), duration_rows(runs, rig))
+
+
+def plan_picture(found: CheckedPlan) -> dict[str, Any]:
+    """Return a plan for the browser."""
+    one = found.waiting
+    return {
+        "number": one.number,
+        "name": one.plan.name,
+        "file": one.plan.path.name,
+        "folder": str(one.folder),
+        "runs": [_run(run, s) for run, s in zip(one.runs, found.durations_s, strict=True)],
+        "complete": len(one.plan.runs) - len(one.runs),
+        "refused": found.refused,
+        "findings": [
+            {"verdict": str(f.verdict), "run": f.run, "message": f.message} for f in found.findings
+        ],
+    }
+
+
+def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
+    point = run.set_point
+    return {
+        "name": run.name,
+        "kind": str(run.kind),
+        "frequency_hz": number(point.frequency_hz),
+        "eccentricity_m": number(point.eccentricity_m),
+        "phase_rad": number(point.strut_phase_rad),
+        "speed_m_s": number(point.carriage_speed_m_s),
+        "medium": str(point.medium),
+        "periods": run.max_periods,
+        "duration_s": round(duration_s, 1),
+    }
+
+
+def _is_plan(path: Path) -> bool:
+    try:
+        table = read_toml(path)
+    except PmmError:
+        return False
+    return "runs" in table and "rig" in table and "oscillator" not in table
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

@@ -1,0 +1,144 @@
+"""Who may talk to the console: hosts, origins, token. Pure ASGI, in front of everything else."""
+
+import hmac
+import secrets
+from collections.abc import Awaitable, Callable, MutableMapping
+from dataclasses import dataclass, field
+from http.cookies import CookieError, SimpleCookie
+from typing import Any, Final
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+LOCAL: Final = ("127.0.0.1", "::1", "localhost")
+COOKIE: Final = "pmm-console"
+_OPEN: Final = ("/login", "/page/")  # what a browser without a token may load
+_HEADERS: Final = (
+    (
+        b"content-security-policy",
+        b"default-src 'self'; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; "
+        b"form-action 'self'",
+    ),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cache-control", b"no-store"),
+)
+
+
+@dataclass
+class Door:
+    """What is asked of whoever comes.
+
+    Attributes
+    ----------
+    host, port
+        Where the console listens.
+    token
+        Needed where it listens beyond this machine; empty for none.
+    tls
+        Whether it speaks HTTPS.
+    """
+
+    host: str
+    port: int
+    token: str = field(default="", repr=False)
+    tls: bool = False
+    _sessions: set[str] = field(default_factory=set, repr=False)
+
+    def log_in(self, token: str) -> str | None:
+        """Return a cookie's value for the right token."""
+        if not (self.token and hmac.compare_digest(token.encode(), self.token.encode())):
+            return None
+        value = secrets.token_urlsafe(32)
+        self._sessions.add(value)
+        return value
+
+    def knows(self, cookie: str) -> bool:
+        """Whether a cookie is one of ours, or none is needed."""
+        return not self.token or cookie in self._sessions
+
+    def is_host(self, host: str) -> bool:
+        """Whether a request means this machine: a foreign name that points here is refused.
+
+        Beyond this machine the token guards; the names by which it is known there are not ours to
+        say.
+        """
+        if self.token:
+            return bool(host)
+        return host in {f"{name}:{self.port}" for name in (*LOCAL, f"[{LOCAL[1]}]")}
+
+    def is_origin(self, origin: str, host: str) -> bool:
+        """Whether a page of this console is asking."""
+        return origin == f"{'https' if self.tls else 'http'}://{host}"
+
+
+class Guard:
+    """Refuses what :class:`Door` does not let in, and adds the headers that keep pages apart."""
+
+    def __init__(self, app: App, door: Door) -> None:
+        self._app, self._door = app, door
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a request through, or answer it here."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        refusal = self._refusal(scope)
+        if refusal is None:
+            await self._app(scope, receive, _with_headers(send))
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": refusal[1]})
+        else:
+            await _answer(_with_headers(send), *refusal)
+
+    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
+        """Return status and reason, or ``None`` to let it in."""
+        headers = {
+            key.decode("latin-1"): value.decode("latin-1") for key, value in scope["headers"]
+        }
+        host = headers.get("host", "")
+        if not self._door.is_host(host):
+            return 421, f"this console is not called {host!r}; open it by its own address"
+        acts = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD")
+        origin = headers.get("origin")
+        if (acts or origin is not None) and not self._door.is_origin(origin or "", host):
+            return 403, f"origin {origin!r} is refused; only this console's own page may ask"
+        if not self._door.knows(_cookie(headers)) and not _is_open(scope["path"]):
+            if scope["type"] == "http" and scope["path"] == "/":
+                return 303, "/login"
+            return 401, "token needed: log in at /login"
+        return None
+
+
+def _is_open(path: str) -> bool:
+    return path == _OPEN[0] or path.startswith(_OPEN[1])
+
+
+def _cookie(headers: dict[str, str]) -> str:
+    try:
+        found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+    except CookieError:
+        return ""
+    return found.value if found is not None else ""
+
+
+def _with_headers(send: Send) -> Send:
+    async def sent(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            there = {key for key, _ in message.get("headers", ())}
+            more = [one for one in _HEADERS if one[0] not in there]
+            message["headers"] = [*message.get("headers", ()), *more]
+        await send(message)
+
+    return sent
+
+
+async def _answer(send: Send, status: int, text: str) -> None:
+    headers = [(b"content-type", b"text/plain; charset=utf-8")]
+    if status == 303:
+        headers.append((b"location", text.encode()))
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": text.encode()})

@@ -1,0 +1,313 @@
+"""The rig's side of the console: the loop, the plans that wait, and a frame 25 times a second.
+
+Nothing here waits for a browser. Orders are taken between two cycles; frames are handed to
+:class:`pmm.console.link.Link`, which drops what nobody fetches.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Executor
+from typing import Final
+
+from hardware.description.errors import PmmError
+from hardware.rig import Rig
+from pmm.console.asking import Answers
+from pmm.console.link import Link
+from pmm.console.messages import (
+    Frame,
+    Hello,
+    Needles,
+    Notice,
+    Order,
+    OrderKind,
+    QueuedPlan,
+    Reply,
+)
+from pmm.console.pacing import CountingPacer
+from pmm.console.picture import HARMONICS, NeedleReader, allowed, axes_of, bus_of, channels_of
+from pmm.console.traces import TappedJournal, Traces, points_a_second
+from pmm.console.writing import Writer
+from pmm.plan.rig_file import RigFile, is_simulated
+from pmm.plan.run_plan import RunPlan
+from pmm.run.journal import Taps
+from pmm.run.measurement import Measurement
+from pmm.run.recording import Recording
+from pmm.run.run_control import RunControl
+from pmm.run.sampler import sampled_devices
+from pmm.run.states import Command, RunStateError, State
+from pmm.run.status import Status
+
+TICK_S: Final = 0.04
+_FOLLOWING: Final = 3
+_READY: Final = frozenset({State.IDLE, State.STOPPED, State.DONE})
+
+
+class Station:
+    """A rig under the console.
+
+    Parameters
+    ----------
+    clock
+        Monotonic seconds: for frames and flushing.
+    utc
+        Date and time in ISO 8601.
+    provenance
+        Kept with every run.
+    executor
+        Where recordings and the campaign's file are completed.
+
+    Attributes
+    ----------
+    control
+        Of the present plan, or of none.
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        rig_file: RigFile,
+        link: Link,
+        answers: Answers,
+        pacer: CountingPacer,
+        taps: Taps,
+        clock: Callable[[], float],
+        utc: Callable[[], str],
+        provenance: dict[str, str],
+        executor: Executor | None = None,
+        speed: float = 1.0,
+    ) -> None:
+        self._rig, self._rig_file, self._link = rig, rig_file, link
+        self._answers, self._pacer, self._taps = answers, pacer, taps
+        self._clock, self._utc, self._provenance = clock, utc, provenance
+        self._executor, self._speed = executor, speed
+        self._channels = channels_of(rig, rig_file)
+        self._traces = Traces(len(self._channels), rig.configuration.sample_rate_hz)
+        self._needles = NeedleReader()
+        self._waiting: deque[QueuedPlan] = deque()
+        self._present: QueuedPlan | None = None
+        self._writer = Writer(rig_file, executor)
+        self._due_s = -1.0
+        self._ticks = self._told_alarms = self._told_outcomes = 0
+        self._told_state: State | None = None
+        self._latest: Needles | None = None
+        self.control = self._controlled(())
+
+    def show(self, control: RunControl) -> None:
+        """Tell what is new, and hand on a frame when it is time: the view of run control."""
+        self._answers.settle()
+        self._tell_news(control)
+        now_s = self._clock()
+        if now_s >= self._due_s:
+            self._due_s = max(self._due_s + TICK_S, now_s)
+            self._ticks += 1
+            self._link.frame(self._frame(control))
+
+    def hello(self) -> Hello:
+        """Return what does not change."""
+        rate_hz = self._rig.configuration.sample_rate_hz
+        return Hello(
+            rig=self._rig_file.name,
+            rig_path=self._rig_file.path,
+            simulated=is_simulated(self._rig_file.hardware),
+            channels=self._channels,
+            sample_rate_hz=rate_hz,
+            trace_rate_hz=points_a_second(rate_hz)[1],
+            harmonics=HARMONICS,
+            speed=self._speed,
+        )
+
+    def step(self) -> None:
+        """Take orders, run a cycle, and go on to the next plan if it is its turn."""
+        for order in self._link.orders():
+            self._link.tell(self._carry_out(order))
+        if self.control.measurement is None:
+            self._show_idle()
+        self.control.step()
+        if self.control.finished and self._waiting:
+            self._next_plan()
+
+    def close(self) -> list[str]:
+        """Write what is still to be written; return what went wrong."""
+        return self._writer.close()
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing is under way."""
+        return self._idle or (self.control.state is State.FAULT and self.control.finished)
+
+    @property
+    def deserted(self) -> bool:
+        """Whether the web server is gone."""
+        return self._link.lost
+
+    def _carry_out(self, order: Order) -> Reply:
+        try:
+            text = self._obey(order)
+        except (PmmError, ValueError) as error:
+            return Reply(order.number, False, str(error))
+        return Reply(order.number, True, text)
+
+    def _obey(self, order: Order) -> str:
+        if order.kind is OrderKind.COMMAND:
+            return self._command(Command(order.text))
+        if order.kind is OrderKind.ANSWER:
+            if not self._answers.give(order.question, order.text):
+                raise RunStateError("nobody asks this any more")
+            return "answered"
+        if order.kind is OrderKind.QUEUE and order.plan is not None:
+            return self._queue(order.plan)
+        if order.kind is OrderKind.DROP:
+            return self._drop(int(order.text))
+        raise RunStateError(f"{order.kind}: not known")
+
+    def _command(self, command: Command) -> str:
+        if command is Command.START and not self.control.runs:
+            raise RunStateError("no plan is queued; check one and queue it first")
+        self.control.request(command)
+        return f"{command} in state {self.control.state}"
+
+    def _queue(self, plan: QueuedPlan) -> str:
+        if not plan.runs:
+            raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
+        self._waiting.append(plan)
+        self._notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
+        if self._idle and not self._left:
+            self._next_plan()
+        return f"{plan.plan.name} is queued"
+
+    def _drop(self, number: int) -> str:
+        if self._present is not None and number == self._present.number:
+            if not self._idle:
+                raise RunStateError(f"{self._present.plan.name} is under way; stop it first")
+            name, self._present = self._present.plan.name, None
+            self.control = self._controlled(())
+        else:
+            found = [one for one in self._waiting if one.number == number]
+            if not found:
+                raise RunStateError(f"no plan {number} waits")
+            name = found[0].plan.name
+            self._waiting.remove(found[0])
+        self._notice("queue", f"{name}: taken out of the queue")
+        return f"{name} is taken out"
+
+    @property
+    def _idle(self) -> bool:
+        return self.control.state in _READY and self.control.measurement is None
+
+    @property
+    def _left(self) -> int:
+        """How many runs of the present plan are still to be made."""
+        return len(self.control.runs) - len(self.control.outcomes)
+
+    def _next_plan(self) -> None:
+        """Take the next plan; it begins by itself only behind one that ended by itself."""
+        goes_on = self.control.state is State.DONE and self._present is not None
+        if self._left and self._present is not None:
+            return
+        self._present = self._waiting.popleft()
+        self.control = self._controlled(self._present.runs)
+        self._notice("plan", f"{self._present.plan.name} is next", plan=self._present.number)
+        if goes_on:
+            self.control.request(Command.START)
+
+    def _controlled(self, runs: tuple[RunPlan, ...]) -> RunControl:
+        control = RunControl(
+            self._rig, self._rig_file, runs, self._begin, self._clock, self, self._executor
+        )
+        self._told_alarms = self._told_outcomes = 0
+        self._told_state = None
+        if self._present is not None:
+            control.free_bytes = self._recording(self._present).free_bytes
+        return control
+
+    def _recording(self, plan: QueuedPlan) -> Recording:
+        kept = {**self._provenance, "plan": plan.plan.name}
+        if plan.plan.operator:
+            kept["operator"] = plan.plan.operator
+        return Recording(
+            self._rig, self._rig_file, plan.plan, plan.folder, self._utc, self._taps, kept
+        )
+
+    def _begin(self, run: RunPlan) -> Measurement:
+        if self._present is None:
+            raise AssertionError("a run without a plan")
+        measurement = self._recording(self._present).begin(run)
+        measurement.journal = TappedJournal(measurement.journal, self._traces)
+        return measurement
+
+    def _show_idle(self) -> None:
+        """Let the traces go on between runs, and devices not keep their samples for ever."""
+        row, parts = 0, []
+        for device in sampled_devices(self._rig):
+            for block in device.take():
+                parts.append((row, block))
+            row += len(device.channels)
+        if parts:
+            self._traces.add_parts(self._rig.number, parts)
+
+    def _tell_news(self, control: RunControl) -> None:
+        time_s = self._rig.number / self._rig.configuration.sample_rate_hz
+        if control.state is not self._told_state:
+            self._told_state = control.state
+            self._notice("state", str(control.state))
+            if control.measurement is not None:
+                rows = control.measurement.rows()
+                self._latest = self._needles.read(control.measurement, rows)
+        for text in self._writer.failures():
+            self._notice("alarm", text)
+        new = control.alarm_count - self._told_alarms
+        if new:
+            self._told_alarms += new
+            for text in control.status().alarms[-new:]:
+                self._notice("alarm", text)
+        for outcome in control.outcomes[self._told_outcomes :]:
+            self._told_outcomes += 1
+            if self._present is None:
+                continue
+            self._writer.write(self._present)
+            self._link.tell(
+                Notice(
+                    "outcome",
+                    time_s,
+                    outcome.run,
+                    outcome,
+                    self._latest,
+                    self._present.number,
+                    self._present.folder,
+                )
+            )
+            self._latest = None
+
+    def _notice(self, kind: str, text: str, plan: int = 0) -> None:
+        time_s = self._rig.number / self._rig.configuration.sample_rate_hz
+        self._link.tell(Notice(kind, time_s, text, plan=plan))
+
+    def _frame(self, control: RunControl) -> Frame:
+        status = control.status()
+        measurement, run = control.measurement, self._run(control, status)
+        gate = measurement.gate if measurement is not None else None
+        return Frame(
+            number=self._ticks,
+            status=status,
+            plan=self._present.number if self._present is not None else 0,
+            queue=tuple(one.number for one in self._waiting),
+            set_point=run.set_point if run is not None else None,
+            opened_s=gate.opened_s if gate is not None else float("nan"),
+            closed_s=gate.closed_s if gate is not None else float("nan"),
+            shaft_hz=self._rig.shaft.measured_frequency_hz if self._rig.shaft else float("nan"),
+            axes=axes_of(self._rig),
+            allowed=allowed(control),
+            question=self._answers.question,
+            bus=bus_of(self._rig),
+            loop=self._pacer.statistics(),
+            needles=self._needles.read(measurement, status.harmonics),
+            trace=self._traces.take(),
+            following=self._following(control, run),
+        )
+
+    def _run(self, control: RunControl, status: Status) -> RunPlan | None:
+        return next((one for one in control.runs if one.name == status.run), None)
+
+    def _following(self, control: RunControl, run: RunPlan | None) -> tuple[str, ...]:
+        ended = {one.run for one in control.outcomes} | {run.name if run else ""}
+        return tuple(one.name for one in control.runs if one.name not in ended)[:_FOLLOWING]
