@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -45,10 +46,11 @@ def test_the_drive_stops_quickly_after_its_controller_was_killed(tmp_path: Path)
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": ROOT}
     with (
         subprocess.Popen([*host_command, "--port", str(port)], **pipes) as host,
-        subprocess.Popen([*controller, json.dumps(tables)], **pipes) as run,
         UdpMulticastBus("239.74.163.2", **options) as watcher,
+        ExitStack() as started,
     ):
-        assert host.stdout.readline()
+        assert host.stdout.readline()  # it answers from here on
+        run = started.enter_context(subprocess.Popen([*controller, json.dumps(tables)], **pipes))
         assert run.stdout.readline() == "turning\n"
         while watcher.recv(0.0) is not None:
             continue
