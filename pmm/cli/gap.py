@@ -6,8 +6,10 @@ import click
 
 # Job -> module with a click command of the same name; each is imported when it is asked for.
 _JOBS = {
+    "add": "pmm.cli.gap_add",
     "answer": "pmm.cli.gap_answer",
     "check": "pmm.cli.gap_check",
+    "diagnose": "pmm.cli.gap_diagnose",
 }
 
 
@@ -24,6 +26,15 @@ class Jobs(click.Group):
             return None
         command = getattr(import_module(_JOBS[name]), name)
         return command if isinstance(command, click.Command) else None
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Take a campaign, or its options, in place of a job for its diagnosis."""
+        if args and args[0] not in {*_JOBS, "-h", "--help"}:
+            from pathlib import Path
+
+            if args[0].startswith("-") or Path(args[0]).exists():
+                args = ["diagnose", *args]
+        return super().parse_args(ctx, args)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -42,7 +53,10 @@ class Jobs(click.Group):
 def gap() -> None:
     """Find out why rig and simulation differ, and check how well that is done.
 
+    A campaign in place of a job is diagnosed: "pmm gap CAMPAIGN" is "pmm gap diagnose CAMPAIGN".
+
     \b
+    pmm gap my-campaign --page gap.html
     pmm gap answer board
     pmm gap check board --page board.html
     """  # noqa: D301

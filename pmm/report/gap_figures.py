@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.description import ForceMap
+from analysis.gap.where import FORCE, MOTION, SHAFT, TIMING
 from pmm.gap.cells import Cell
 from pmm.gap.report import GapReport
 from pmm.report.labels import plain
@@ -21,6 +22,7 @@ FloatArray = NDArray[np.float64]
 
 # E/u from noise (1 and less) to large: one hue, dark is more, told apart without colour too.
 _LEVELS: Final = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
+_CHAIN: Final = (SHAFT, TIMING, MOTION, FORCE)
 _BEFORE, _AFTER = PALETTE[1], PALETTE[0]
 _LEAST_U: Final = 0.05  # where a gap of nothing is drawn on a logarithmic axis
 
@@ -29,7 +31,7 @@ def heat_map(report: GapReport) -> "Figure":
     """Draw E/u of each channel's harmonics over the runs, before and after the best answer."""
     from matplotlib.figure import Figure
 
-    rows = list(dict.fromkeys((one.stage, one.channel, one.order) for one in report.cells))
+    rows = sorted({(one.stage, one.channel, one.order) for one in report.cells}, key=_downstream)
     runs = list(dict.fromkeys(one.run for one in report.cells))
     with drawing():
         height = 1.6 + 0.17 * len(rows) + 0.06 * max((len(name) for name in runs), default=0)
@@ -44,6 +46,10 @@ def heat_map(report: GapReport) -> "Figure":
         bar = figure.colorbar(image, ax=axes, shrink=0.7, ticks=_LEVELS)
         bar.set_label("E/u, root mean square of both parts")
     return figure
+
+
+def _downstream(row: tuple[str, str, int]) -> tuple[int, str, int]:
+    return _CHAIN.index(row[0]), row[1], row[2]
 
 
 def _matrix(
@@ -68,17 +74,17 @@ def _draw_cells(
     import matplotlib as mpl
     from matplotlib.colors import BoundaryNorm
 
-    colours = mpl.colormaps["cividis_r"]
+    colours = mpl.colormaps["Blues"]
     norm = BoundaryNorm(_LEVELS, colours.N, extend="max")
     edges_x, edges_y = np.arange(len(runs) + 1) - 0.5, np.arange(len(rows) + 1) - 0.5
     image = axes.pcolormesh(edges_x, edges_y, values, norm=norm, cmap=colours)
     axes.grid(visible=False)
-    axes.invert_yaxis()
+    axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xticks(range(len(runs)), [plain(name) for name in runs], rotation=90)
     axes.set_yticks(range(len(rows)), [_row_name(one) for one in rows], fontsize=7.0)
     for at in range(1, len(rows)):
         if rows[at][1] != rows[at - 1][1]:
-            axes.axhline(at - 0.5, color="white", linewidth=2.0)
+            axes.axhline(at - 0.5, color=TRACE, linewidth=0.8)
     return image
 
 
@@ -104,7 +110,7 @@ def walk_figure(report: GapReport) -> "Figure":
         axes.annotate(
             "noise alone", (1.0, -0.75), xytext=(4, 0), textcoords="offset points", fontsize=8
         )
-        axes.set_xscale("log")
+        _logarithmic(axes)
         axes.set_ylim(count - 0.5, -1.0)
         axes.set_yticks(range(count), [one.what for one in report.walk])
         axes.set_xlabel("E/u after the free coefficients, root mean square")
@@ -112,6 +118,15 @@ def walk_figure(report: GapReport) -> "Figure":
         axes.plot([], [], "s", color=_AFTER, label="with the best answer")
         axes.legend(loc="lower right")
     return figure
+
+
+def _logarithmic(axes: "Axes") -> None:
+    """Scale the abscissa by decades with plain numbers."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def ranking_figure(report: GapReport) -> "Figure":
@@ -156,7 +171,7 @@ def withheld_figure(report: GapReport) -> "Figure":
                 y = [at + 0.12 * (step - 1.5) for _, at in seen]
                 axes.plot(x, y, mark, color=colour, label=label, markersize=6)
         axes.axvline(1.0, color=TRACE, linestyle="--")
-        axes.set_xscale("log")
+        _logarithmic(axes)
         axes.set_xlim(left=0.8 * _LEAST_U)
         axes.set_yticks(range(count), [plain(one.regime) for one in report.regimes])
         axes.invert_yaxis()

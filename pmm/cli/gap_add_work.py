@@ -1,0 +1,133 @@
+"""What ``pmm gap add`` does: fit, append to the campaign file, and keep the old one."""
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import click
+
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.campaign import CAMPAIGN_FILE
+from pmm.campaign_file import read_campaign
+from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.hints import pasted
+from pmm.cli.screen import output
+from pmm.gap.examine import Examined, Options, examine
+from pmm.gap.report import gap_report
+from pmm.parallel import open_executor
+from sim.effects.effect import Effect
+
+JSON_SCHEMA = "pmm-gap-add-1"
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of the command, by their names there."""
+
+    campaign: str
+    effect: str | None
+    effects_file: str | None
+    jobs: int | None
+    as_json: bool
+
+
+def run(request: Request) -> None:
+    """Add an effect to a campaign.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign or an option is wrong, or the campaign has that effect already.
+    DataError
+        If no effect is found.
+    """
+    folder = Path(request.campaign)
+    path = folder / CAMPAIGN_FILE if folder.is_dir() else folder
+    if not os.access(path, os.W_OK):
+        raise ConfigurationError(f"{path}: cannot be written to")
+    if request.effect is not None:
+        _refuse_twice(path, (request.effect,))
+    chosen = _effects(_examined(request, path), request)
+    _refuse_twice(path, [one.name for one in chosen])
+    kept = append_effects(path, chosen)
+    if request.as_json:
+        rows = [{"name": one.name, "parameters": asdict(one)} for one in chosen]
+        document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
+        click.echo(json.dumps(document, indent=1, allow_nan=False))
+        return
+    for one in chosen:
+        said = ", ".join(f"{key} = {value:.6g}" for key, value in asdict(one).items())
+        output().print(f"added {one.name}: {said}", soft_wrap=True)
+    output().print(f"{path}; as it was: {kept}", soft_wrap=True)
+    output().print(pasted("gap", request.campaign), soft_wrap=True)
+
+
+def _examined(request: Request, path: Path) -> Examined:
+    named = () if request.effect is None else (request.effect,)
+    more = () if request.effects_file is None else (request.effects_file,)
+    jobs = request.jobs or 1
+    if more and jobs > 1:
+        raise ConfigurationError("--effects-file: effects of your own need --jobs 1")
+    with progress() as told, open_executor(jobs) as executor:
+        return examine(path, Options((*named, *more)), None if jobs == 1 else executor, told)
+
+
+def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
+    """Return what to add: the named effect as fitted, or the one that was found."""
+    found = examined.diagnosis
+    if request.effect is not None:
+        fits = [one.fit for one in found.weighed.singles if one.fit.names == (request.effect,)]
+        if not fits:
+            reason = found.weighed.refused.get(request.effect, "these runs do not show it")
+            raise DataError(f"{request.effect}: cannot be fitted: {reason}")
+        return fits[0].effects
+    report = gap_report(examined)
+    if report.verdict != "effect" or found.best is None:
+        raise DataError(f"{examined.campaign.name}: {report.sentence}; nothing to add")
+    return found.best.fit.effects
+
+
+def _refuse_twice(path: Path, names: Sequence[str]) -> None:
+    there = {one.name for one in read_campaign(path).effects}
+    twice = sorted(there & set(names))
+    if twice:
+        raise ConfigurationError(
+            f"{path}: {', '.join(twice)} is in [[effects]] already; take it out first, so that its "
+            "parameters are fitted whole"
+        )
+
+
+def append_effects(path: Path, effects: Sequence[Effect]) -> Path:
+    """Append effects to a campaign file as tables, and return where the old file is kept.
+
+    Tables at the end of a TOML file leave everything before them as it is, comments too. The new
+    file takes the old one's place only once it is whole and has been read.
+    """
+    old = path.read_text(encoding="utf-8")
+    text = old.rstrip("\n") + "\n" + "".join(_table(one) for one in effects)
+    written = path.with_name(f"{path.name}.part")
+    written.write_text(text, encoding="utf-8")
+    try:
+        read_campaign(written)
+    except ConfigurationError:
+        written.unlink()
+        raise
+    kept = _free_name(path)
+    kept.write_text(old, encoding="utf-8")
+    written.replace(path)
+    return kept
+
+
+def _table(one: Effect) -> str:
+    values = ", ".join(f"{key} = {float(value)!r}" for key, value in asdict(one).items())
+    parameters = f"parameters = {{ {values} }}\n" if values else ""
+    return f'\n[[effects]]\nname = "{one.name}"\n{parameters}'
+
+
+def _free_name(path: Path) -> Path:
+    number = 1
+    while (kept := path.with_name(f"{path.name}.{number}")).exists():
+        number += 1
+    return kept
