@@ -61,6 +61,11 @@ class Core:
         self._alarms: deque[str] = deque(maxlen=_ALARMS)
         self._highest_hz = OVERSPEED * rig_file.oscillator.frequency_hz.high
 
+    def follow(self, before: "Core") -> None:
+        """Go on where another plan's control left the rig: carriage, medium and loads stay."""
+        self._conduct.surroundings = before._conduct.surroundings
+        self._conduct.rested_since = before._conduct.rested_since
+
     @property
     def state(self) -> State:
         """Where run control stands."""
