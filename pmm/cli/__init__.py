@@ -13,6 +13,7 @@ from hardware.description.errors import DataError, PmmError
 _COMMANDS = {
     "analyse": "pmm.cli.analyse",
     "coefficients": "pmm.cli.coefficients",
+    "console": "pmm.cli.console",
     "demo": "pmm.cli.demo",
     "devices": "pmm.cli.devices",
     "gap": "pmm.cli.gap",
