@@ -5,7 +5,9 @@ in a table. Loaded when it is first needed, because numba is. Complex harmonics 
 imaginary parts, ``(orders + 1, 2, columns)``.
 """
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,38 +24,73 @@ _DEPTH = 4
 _DEPENDENT = 1e-12  # of a direction's square: what is left of it beside the others
 
 
-def balanced_laws(
-    table: LawTable,
-    motion: tuple[ComplexArray, ComplexArray | None, ComplexArray],
-    period: Period,
-    speed_m_s: float,
-) -> ComplexArray | None:
-    """Return the laws' harmonics, shape ``(orders + 1, 2)``; ``None`` if they do not settle.
+@dataclass(frozen=True, eq=False)
+class LawBalance:
+    """The laws over a period of a model on its mounting.
 
-    Parameters
+    Attributes
     ----------
-    motion
-        Harmonics of the struts; what the model gives way per rigid load, ``None`` for not at all;
-        force per displacement of the model. Shapes ``(orders + 1, 2)``, then ``(.., 2, 2)``.
+    give
+        What the model gives way per rigid load, ``None`` for not at all: ``(orders + 1, 2, 2)``.
+    impedance
+        Force per displacement of the model, as large.
     """
-    y, give, impedance = motion
-    rigid = (impedance @ y[:, :, np.newaxis])[:, :, 0]
-    way = np.zeros_like(impedance) if give is None else give
-    # Harmonics of (h, h', h'', linear force) = free + by_laws @ laws.
-    s = period.s
-    powers = np.stack([np.ones_like(s), s, s**2], axis=1)
-    h = y + (way @ rigid[:, :, np.newaxis])[:, :, 0]
-    linear = (impedance @ h[:, :, np.newaxis])[:, :, 0]
-    free = np.concatenate([(powers[:, :, None] * h[:, None, :]).reshape(-1, 6), linear], axis=1)
-    by_motion = (powers[:, :, None, None] * way[:, None, :, :]).reshape(-1, 6, 2)
-    by_laws = np.concatenate([by_motion, impedance @ way], axis=1)
-    found = np.zeros((s.size, 2, 2))
-    settled = _balance(
-        table.laws, table.cross_flow, free, by_laws, *_waves(period.orders, period.points),
-        period.mean_over_step, period.step_s, speed_m_s, give is not None, found,
-    )  # fmt: skip
-    harmonics: ComplexArray = found[:, 0] + 1j * found[:, 1]
-    return harmonics if settled else None
+
+    table: LawTable
+    give: ComplexArray | None
+    impedance: ComplexArray
+    period: Period
+    speed_m_s: float
+
+    def answer(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return what the laws ask for where the model gives way to ``laws``.
+
+        Parameters
+        ----------
+        y, laws
+            Harmonics of the struts, and of the laws: ``(orders + 1, 2)``.
+        """
+        found = np.stack([laws.real, laws.imag], axis=1)
+        answer = np.empty_like(found)
+        _respond(*self._given(y, found, answer))
+        harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
+        return harmonics
+
+    def balanced(self, y: ComplexArray) -> ComplexArray | None:
+        """Return what the laws ask for once nothing changes; ``None`` if they do not settle."""
+        found = np.zeros((self.period.s.size, 2, 2))
+        settled = _balance(*self._given(y, self.give is not None, found))
+        harmonics: ComplexArray = found[:, 0] + 1j * found[:, 1]
+        return harmonics if settled else None
+
+    def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
+        period = self.period
+        return (
+            self.table.laws, self.table.cross_flow, self._free(y), self._by_laws,
+            *_waves(period.orders, period.points), period.mean_over_step, period.step_s,
+            self.speed_m_s, *more,
+        )  # fmt: skip
+
+    def _free(self, y: ComplexArray) -> ComplexArray:
+        """Return h, h', h'' and linear force without the laws, two columns each."""
+        h = y
+        if self.give is not None:
+            h = y + (self.give @ (self.impedance @ y[:, :, np.newaxis]))[:, :, 0]
+        linear = (self.impedance @ h[:, :, np.newaxis])[:, :, 0]
+        moving = (self._powers[:, :, None] * h[:, None, :]).reshape(-1, 6)
+        return np.concatenate([moving, linear], axis=1)
+
+    @cached_property
+    def _powers(self) -> ComplexArray:
+        s = self.period.s
+        return np.stack([np.ones_like(s), s, s**2], axis=1)
+
+    @cached_property
+    def _by_laws(self) -> ComplexArray:
+        """What a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
+        way = np.zeros_like(self.impedance) if self.give is None else self.give
+        by_motion = (self._powers[:, :, None, None] * way[:, None, :, :]).reshape(-1, 6, 2)
+        return np.concatenate([by_motion, self.impedance @ way], axis=1)
 
 
 @lru_cache(maxsize=16)

@@ -14,12 +14,11 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.coupled_march import TORQUE_DEGREE, coupled_march
+from sim.coupled_steady import CoupledSteady
 from sim.drive import SHAFT
-from sim.linear import ComplexArray
 from sim.loaded_drive import LoadedDrive, LoadedState
 from sim.period import Period, Spectra
 from sim.relaxation import LONGEST_SWEEP, relax
-from sim.sampled import steady_of
 from sim.settled import fine_enough, last_period
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
@@ -93,12 +92,12 @@ class Coupled:
         A gear with backlash is run on until its motion repeats.
         """
         if self.drive.settings.gear is None:
-            return self._balanced(period, inputs)
+            return CoupledSteady(self, period, inputs).solve()
         settings = replace(self.drive.settings, gear=None)
         held = replace(self, drive=replace(self.drive, settings=settings))
         real = period.at(settings.frequency_hz(self.drive.frequency_hz))
         if self.drive.motor is not None:
-            real, _ = held._balanced(period, inputs)
+            real, _ = CoupledSteady(held, period, inputs).solve()
         return real, self._settled(real, inputs)
 
     def _settled(self, real: Period, inputs: Spectra) -> Spectra:
@@ -131,48 +130,6 @@ class Coupled:
         }
         spectra[signals.SHAFT_ANGLE.name][0] = 0.0
         return spectra
-
-    def _balanced(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
-        found: dict[str, ComplexArray] = {}
-        real = period
-
-        def respond(torque: ComplexArray) -> ComplexArray:
-            nonlocal real
-            real, shaft = self.drive.steady(period, {signals.LOAD_TORQUE.name: torque})
-            found.update(inputs)
-            found.update(shaft)
-            for part in self.parts:
-                found.update(steady_of(part, real, {**found, **inputs})[1])
-            found.update({name: inputs[name] for name in found.keys() & inputs.keys()})
-            load = real.harmonics(
-                self._torque({name: real.values(values) for name, values in found.items()}, real)
-            )
-            found[signals.LOAD_TORQUE.name] = load
-            inertia = self.drive.reflected_inertia_kg_m2
-            rest: ComplexArray = load - inertia * found[signals.SHAFT_ACCELERATION.name]
-            return rest
-
-        start = respond(period.constant(0.0))
-        relax(respond, start, self.name)
-        return real, {signal.name: found[signal.name] for signal in self.writes}
-
-    def _torque(self, run: Signals, period: Period | None = None) -> FloatArray:
-        """Return the load at the shaft: struts, their guides, and what varies with the angle."""
-        angle, speed = run[signals.SHAFT_ANGLE.name], run[signals.SHAFT_SPEED.name]
-        if period is not None:
-            angle = angle + period.omega_rad_s * period.time_s
-        total = np.zeros_like(angle)
-        for strut in ("aft", "fore"):
-            lever = run[f"lever_{strut}"]
-            total += run[f"force_{strut}"] * lever
-            for guides in self.drive.guides:
-                if guides.coulomb_n or guides.viscous_n_s_m:
-                    velocity = lever * speed
-                    total += guides.viscous_n_s_m * velocity * lever
-                    total += guides.coulomb_n * np.sign(velocity) * lever
-        for cogging in self.drive.cogging:
-            total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
-        return total
 
 
 def reflected_inertia(mass: FloatArray, set_point: SetPoint) -> float:
@@ -211,7 +168,7 @@ class _Stretch:
         if found is None:
             return None
         shaft, _, hull, run = found
-        run[signals.LOAD_TORQUE.name] = self.stage._torque(run)
+        run[signals.LOAD_TORQUE.name] = self.stage.drive.load(run)
         tail = tuple(tuple(row) for row in shaft.torques[-TORQUE_DEGREE:].tolist())
         drive = LoadedState(tuple(shaft.states[-1].tolist()), tail)
         return (drive, self.state[1], hull), {one.name: run[one.name] for one in self.stage.writes}
@@ -233,7 +190,7 @@ class _Stretch:
         run = {**run, **motion, **given}
         hull, forces = stage.hull.run(self.state[2], self.block, run)
         run = {**run, **forces, **given}
-        run[signals.LOAD_TORQUE.name] = stage._torque(run)
+        run[signals.LOAD_TORQUE.name] = stage.drive.load(run)
         return (drive, mechanism, hull), run
 
     def _back(self, torque: FloatArray) -> FloatArray:

@@ -13,13 +13,14 @@ from sim import signals
 from sim.acting import Acting
 from sim.hull_blocks import BlockForces, HullState
 from sim.hull_coefficients import HullCoefficients, mass_matrix, weight_matrix
-from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_harmonics
+from sim.hull_forces import CrossFlow, Instants
+from sim.hull_steady import HullSteady
 from sim.hull_system import HullSystem
-from sim.linear import ComplexArray, Hold
-from sim.model_march import Marching, marching_of, periodic_laws
+from sim.linear import Hold
+from sim.model_march import Marching, marching_of
 from sim.mounting import Mounting
 from sim.period import Period, Spectra
-from sim.relaxation import LONGEST_SWEEP, relax
+from sim.relaxation import LONGEST_SWEEP
 from sim.settled import fine_enough, last_period
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
@@ -134,20 +135,18 @@ class Hull:
 
         Where the gauges have a clearance the forces are run on until they repeat.
         """
-        speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
-        hull = self if speed == self.carriage_speed_m_s else replace(self, carriage_speed_m_s=speed)
+        hull = self.at_speed(inputs)
         if self.mounting.joint is not None:
             return period, hull._settled(period, inputs)
-        system = hull.system
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
-        impedance, _ = system.impedance(period.s)
-        give = _mounting_gain(system, impedance, period)
-        laws = np.zeros_like(y)
-        if self.laws or self.cross_flow is not None:
-            laws = hull._balance(period, y, give, impedance)
-        h = _yielded(y, give, _apply(impedance, y) + laws)
-        force = _apply(impedance, h) + laws
+        model = HullSteady(hull, period)
+        force = model.force(y, model.balanced(y))
         return period, {"force_aft": force[:, 0], "force_fore": force[:, 1]}
+
+    def at_speed(self, inputs: Spectra) -> "Hull":
+        """Return the model at the carriage's mean speed."""
+        speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
+        return self if speed == self.carriage_speed_m_s else replace(self, carriage_speed_m_s=speed)
 
     def _settled(self, period: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of the forces after as many periods as it takes."""
@@ -162,51 +161,6 @@ class Hull:
         names = tuple(one.name for one in self.writes)
         found = last_period(run, HullState(), names)
         return {name: fine.harmonics(found[name]) for name in names}
-
-    def _balance(
-        self, period: Period, y: ComplexArray, give: ComplexArray | None, impedance: ComplexArray
-    ) -> ComplexArray:
-        """Return the laws' harmonics, in balance with what the mounting gives way."""
-        table, speed = periodic_laws(self), self.carriage_speed_m_s
-        if table is not None:
-            from sim.balance import balanced_laws
-
-            found = balanced_laws(table, (y, give, impedance), period, speed)
-            if found is not None:
-                return found
-
-        def balance(laws: ComplexArray) -> ComplexArray:
-            h = _yielded(y, give, _apply(impedance, y) + laws)
-            column = period.s[:, np.newaxis]
-            waves = np.hstack([h, h * column, h * column**2, _apply(impedance, h)])
-            motion = ModelMotion(*np.split(period.values(waves), 4, axis=1))
-            return law_harmonics(self.laws, self.cross_flow, self.system, motion, period, speed)
-
-        start = balance(np.zeros_like(y))
-        return start if give is None else relax(balance, start, "hull")
-
-
-def _yielded(y: ComplexArray, give: ComplexArray | None, load: ComplexArray) -> ComplexArray:
-    """Return the motion of the model at the struts under a load on rigid ones."""
-    return y if give is None else y + _apply(give, load)
-
-
-def _mounting_gain(
-    system: HullSystem, impedance: ComplexArray, period: Period
-) -> ComplexArray | None:
-    """Return E p per rigid load, ``(orders + 1, 2, 2)``; ``None`` for a rigid mounting."""
-    if not system.elastic_count:
-        return None
-    shape = system.elastic.shape
-    whole = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
-    pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
-    gain: ComplexArray = -shape @ np.linalg.solve(whole, pull)
-    return gain
-
-
-def _apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
-    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
-    return product
 
 
 @lru_cache(maxsize=256)

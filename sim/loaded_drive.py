@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from sim.linear import Hold, LinearSystem, causal_hold
 from sim.motor import Cogging, Guides, Motor, closed_loop, droop
 from sim.period import Period, Spectra
 from sim.relaxation import Tail
-from sim.signals import Signal, Signals
+from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
 
 
@@ -94,7 +95,32 @@ class LoadedDrive:
         beyond[1:] += self.system.response(real.s[1:])[:, 0, 0] * whole[1:]
         return real, shaft_over(real, beyond)
 
-    @property
+    def load(self, run: Signals, turned: FloatArray | float = 0.0) -> FloatArray:
+        """Return the load at the shaft: struts, their guides, and what varies with the angle.
+
+        Parameters
+        ----------
+        run
+            Angle and speed of the shaft, levers and forces of both struts.
+        turned
+            What the angle has besides.
+        """
+        angle = run[signals.SHAFT_ANGLE.name] + turned
+        speed = run[signals.SHAFT_SPEED.name]
+        total = np.zeros_like(angle)
+        for strut in ("aft", "fore"):
+            lever = run[f"lever_{strut}"]
+            total += run[f"force_{strut}"] * lever
+            for guides in self.guides:
+                if guides.coulomb_n or guides.viscous_n_s_m:
+                    velocity = lever * speed
+                    total += guides.viscous_n_s_m * velocity * lever
+                    total += guides.coulomb_n * np.sign(velocity) * lever
+        for cogging in self.cogging:
+            total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
+        return total
+
+    @cached_property
     def system(self) -> LinearSystem:
         """From the load torque to the shaft's deviation, a gear's teeth always in contact."""
         if self.settings.gear is not None:
@@ -103,7 +129,7 @@ class LoadedDrive:
             raise ConfigurationError("drive: neither a motor nor a gear gives way to the load")
         return closed_loop(self.motor, self.reflected_inertia_kg_m2)
 
-    @property
+    @cached_property
     def guides(self) -> tuple[Guides, ...]:
         """Friction of the struts' guides: the drive's, and the motor's own."""
         own = () if self.motor is None else (self.motor.guides,)
@@ -132,7 +158,7 @@ class LoadedDrive:
             (0.0, 0.0) if gear is None else (gear.stiffness_n_m_rad, gear.backlash_rad / 2.0),
         )
 
-    @property
+    @cached_property
     def _inertia(self) -> float:
         """What the drive's own acceleration has to turn."""
         gear, motor = self.settings.gear, self.motor

@@ -12,7 +12,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from sim.linear import LinearSystem
+from sim.linear import LinearSystem, Rows, as_rows
 from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
@@ -170,7 +170,6 @@ class Servo:
         return np.array(A), np.array([[0.0, -1.0 / inertia], [rate, 0.0]])
 
 
-@lru_cache(maxsize=128)
 def closed_loop(motor: Motor, added_inertia_kg_m2: float) -> LinearSystem:
     """Return the closed loop from load torque to the shaft's deviation, by python-control.
 
@@ -179,23 +178,27 @@ def closed_loop(motor: Motor, added_inertia_kg_m2: float) -> LinearSystem:
     LinearSystem
         Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
     """
+    return _closed(as_rows(np.hstack(motor.plant(added_inertia_kg_m2))), motor.loop)
+
+
+@lru_cache(maxsize=256)
+def _closed(plant: Rows, loop: SpeedLoop) -> LinearSystem:
+    """Return the loop of a plant, A and B side by side, and its controller."""
     import control  # type: ignore[import-untyped]
 
-    A, B = motor.plant(added_inertia_kg_m2)
-    plant = control.ss(
-        A, B, np.vstack([np.eye(2)[:1], A[:1]]), np.vstack([np.zeros((1, 2)), B[:1]]),
-        inputs=["command", "load"], outputs=["speed", "acceleration"], name="motor",
-    )  # fmt: skip
-    angle = control.ss([[0.0]], [[1.0]], [[1.0]], [[0.0]], inputs=["speed"], outputs=["angle"])
-    gains = [[-motor.loop.proportional, -motor.loop.integral]]
-    controller = control.ss(
-        [], [], [], gains, inputs=["speed", "angle"], outputs=["command"], name="controller"
-    )
-    whole = control.interconnect(
-        [plant, angle, controller],
-        inputs=["load"],
-        outputs=["angle", "speed", "acceleration"],
-    )
+    motor = np.array(plant)
+    n = len(motor)
+    # States: angle, speed, current. Inputs: load, command. Outputs: three, then two to control by.
+    rates = np.zeros((n + 1, n + 1))
+    rates[0, 1], rates[1:, 1:] = 1.0, motor[:, :n]
+    inputs = np.zeros((n + 1, 2))
+    inputs[1:] = motor[:, : n - 1 : -1]
+    states = np.eye(n + 1)
+    outputs = np.array([states[0], states[1], rates[1], states[1], states[0]])
+    through = np.zeros((5, 2))
+    through[2] = inputs[1]
+    controller = control.ss([], [], [], [[-loop.proportional, -loop.integral]])
+    whole = control.ss(rates, inputs, outputs, through).lft(controller)
     return LinearSystem(*(np.array(matrix, dtype=float) for matrix in control.ssdata(whole)))
 
 

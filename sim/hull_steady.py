@@ -1,0 +1,109 @@
+"""The periodic steady state of the model on its mounting: exact, the laws by harmonic balance."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim.hull_forces import ModelMotion, law_harmonics
+from sim.hull_system import HullSystem
+from sim.linear import ComplexArray
+from sim.model_march import periodic_laws
+from sim.period import Period
+from sim.relaxation import relax
+
+if TYPE_CHECKING:
+    from sim.balance import LawBalance
+    from sim.hull import Hull
+
+
+@dataclass(frozen=True, eq=False)
+class HullSteady:
+    """A model over one period, at its mean speed. All harmonics have shape ``(orders + 1, 2)``."""
+
+    hull: "Hull"
+    period: Period
+
+    @cached_property
+    def impedance(self) -> ComplexArray:
+        """Force per displacement of the model, ``(orders + 1, 2, 2)``."""
+        return self.hull.system.impedance(self.period.s)[0]
+
+    @cached_property
+    def give(self) -> ComplexArray | None:
+        """What the model gives way per rigid load, as large; ``None`` for a rigid mounting."""
+        return _mounting_gain(self.hull.system, self.impedance, self.period)
+
+    @property
+    def has_laws(self) -> bool:
+        """Whether anything is not linear."""
+        return bool(self.hull.laws) or self.hull.cross_flow is not None
+
+    def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return the force of each strut where the laws ask for ``laws``."""
+        h = self._model(y, laws)
+        return _apply(self.impedance, h) + laws
+
+    def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return what the laws ask for where the model gives way to ``laws``."""
+        if self._compiled is not None:
+            return self._compiled.answer(y, laws)
+        h = self._model(y, laws)
+        column = self.period.s[:, np.newaxis]
+        waves = np.hstack([h, h * column, h * column**2, _apply(self.impedance, h)])
+        motion = ModelMotion(*np.split(self.period.values(waves), 4, axis=1))
+        hull = self.hull
+        return law_harmonics(
+            hull.laws,
+            hull.cross_flow,
+            hull.system,
+            motion,
+            self.period,
+            hull.carriage_speed_m_s,
+        )
+
+    def balanced(self, y: ComplexArray) -> ComplexArray:
+        """Return what the laws ask for, in balance with what the mounting gives way."""
+        nothing = np.zeros_like(y)
+        if not self.has_laws:
+            return nothing
+        found = None if self._compiled is None else self._compiled.balanced(y)
+        if found is not None:
+            return found
+        start = self.laws(y, nothing)
+        return start if self.give is None else relax(lambda at: self.laws(y, at), start, "hull")
+
+    def _model(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return the motion of the model at the struts."""
+        if self.give is None:
+            return y
+        return y + _apply(self.give, _apply(self.impedance, y) + laws)
+
+    @cached_property
+    def _compiled(self) -> "LawBalance | None":
+        table = periodic_laws(self.hull)
+        if table is None:
+            return None
+        from sim.balance import LawBalance
+
+        speed_m_s = self.hull.carriage_speed_m_s
+        return LawBalance(table, self.give, self.impedance, self.period, speed_m_s)
+
+
+def _mounting_gain(
+    system: HullSystem, impedance: ComplexArray, period: Period
+) -> ComplexArray | None:
+    """Return E p per rigid load, ``(orders + 1, 2, 2)``; ``None`` for a rigid mounting."""
+    if not system.elastic_count:
+        return None
+    shape = system.elastic.shape
+    whole = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
+    pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
+    gain: ComplexArray = -shape @ np.linalg.solve(whole, pull)
+    return gain
+
+
+def _apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
+    return product
