@@ -51,8 +51,10 @@ class Clearances:
         flying = np.flatnonzero(~held)
         if not flying.size:
             return
-        block = inertia[np.ix_(flying, flying)]
-        self.rates[flying] -= step_s * np.linalg.solve(block, load[flying])
+        # The damping counts at the step's end: it may stop a light body in less than a step.
+        among = np.ix_(flying, flying)
+        heavy = inertia[among] + step_s * self.damping[among]
+        self.rates[flying] -= step_s * np.linalg.solve(heavy, load[flying])
         self.places[flying] += step_s * self.rates[flying]
         for one in flying:
             if not -self.length < self.places[one] < 0.0:
