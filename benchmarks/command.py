@@ -28,6 +28,7 @@ NAMES = (
     "recorder",
     "kill",
     "coefficients",
+    "campaign",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 

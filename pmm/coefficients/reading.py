@@ -19,16 +19,17 @@ from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.readers import read_recording
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, analyse
+from analysis.resolver.analyse import analyse
 from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.recorder.files import EVENTS
 from pmm.recorder.texts import read_lines
 
-_USED = (*DISPLACEMENTS, *FORCES, FORCE_X.name)
+_USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
 _BLOCK = 1 << 20
 
@@ -39,7 +40,10 @@ def read_zero(task: Task) -> Done | Failed:
         recording = _recording(task)
         part = _gated(recording, task.path)
         zero = Zero(
-            task.name, _utc_s(recording), task.number, zero_reading(part, 0.0, _gauges(part))
+            task.name,
+            _utc_s(recording),
+            task.number,
+            zero_reading(part, 0.0, (*FORCES, *_surge(task, part))),
         )
         return _done(task, recording, None, zero)
     except PmmError as error:
@@ -62,7 +66,8 @@ def _recording(task: Task) -> Recording:
 
 
 def _turning(task: Task, recording: Recording) -> Done:
-    channels = tuple(name for name in _USED if name in recording.channel_names)
+    wanted = (*_USED, *_surge(task, recording))
+    channels = tuple(name for name in wanted if name in recording.channel_names)
     missing = [name for name in FORCES if name not in channels]
     if missing:
         raise DataError(
@@ -74,14 +79,15 @@ def _turning(task: Task, recording: Recording) -> Done:
     analysis = analyse(recording, task.choice, replace(task.settings, channels=channels))
     struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
     struts, flags = _zeroed(struts, task, recording)
-    flags = (*analysis.flags, *flags, *_speed_flags(task, recording))
+    found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
+    flags = (*found, *flags, *_speed_flags(task, recording))
     periods = analysis.readings[0].periods
-    return _done(task, recording, _model(task, struts), None, periods, flags, analysis)
+    return _done(task, recording, _model(task, struts), None, periods, flags)
 
 
 def _towed(task: Task, recording: Recording) -> Done:
     part = _gated(recording, task.path)
-    reading = zero_reading(part, 0.0, _gauges(part))
+    reading = zero_reading(part, 0.0, (*FORCES, *_surge(task, part)))
     speed = task.set_point.carriage_speed_m_s
     struts = static_cycle(task.name, reading, task.oscillator, speed)
     struts, flags = _zeroed(struts, task, recording)
@@ -161,9 +167,10 @@ def _utc_s(recording: Recording) -> float | None:
     return datetime.fromisoformat(started).timestamp() + half_s
 
 
-def _gauges(recording: Recording) -> tuple[str, ...]:
-    surge = (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
-    return (*FORCES, *surge)
+def _surge(task: Task, recording: Recording) -> tuple[str, ...]:
+    """The surge gauge, where it is used: surge forces belong to sway and yaw."""
+    horizontal = task.oscillator.plane is Plane.HORIZONTAL
+    return (FORCE_X.name,) if horizontal and FORCE_X.name in recording.channel_names else ()
 
 
 def _gated(recording: Recording, path: Path) -> Recording:
@@ -203,9 +210,7 @@ def _done(
     zero: Zero | None,
     periods: int = 0,
     flags: tuple[Flag, ...] = (),
-    analysis: Analysis | None = None,
 ) -> Done:
-    own = recording.flags if analysis is None else ()
     return Done(
         task.name,
         str(task.path),
@@ -214,7 +219,7 @@ def _done(
         periods,
         recording.sample_rate_hz,
         recording.end_s - recording.start_s,
-        (*own, *flags),
+        (*recording.flags, *flags),
         sha256_of(task.path) if task.hashed else "",
     )
 
