@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Component, Stack
+from analysis.gap.components import Component, Part, Stack
 from analysis.gap.gaussian import Nuisances
 from hardware.description.setpoint import Medium, SetPoint
 
@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a cell's deviation, in sigma
 _OWN = 0.2  # share of a cell's variance that is every run's own
 _SWEEPS = 2
+# What these show is known by its nature: the drive's speed, or the photocell.
+_TIMING: Final = (Part.FREQUENCY, Part.PULSES, Part.PERIOD_SCATTER)
 _NOWHERE = 6.0  # log odds against a deviation that shows in no cell
 _CHOICE = 7.0  # log odds against any one cell of some sixty, and any one size
 
@@ -67,8 +69,9 @@ def find_deviation(stack: Stack, residual: FloatArray, nuisances: Nuisances) -> 
     cells = _cells(stack, residual, nuisances)
     sums = _Sums(cells, nuisances.columns.shape[1])
     for _ in range(_SWEEPS):
-        for cell in cells.values():
-            sums.choose(cell)
+        for component, cell in cells.items():
+            if component.part not in _TIMING:
+                sums.choose(cell)
     chosen = {name: cell.size for name, cell in cells.items() if cell.size}
     found = sums.log_evidence - (0.0 if chosen else _NOWHERE)
     return Deviation(chosen, _mean(cells, sums, len(residual)), found)
