@@ -1,6 +1,7 @@
 """The scored board as tables, JSON, a page and a page of the documentation."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.machine import describe
@@ -11,6 +12,7 @@ from pmm.gap.scoring.document import document
 from pmm.gap.scoring.markdown import markdown
 from pmm.gap.scoring.page import write_page
 from pmm.gap.scoring.score import CarryOut, score
+from tests.sealed.targets import target_tables, verdicts
 
 INTRO = (
     "Written by `python -m tests.sealed score BOARD --docs docs/scoreboard.md`; do not edit. "
@@ -37,11 +39,17 @@ def score_board(
     found, made_on = score(read_board(board), carry_out), describe()
     print_score(output(), found)
     if json_file is not None:
-        table = {**document(found), "made_on": made_on}
+        table = {
+            **document(found),
+            "made_on": made_on,
+            "targets": [asdict(one) for one in verdicts(found)],
+        }
         json_file.write_text(json.dumps(table, indent=1, allow_nan=False) + "\n")
     if page is not None:
         command = f"python -m tests.sealed score {board} --page {page}"
         write_page(found, page, title=f"Sealed board {found.seed}", command=command)
     if docs is not None:
-        docs.write_text(markdown(found, made_on, title="The scoreboard", intro=INTRO))
+        targets = list(target_tables(found))
+        text = markdown(found, made_on, title="The scoreboard", intro=INTRO, first=targets)
+        docs.write_text(text)
     messages().print(f"scored: {found.cases} cases, {len(found.rows)} rows")

@@ -12,6 +12,7 @@ from pmm.gap.scoring.leaks import leaks
 
 SCHEMA = "sealed-board-1"
 OWN = "answers"
+DIAGNOSIS = "diagnosis"
 LEFT_OUT = "answers-leave-one-out"
 _PREFIX = "answers-"
 _SHOWN = 20
@@ -34,7 +35,7 @@ class Board:
     seed
         Seed, or the commit's hash, in hexadecimal.
     rows
-        That of ``answers/`` first, by the name ``"diagnosis"``; then those of ``answers-NAME/``.
+        That of ``answers/`` first, by the name ``DIAGNOSIS``; then those of ``answers-NAME/``.
     left_out
         Answers with a case's right effects taken out of the catalogue, by case; may be empty.
     """
@@ -99,7 +100,7 @@ def _refused(folder: Path, faults: list[str]) -> DataError:
 
 def _rows(folder: Path) -> Iterator[tuple[Path, str]]:
     if (folder / OWN).is_dir():
-        yield folder / OWN, "diagnosis"
+        yield folder / OWN, DIAGNOSIS
     for place in sorted(folder.glob(f"{_PREFIX}*")):
         if place.is_dir() and place.name != LEFT_OUT:
             yield place, place.name.removeprefix(_PREFIX)

@@ -1,12 +1,19 @@
 """A score as a page of the documentation."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from pmm.gap.scoring.score import Score
 from pmm.gap.scoring.tables import Table, tables
 
 
-def markdown(score: Score, made_on: Mapping[str, str], *, title: str, intro: str) -> str:
+def markdown(
+    score: Score,
+    made_on: Mapping[str, str],
+    *,
+    title: str,
+    intro: str,
+    first: Sequence[Table] = (),
+) -> str:
     """Return a score as Markdown.
 
     Parameters
@@ -15,11 +22,13 @@ def markdown(score: Score, made_on: Mapping[str, str], *, title: str, intro: str
         Machine, commit and date, for the foot of the page.
     intro
         What stands between title and tables.
+    first
+        Tables before the score's own.
     """
     kinds = ", ".join(f"{count} {kind}" for kind, count in score.kinds.items())
     head = f"# {title}\n\n{intro}\n\nSeed `{score.seed}`, {score.cases} cases: {kinds}."
     notes = "\n".join(f"- {note}" for note in score.notes)
-    body = "\n\n".join(_table(one) for one in tables(score))
+    body = "\n\n".join(_table(one) for one in (*first, *tables(score)))
     foot = "\n".join(f"| {name} | {value} |" for name, value in made_on.items())
     return (
         "\n\n".join(

@@ -1,0 +1,67 @@
+"""What a scored board says about the targets in ``benchmarks/thresholds.toml``, table ``gap``."""
+
+from collections.abc import Iterable, Iterator
+
+from benchmarks.outcome import Verdict, judge
+from pmm.gap.scoring.board import DIAGNOSIS
+from pmm.gap.scoring.intervals import Figure
+from pmm.gap.scoring.rows import RowScore
+from pmm.gap.scoring.score import Score
+from pmm.gap.scoring.tables import Table
+
+_BINS = ("low", "middle", "high")
+
+
+def verdicts(score: Score) -> list[Verdict]:
+    """Return each target beside what the diagnosis reached; none where it did not answer."""
+    if score.rows[0].name != DIAGNOSIS:
+        return []
+    return judge("gap", dict(_measured(score)))
+
+
+def target_tables(score: Score) -> Iterator[Table]:
+    """Yield the targets as one more table of the board, where the diagnosis answered."""
+    rows = tuple(
+        (one.what, one.limit, "" if one.measured is None else f"{one.measured:.3g}", one.word)
+        for one in verdicts(score)
+    )
+    if rows:
+        yield Table("Targets of the diagnosis", ("", "limit", "measured", "verdict"), rows)
+
+
+def _measured(score: Score) -> Iterator[tuple[str, float]]:
+    row = score.rows[0]
+    whole = {
+        "class_size": "class_size",
+        "false_alarms": "false_alarms",
+        "pairs_clear": "pairs_clear",
+        "shrinkage_covered": "shrinkage_covered",
+        "shrinkage_covered_not_too_often": "shrinkage_covered",
+        "next_run": "next_run",
+    }
+    for key, column in whole.items():
+        yield from _value(key, row.figure("all", column))
+    yield from _value("gap_after", row.figure("middle", "gap_after"))
+    yield from _value("shrinkage", row.figure("high", "shrinkage"))
+    for key, column in (("class_below_ceiling", "top_1_by_class"),
+                        ("unknown_below_ceiling", "unknown")):  # fmt: skip
+        below = [f.ceiling - f.value for f in _figures(row, column) if f.ceiling is not None]
+        if below:
+            yield key, max(below)
+    stages = [figure.value for figure in _figures(row, "stage", _BINS[1:])]
+    if stages:
+        yield "stage", min(stages)
+    if len(score.rows) > 1:
+        yield "ahead_of_others", row.mean - max(other.mean for other in score.rows[1:])
+    if score.left_out is not None:
+        yield "left_out_sure_and_wrong", score.left_out.sure_and_wrong.value
+
+
+def _figures(row: RowScore, column: str, bins: Iterable[str] = _BINS) -> list[Figure]:
+    found = [row.figure(key, column) for key in bins]
+    return [figure for figure in found if figure is not None]
+
+
+def _value(key: str, figure: Figure | None) -> Iterator[tuple[str, float]]:
+    if figure is not None:
+        yield key, figure.value
