@@ -144,6 +144,11 @@ class LiveResolver:
         """Return the readings that still waited for samples beyond their edge, at a run's end."""
         return self._close_periods(reach=0)
 
+    @property
+    def finished(self) -> int:
+        """How many periods of the gate are final."""
+        return len(self._done)
+
     def so_far(self) -> Harmonics | None:
         """Return the reading over the finished periods of a gate that may not be full yet.
 
