@@ -1,0 +1,73 @@
+"""``pmm gap answer``: which cases are answered, where the answers go, and how it ends."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from hardware.description.errors import DataError
+from pmm.cli import cli, gap_answering
+
+Asked = list[tuple[str, tuple[str, ...]]]
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
+    """Return the cases that the diagnosis is asked for; the third of them cannot be diagnosed."""
+    found: Asked = []
+
+    def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
+        found.append((folder.name, left_out))
+        if folder.name == "case-0003":
+            raise DataError("2 runs: a diagnosis needs 3 or more")
+        return {"case": folder.name}
+
+    monkeypatch.setattr(gap_answering, "diagnosed", diagnosed)
+    return found
+
+
+def _run(board: Path, *words: str) -> Result:
+    return CliRunner().invoke(cli, ["gap", "answer", str(board), "--workers", "1", *words])
+
+
+def test_what_has_an_answer_keeps_it(board: Path, asked: Asked) -> None:
+    (board / "answers" / "case-0002.json").unlink()
+    before = (board / "answers" / "case-0001.json").read_bytes()
+    done = _run(board)
+    assert done.exit_code == 0
+    assert asked == [("case-0002", ())]
+    assert json.loads((board / "answers" / "case-0002.json").read_text()) == {"case": "case-0002"}
+    assert (board / "answers" / "case-0001.json").read_bytes() == before
+    assert "11 had answers already" in done.stderr
+
+
+def test_a_case_that_fails_is_named_and_all_others_are_answered(board: Path, asked: Asked) -> None:
+    done = _run(board, "--overwrite")
+    assert done.exit_code == 1
+    assert "case-0003: 2 runs: a diagnosis needs 3 or more" in done.stderr
+    assert "11 cases answered" in done.stderr
+    assert len(asked) == 12
+    assert not list((board / "answers").glob("*.part"))
+
+
+def test_left_out_effects_reach_their_cases_alone(
+    board: Path, asked: Asked, tmp_path: Path
+) -> None:
+    file = tmp_path / "leave-out.json"
+    file.write_text(json.dumps({"case-0007": ["coulomb-friction"]}))
+    target = tmp_path / "elsewhere"
+    assert _run(board, "--leave-out", str(file), "--output", str(target)).exit_code == 0
+    assert asked == [("case-0007", ("coulomb-friction",))]
+    assert [path.name for path in target.iterdir()] == ["case-0007.json"]
+
+
+def test_wrong_usage_ends_with_2(board: Path, asked: Asked, tmp_path: Path) -> None:
+    file = tmp_path / "leave-out.json"
+    file.write_text(json.dumps({"case-0007": ["coulomb-fiction"]}))
+    done = _run(board, "--leave-out", str(file))
+    assert done.exit_code == 2
+    assert "no effects: coulomb-fiction" in done.stderr
+    assert _run(tmp_path).exit_code == 2
+    assert asked == []
