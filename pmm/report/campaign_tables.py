@@ -4,13 +4,15 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
-from analysis.coefficients.campaign_budget import budget
+from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from pmm.coefficients.workflow import Outcome
 from pmm.report.rounding import rounded
 
 _FEW_DIGITS = 0.1
 _DASH = "–"
+_MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution
+_LITTLE = 0.005
 
 
 @dataclass(frozen=True)
@@ -81,15 +83,28 @@ def budget_table(found: CampaignCoefficients) -> Grid:
                 f"{entry.speed_m_s:g}",
                 entry.method,
                 f"{one.standard_uncertainty:.2g}",
-                "∞" if math.isinf(one.degrees_of_freedom) else f"{one.degrees_of_freedom:.0f}",
+                _freedom(one.degrees_of_freedom),
                 f"{one.coverage_factor:.2f}",
-                ", ".join(f"{line.source} {100.0 * line.share:.1f} %" for line in one.lines)
-                + (f". {one.digits}" if one.digits else ""),
+                _shares(one) + (f". {one.digits}" if one.digits else ""),
             )
         )
     heads = ("coefficient", "f (Hz)", "U (m/s)", "method", "u", "ν", "k", "share of the variance")
     note = "u: standard uncertainty; ν: its degrees of freedom; k: coverage factor of the interval."
     return Grid(f"Budgets: {found.normalisation}", heads, (1, 2, 4, 5, 6), tuple(rows), note)
+
+
+def _freedom(value: float) -> str:
+    return f"{value:.0f}" if value < _MANY else f"over {_MANY}"
+
+
+def _shares(one: CoefficientBudget) -> str:
+    """Return what each kind of input adds; those that add next to nothing are put together."""
+    told = [line for line in one.lines if line.share >= _LITTLE]
+    words = [f"{line.source} {100.0 * line.share:.1f} %" for line in told]
+    left = sum(line.share for line in one.lines) - sum(line.share for line in told)
+    if len(told) < len(one.lines):
+        words.append(f"others {100.0 * left:.1f} %")
+    return ", ".join(words)
 
 
 def finding_tables(found: CampaignCoefficients) -> Iterator[Grid]:
