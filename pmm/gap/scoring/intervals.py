@@ -46,7 +46,10 @@ def wilson(hits: float, count: int) -> tuple[float, float]:
     middle = share + z2 / (2.0 * count)
     half = _Z * math.sqrt(share * (1.0 - share) / count + z2 / (4.0 * count**2))
     scale = 1.0 + z2 / count
-    return max((middle - half) / scale, 0.0), min((middle + half) / scale, 1.0)
+    # The ends at none and at all of them are exact; rounding would leave crumbs there.
+    low = (middle - half) / scale if hits > 0.0 else 0.0
+    high = (middle + half) / scale if hits < count else 1.0
+    return low, high
 
 
 def share(hits: Sequence[float]) -> Figure | None:
