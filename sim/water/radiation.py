@@ -1,13 +1,32 @@
 """The water's linear reaction with its memory: infinite-frequency added mass and a state space."""
 
 from dataclasses import dataclass, fields, replace
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hardware.description.errors import ConfigurationError
 from sim.signals import FloatArray
+
+
+class _RowsOrArray:
+    """Tells who validates a file that rows of numbers do for a matrix."""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(_rows_of)
+
+
+def _rows_of(values: object) -> FloatArray:
+    """Return rows of numbers as an array; what is refused is a ``ValueError``."""
+    try:
+        return np.array(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            "has to be a list of rows of numbers, all equally long, as [[1.0, 0.0], [0.0, 1.0]]"
+        ) from error
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +60,17 @@ class Radiation:
         If a shape does not fit, a value is not finite, or the state matrix is not stable.
     """
 
-    added_mass_infinite: FloatArray
-    state_matrix: FloatArray
-    input_matrix: FloatArray
-    output_matrix: FloatArray
+    added_mass_infinite: Annotated[FloatArray, _RowsOrArray()]
+    state_matrix: Annotated[FloatArray, _RowsOrArray()]
+    input_matrix: Annotated[FloatArray, _RowsOrArray()]
+    output_matrix: Annotated[FloatArray, _RowsOrArray()]
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}
 
     def __post_init__(self) -> None:
-        n = np.shape(self.state_matrix)[0] if np.ndim(self.state_matrix) else 0
+        for name in ("added_mass_infinite", "state_matrix", "input_matrix", "output_matrix"):
+            object.__setattr__(self, name, _numbers(name, getattr(self, name)))
+        n = len(self.state_matrix) if self.state_matrix.ndim else 0
         shapes = {
             "added_mass_infinite": (2, 2),
             "state_matrix": (n, n),
@@ -173,8 +194,17 @@ def _hamiltonian(radiation: Radiation, tolerance: float) -> FloatArray:
     )
 
 
-def _checked(name: str, values: ArrayLike, shape: tuple[int, int]) -> FloatArray:
-    array = np.array(values, dtype=np.float64)
+def _numbers(name: str, values: ArrayLike) -> FloatArray:
+    """Return a matrix given as an array, or as a list of rows."""
+    try:
+        return _rows_of(values)
+    except ValueError as error:
+        raise ConfigurationError(f"{name} {error}") from error
+
+
+def _checked(name: str, array: FloatArray, shape: tuple[int, int]) -> FloatArray:
+    if array.size == 0 and 0 in shape:
+        array = array.reshape(shape)
     if array.shape != shape:
         raise ConfigurationError(f"{name} has shape {array.shape} where {shape} is needed")
     if not np.isfinite(array).all():

@@ -176,6 +176,23 @@ def test_is_a_value() -> None:
         random_passive(1).state_matrix[0, 0] = 1.0
 
 
+def test_rows_of_a_file_are_as_good_as_arrays() -> None:
+    from pydantic import TypeAdapter, ValidationError
+
+    memory = random_passive(1)
+    names = ("added_mass_infinite", "state_matrix", "input_matrix", "output_matrix")
+    rows = {name: getattr(memory, name).tolist() for name in names}
+    read = TypeAdapter(Radiation).validate_python
+    assert read(rows) == memory == Radiation(**rows)
+    assert Radiation(np.eye(2).tolist(), [], [], []) == constant(np.eye(2))  # type: ignore[arg-type]
+    with pytest.raises(ValidationError, match=r"input_matrix\n.*list of rows of numbers"):
+        read({**rows, "input_matrix": [[1.0, 0.0], [1.0]]})
+    with pytest.raises(ConfigurationError, match="output_matrix has to be a list of rows"):
+        Radiation(**{**rows, "output_matrix": "heave"})
+    with pytest.raises(ValidationError, match="inputmatrix"):
+        read({**rows, "inputmatrix": []})
+
+
 def test_refuses_what_is_not_a_fading_memory() -> None:
     with pytest.raises(ConfigurationError, match=r"eigenvalue with real part 0\.5"):
         Radiation(np.eye(2), np.array([[0.5]]), np.zeros((1, 2)), np.zeros((2, 1)))
