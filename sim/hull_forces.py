@@ -8,7 +8,7 @@ import numpy as np
 from sim.acting import Acting, Point
 from sim.hull_system import HullSystem
 from sim.laws import Motion
-from sim.linear import ComplexArray, Rows
+from sim.linear import ComplexArray, Rows, as_rows
 from sim.period import Period
 from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
@@ -30,6 +30,10 @@ class CrossFlow:
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
+    def scaled(self, factor: float) -> "CrossFlow":
+        """Return loads that are larger by a factor."""
+        return CrossFlow(_times(self.cubic, factor), _times(self.quadratic, factor))
+
     def loads(self, velocity: FloatArray) -> FloatArray:
         """Return force and moment, shape ``(2, samples)``, for velocities of that shape."""
         total = np.zeros_like(velocity)
@@ -38,6 +42,10 @@ class CrossFlow:
         if self.quadratic is not None:
             total += quadratic_loads(self.quadratic, velocity)
         return total
+
+
+def _times(rows: Rows | None, factor: float) -> Rows | None:
+    return None if rows is None else as_rows(np.array(rows) * factor)
 
 
 class ModelMotion(NamedTuple):

@@ -12,75 +12,15 @@ a sample do: 4e-5 of the first at 200 samples a period, where sampling sgn(v) it
 """
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
+from sim.force_law import CREEP_M_S, ForceLaw, Motion
 from sim.signals import FloatArray
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
-# Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens
-# the turn of a motion with peak speed V, which takes (CREEP / V)^2 / 6 from the first harmonic.
-CREEP_M_S: Final = 1e-4
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """What a law may depend on: one value per sample each.
-
-    Attributes
-    ----------
-    position, velocity, acceleration
-        At the law's point: m, or rad at :attr:`sim.acting.Point.ROTATION`.
-    load
-        What the linear parts of the model ask of the struts at that point: N, or N m.
-    time_s
-        Time of each sample.
-    step_s
-        Time from sample to sample, over which a law that jumps is averaged.
-    speed_m_s
-        Carriage speed.
-    """
-
-    position: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    load: FloatArray
-    time_s: FloatArray
-    step_s: float
-    speed_m_s: FloatArray
-
-    @property
-    def half_change(self) -> FloatArray:
-        """Half of what the velocity changes over the sample."""
-        return np.hypot(self.acceleration * (self.step_s / 2.0), CREEP_M_S)
-
-    @property
-    def direction(self) -> FloatArray:
-        """Sign of the velocity, averaged over the sample."""
-        return np.minimum(np.maximum(self.velocity / self.half_change, -1.0), 1.0)
-
-
-class ForceLaw(ABC):
-    """A force that depends on the motion at once.
-
-    Attributes
-    ----------
-    jumps
-        True where the law uses :attr:`Motion.direction`, so that it is a mean over a sample.
-    periodic
-        False for a force with a frequency of its own, which has no part in a periodic steady state.
-    """
-
-    jumps: ClassVar[bool] = False
-    periodic: ClassVar[bool] = True
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-
-    @abstractmethod
-    def force(self, motion: Motion) -> FloatArray:
-        """Return the force that has to be exerted, shape ``(samples,)``."""
+__all__ = ["CREEP_M_S", "ForceLaw", "Motion"]
 
 
 @dataclass(frozen=True)
@@ -88,6 +28,8 @@ class Viscous(ForceLaw):
     """``b v``."""
 
     viscous_n_s_m: float
+
+    strengths: ClassVar[tuple[str, ...]] = ("viscous_n_s_m",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -101,6 +43,8 @@ class Quadratic(ForceLaw):
     quadratic_n_s2_m2: float
     drift_m_s: float = 0.0
 
+    strengths: ClassVar[tuple[str, ...]] = ("quadratic_n_s2_m2",)
+
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
         velocity = motion.velocity + self.drift_m_s
@@ -112,6 +56,8 @@ class Cubic(ForceLaw):
     """``B v^3``."""
 
     cubic_n_s3_m3: float
+
+    strengths: ClassVar[tuple[str, ...]] = ("cubic_n_s3_m3",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -131,6 +77,8 @@ class Coulomb(ForceLaw):
 
     jumps: ClassVar[bool] = True
 
+    strengths: ClassVar[tuple[str, ...]] = ("coulomb_n", "uneven_n")
+
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
         return self.coulomb_n * motion.direction + self.uneven_n
@@ -144,6 +92,8 @@ class Stribeck(ForceLaw):
     stribeck_speed_m_s: float
 
     jumps: ClassVar[bool] = True
+
+    strengths: ClassVar[tuple[str, ...]] = ("excess_n",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force that has to be exerted: its mean over the sample, by its integral."""
@@ -166,6 +116,8 @@ class LoadFriction(ForceLaw):
 
     jumps: ClassVar[bool] = True
 
+    strengths: ClassVar[tuple[str, ...]] = ("friction",)
+
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
         normal = np.abs(self.load_share * motion.load + self.side_load_n)
@@ -180,6 +132,13 @@ class Spring(ForceLaw):
     stiffness_n_m2: float = 0.0
     stiffness_n_m3: float = 0.0
     preload_n: float = 0.0
+
+    strengths: ClassVar[tuple[str, ...]] = (
+        "stiffness_n_m",
+        "stiffness_n_m2",
+        "stiffness_n_m3",
+        "preload_n",
+    )
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -196,6 +155,8 @@ class RubbingSpring(ForceLaw):
 
     jumps: ClassVar[bool] = True
 
+    strengths: ClassVar[tuple[str, ...]] = ("rubbing_n_m",)
+
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
         return self.rubbing_n_m * np.abs(motion.position) * motion.direction
@@ -209,6 +170,8 @@ class Proximity(ForceLaw):
     clearance_m: float
     exponent: float = 2.0
     reference_speed_m_s: float | None = None
+
+    strengths: ClassVar[tuple[str, ...]] = ("proximity_n",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -227,6 +190,8 @@ class Exponential(ForceLaw):
     suction_n: float
     rate_1_m: float
     reference_speed_m_s: float | None = None
+
+    strengths: ClassVar[tuple[str, ...]] = ("suction_n",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -248,6 +213,8 @@ class Tone(ForceLaw):
     decay_s: float | None = None
 
     periodic: ClassVar[bool] = False
+
+    strengths: ClassVar[tuple[str, ...]] = ("tone_n",)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""

@@ -19,7 +19,7 @@ def switch_on(
     Parameters
     ----------
     effects
-        Each adds to what those before it have done.
+        Each adds to what those before it have done; those that change others come last.
     run
         The run's place in its campaign, for effects that build up or die out over a campaign;
         ``None`` for a run by itself, in which they are as their parameters say.
@@ -29,6 +29,6 @@ def switch_on(
     run_index = 0 if run is None else run.index
     for effect in effects:
         set_point = effect.change_set_point(set_point, run_index)
-    for effect in effects:
+    for effect in sorted(effects, key=lambda one: one.changes_others):
         rig = effect.change(rig, set_point)
     return rig, set_point

@@ -87,6 +87,8 @@ class Effect(ABC):
         False where it does not repeat with the shaft, so that the periodic steady state has no part
         of it: its signature, if it has one, is what an average over a record finds, as its own
         description says.
+    changes_others
+        True for one that changes what all others do, too: it is switched on after them.
 
     Raises
     ------
@@ -99,6 +101,7 @@ class Effect(ABC):
     title: ClassVar[str]
     stage: ClassVar[StageName]
     repeats: ClassVar[bool] = True
+    changes_others: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         for one in self.parameters():

@@ -22,9 +22,10 @@ SECONDS_AN_HOUR = 3600.0
 class Temperature(Effect):
     """Gain, zero, viscosity and density follow the temperature; it changes from run to run.
 
-    With the rise D since the campaign began, the gauges read ``F (1 + g D) + z D``, the linear
-    loads of the water go with ``1 + r D``, and its damping with ``1 + b D`` besides: the viscosity
-    falls by 2 % a kelvin, and friction with about its 0.15th power. In a campaign the hours are
+    With the rise D since the campaign began, the gauges read ``F (1 + g D) + z D``, the loads
+    of the water go with ``1 + r D``, those of other effects too, and its linear damping with
+    ``1 + b D`` besides: the viscosity falls by 2 % a kelvin, and friction with about its 0.15th
+    power. The stated signature is that of the linear loads. In a campaign the hours are
     those of the run: one that is repeated at the end shows it, and a random order makes it
     scatter.
     """
@@ -33,6 +34,7 @@ class Temperature(Effect):
     name: ClassVar[str] = "temperature"
     title: ClassVar[str] = "Temperature: gain, zero, viscosity and density over the run order"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    changes_others: ClassVar[bool] = True
 
     rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature")
     hours: float = parameter(4.0, 0.0, 240.0, "h", "time since it was as in the calibration")
@@ -71,7 +73,14 @@ class Temperature(Effect):
                 added_mass_infinite=radiation.added_mass_infinite * dense,
                 output_matrix=radiation.output_matrix * dense,
             )
-        return with_gauges(replace(rig, water=water, radiation=radiation), warm)
+        forces = tuple(
+            replace(one, law=one.law.scaled(dense)) if one.in_water else one for one in rig.forces
+        )
+        cross_flow = None if rig.cross_flow is None else rig.cross_flow.scaled(dense)
+        warmer = replace(
+            rig, water=water, radiation=radiation, forces=forces, cross_flow=cross_flow
+        )
+        return with_gauges(warmer, warm)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the changed loads as the gauges with changed gain and zero read them."""

@@ -1,14 +1,17 @@
 """Effects of the measurement against closed forms, over frequency, amplitude, phase, medium."""
 
-from dataclasses import replace
+from dataclasses import MISSING, fields, replace
 
 import numpy as np
 import pytest
 
+from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.acting import Acting, Point
+from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
+from sim.effects.h3_quadratic_damping import QuadraticDamping
 from sim.effects.m1_gain_error import GainError
 from sim.effects.m2_cross_talk import CrossTalk
 from sim.effects.m3_quadratic_gauge import QuadraticGauge
@@ -18,7 +21,10 @@ from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
-from sim.laws import Coulomb
+from sim.hull_forces import CrossFlow
+from sim.law_table import LAWS
+from sim.laws import ArcSine, Coulomb, ForceLaw, Motion
+from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import mismatch
 from tests.sim.effects.in_time import by_cycles, in_time
@@ -107,3 +113,48 @@ def test_temperature_follows_the_order_of_the_runs() -> None:
     assert last[RECORDED_FORCES[0], 0] == pytest.approx(0.5 * 2.0 * 0.05, rel=1e-12)
     at_last = effect.at_run(runs[-1])
     assert mismatch(at_last, VERTICAL, [SET_POINTS[0]]) < 1e-9
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_temperature_scales_what_other_effects_ask_of_the_water(first: bool) -> None:
+    """8/(3 pi) B w^2 a^2 of quadratic damping goes with the density, whatever the order."""
+    set_point = SetPoint(0.5, 0.03, 0.0)
+    warm = Temperature(1.0, 10.0, gain_1_k=0.0, zero_n_k=0.0, damping_1_k=0.0, density_1_k=-4e-4)
+    drag = QuadraticDamping(1000.0, 0.0)
+    both = (warm, drag) if first else (drag, warm)
+
+    def force(*effects: Effect) -> complex:
+        spectra = steady_run(*switch_on(effects, VERTICAL, set_point)).spectra
+        return complex(spectra["force_aft"][1] + spectra["force_fore"][1])
+
+    cold, hot = force(drag) - force(), force(*both) - force(warm)
+    assert abs(hot / cold - (1.0 - 4e-3)) < 1e-9
+    closed = 8.0 / (3.0 * np.pi) * 1000.0 * (np.pi * 0.03) ** 2
+    assert cold.real == pytest.approx(closed, rel=1e-5)
+
+
+def test_temperature_scales_coupled_loads_and_leaves_what_is_not_of_the_water() -> None:
+    flow = CrossFlow(((2.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 3.0)), None)
+    dry = Acting(Coulomb(0.3), Point.AFT)
+    warm = Temperature(1.0, 10.0, density_1_k=-2e-4)
+    changed = warm.change(replace(VERTICAL, cross_flow=flow, forces=(dry,)), SET_POINTS[0])
+    assert changed.forces == (dry,)
+    assert changed.cross_flow is not None
+    np.testing.assert_allclose(changed.cross_flow.cubic, np.array(flow.cubic) * 0.998, rtol=1e-15)
+
+
+@pytest.mark.parametrize("law", LAWS[:-1])
+def test_a_scaled_law_asks_for_more(law: type[ForceLaw]) -> None:
+    """But for struts on parallel lines: what they ask for is geometry."""
+    needed = [one.name for one in fields(law) if one.default is MISSING]  # type: ignore[arg-type]
+    needed = needed or ["stiffness_n_m", "stiffness_n_m2", "stiffness_n_m3", "preload_n"]
+    one = law(**dict(zip(needed, (0.3, 0.7, 0.2, 0.1), strict=False)))
+    t = np.linspace(0.0, 1.0, 9)
+    motion = Motion(0.01 * t, np.cos(4.0 * t), np.sin(t), 5.0 + t, t, 0.01, np.ones_like(t))
+    assert np.abs(one.force(motion)).max() > 0.0
+    np.testing.assert_allclose(one.scaled(1.5).force(motion), 1.5 * one.force(motion), rtol=1e-12)
+
+
+def test_a_law_that_does_not_say_what_it_grows_with_is_not_scaled() -> None:
+    with pytest.raises(ConfigurationError, match="ArcSine cannot be scaled: name in its"):
+        ArcSine(1.0, 1.0, 1.0).scaled(2.0)
