@@ -100,6 +100,7 @@ def test_keys_are_whole_and_nuisances_invisible(board: Path) -> None:
     assert any(truth["ceiling"] for truth in _truths(board))
     for truth in _truths(board):
         assert all(row["snr"] < 1.0 for row in truth["nuisances"])  # type: ignore[attr-defined]
+        assert truth["background"] < 1.0  # type: ignore[operator]
         assert set(truth["held_out"]) == {f"withheld-{i}" for i in range(1, 5)}  # type: ignore[call-overload]
         if truth["null"]:
             assert truth["verdict"] == "none"

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.sealed.generator.background import Background
 from tests.sealed.generator.ceiling import Library, ceiling, harmonic_blocks
 from tests.sealed.generator.design import Campaign, design
 from tests.sealed.generator.features import FREQUENCY_RELATIVE, PULSE_RAD
@@ -26,6 +27,8 @@ class Case:
     ----------
     parameters
         The reality: nuisances and effects in it.
+    background
+        What is there besides the effects, all runs together, in sigma.
     """
 
     seed: int
@@ -36,6 +39,7 @@ class Case:
     projection: Projection
     content: Content
     always: tuple[Sized, ...]
+    background: float
     parameters: FloatArray
 
     @property
@@ -117,9 +121,12 @@ def make(seed: int, index: int, *, null: bool) -> Case:
     situation = Situation(campaign.rig, campaign.runs, true)
     projection = Projection.of(situation, known)
     kind = drawn_kind(rng, null=null)
-    content = Drawing(campaign, situation, projection, rng).draw(kind)
-    always = nuisances(situation, projection, rng)
+    background = Background(situation, projection)
+    content = Drawing(campaign, situation, projection, background, rng).draw(kind)
+    always, total = background.quieted(
+        content.without_size(true), nuisances(situation, projection, rng)
+    )
     p = true
     for sized in (*always, *content.effects):
         p = sized.put(p)
-    return Case(seed, index, null, campaign, situation, projection, content, always, p)
+    return Case(seed, index, null, campaign, situation, projection, content, always, total, p)

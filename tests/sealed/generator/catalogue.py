@@ -7,31 +7,36 @@ friction above the dynamometers is a case of its own that no channel shows.
 import math
 from math import pi
 
-from tests.sealed.generator.effect import Effect, inverse, soft_drive
+from tests.sealed.generator.effect import Effect, heavier, inverse, slow_loop
 from tests.sealed.generator.parameters import FloatArray, P
 
 DRIVE, MECHANISM, STRUCTURE = "drive", "mechanism", "structure"
 WATER, CARRIAGE = "model and water", "carriage"
 GAUGE, CHAIN, PHOTOCELL = "dynamometers", "acquisition", "photocell"
-CONTACT = {P.GAUGE_STIFFNESS: 2e7, P.GAUGE_DAMPING: 2e4}
+# The frame is damped even where stiff, so that all with contacts share a base.
+CONTACT = {P.GAUGE_STIFFNESS: 2e7, P.GAUGE_DAMPING: 2e4, P.FRAME_DAMPING: 4e3}
 _TURN = (-pi, pi)
+_FLYWHEEL = 1e5
 
 
 def _droop(p: FloatArray, size: float) -> None:
     if size > 0.0:
         # What turns is heavy enough that the speed follows the torque in 4 ms at the quickest.
-        p[P.MOTOR_INERTIA] = max(100.0, 4e-3 / size)
+        heavier(p, max(100.0, 4e-3 / size) / p[P.MOTOR_INERTIA])
         p[P.SERVO_P], p[P.SERVO_I] = 1.0 / size, 0.0
 
 
 def _load_ripple(p: FloatArray, size: float) -> None:
     if size > 0.0:
-        soft_drive(p, max(1.0 / size - p[P.CRANK_INERTIA], 0.5), 0.1)
+        heavier(p, 1.0 / size / (p[P.MOTOR_INERTIA] + p[P.CRANK_INERTIA]))
+        slow_loop(p, 0.1)
 
 
 def _cogging(p: FloatArray, size: float) -> None:
-    soft_drive(p, 200.0, 0.15)
-    p[P.COGGING] = size
+    # So heavy that the load, which such a loop does not hold, moves it by nothing that is seen.
+    p[P.MOTOR_INERTIA] = 200.0 * _FLYWHEEL
+    slow_loop(p, 0.15)
+    p[P.COGGING] = size * _FLYWHEEL
 
 
 def _lag(p: FloatArray, size: float) -> None:
@@ -63,7 +68,7 @@ _DRIVE = (
     Effect("speed-ripple", DRIVE, "transmission error of the teeth with its double", 5e-3, 0.03,
            {P.TEETH: 1.0}, draws={P.TEETH_ORDER: (0.5, 2.49), P.TEETH_PHASE: _TURN},
            parameter="relative"),
-    Effect("torque-cogging", DRIVE, "cogging of a motor with a slow speed loop", 5.0, 40.0,
+    Effect("torque-cogging", DRIVE, "cogging of a heavy motor with a slow speed loop", 5.0, 40.0,
            change=_cogging, draws={P.COGGING_ORDER: (0.5, 3.49), P.COGGING_PHASE: _TURN},
            settles=None, rebased=True),
     Effect("speed-droop", DRIVE, "motor without integral action, 100 kg m2", 0.01, 0.3,
@@ -71,7 +76,9 @@ _DRIVE = (
     Effect("load-ripple", DRIVE, "light shaft with a loop of 0.1 Hz", 0.02, 0.5,
            change=_load_ripple, settles=None),
     Effect("gear-backlash", DRIVE, "impacts in the gear's clearance", 5e-4, 5e-3,
-           {P.BACKLASH: 1.0}, settles=None),
+           {P.BACKLASH: 1.0},
+           sets={P.CRANK_INERTIA: 120.0, P.GEAR_STIFFNESS: 6e7, P.GEAR_DAMPING: 6e4},
+           settles=None, rebased=True),
     Effect("frequency-error", DRIVE, "set speed off", 1e-3, 0.01, {P.SPEED_ERROR: 1.0},
            signed=True, parameter="relative"),
 )  # fmt: skip
@@ -90,14 +97,14 @@ _MECHANISM = (
     Effect("joint-play", MECHANISM, "play taken up exponentially with travel", 5e-5, 5e-4,
            {P.PLAY: 1.0}, sets=CONTACT, settles=1.5, parameter="half_play_m"),
     Effect("free-play", MECHANISM, "clearance with impacts that the load crosses", 5e-5, 5e-4,
-           {P.KNOCK: 1.0}, sets=CONTACT, settles=None, parameter="half_play_m"),
+           {P.KNOCK: 1.0}, sets=CONTACT, settles=1.5, parameter="half_play_m"),
 )  # fmt: skip
 
 _STRUCTURE = (
     Effect("gauge-compliance", STRUCTURE, "gauges as springs and dashpots", 2e-6, 2e-5,
            change=_give, settles=1.5),
     Effect("frame-compliance", STRUCTURE, "frame as one mass on a spring", 2e-7, 3e-6,
-           change=inverse(P.FRAME_STIFFNESS), sets={**CONTACT, P.FRAME_DAMPING: 4e3}, settles=1.5),
+           change=inverse(P.FRAME_STIFFNESS), sets=CONTACT, settles=1.5),
     Effect("coulomb-friction", STRUCTURE, "LuGre bristles", 0.3, 5.0, {P.COULOMB: 1.0},
            settles=0.75),
     Effect("stribeck-friction", STRUCTURE, "LuGre bristles, Tustin's exponential", 0.15, 5.0,
@@ -138,7 +145,7 @@ _WATER = (
            {P.FLARE_2: 1000.0, P.FLARE_3: 1e4}, signed=True),
     Effect("memory", WATER, "convolution with a Gaussian retardation function", 1.0, 15.0,
            {P.MEMORY_0: 150.0, P.MEMORY_1: 40.0}, draws={P.MEMORY_RATE: (3.0, 8.0)},
-           settles=None),
+           settles=1.5),
     Effect("tank-walls", WATER, "echoes by a delay line", 0.05, 0.6, {P.ECHO: 1.0},
            draws={P.ECHO_DELAY: (0.7, 2.2)}, settles=None),
     Effect("surface-suction", WATER, "square of a gap", 3.0, 60.0, {P.SUCTION: 1.0},

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tests.sealed.generator.effect import heavier
 from tests.sealed.generator.parameters import FloatArray, P, neutral
 from tests.sealed.generator.rig import CHANNELS, Noise, Rig, Run
 
@@ -16,6 +17,8 @@ _SENSORS = (
     ("force_aft", "force_fore", "photocell"),
     ("displacement_aft", "displacement_fore", "force_aft", "force_fore", "carriage_speed"),
 )
+# How much larger the drive is than the neutral one: load moves no shaft by what is seen.
+FLYWHEEL = 400.0
 REGIMES = ("frequency", "amplitude", "phase", "medium")
 
 
@@ -60,6 +63,7 @@ def _rig(rng: np.random.Generator) -> Rig:
 def believed(rig: Rig, rng: np.random.Generator) -> FloatArray:
     """Return parameters of a model of 50 to 90 kg and the water about it."""
     p = neutral()
+    heavier(p, FLYWHEEL)
     mass = rng.uniform(50.0, 90.0)
     p[P.LEVER] = rig.half_spacing_m
     p[P.ROD] = rig.rod_length_m or 0.0

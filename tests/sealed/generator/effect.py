@@ -40,7 +40,7 @@ class Effect:
     fixed
         Whether only the typical size makes sense.
     rebased
-        Whether ``change`` alters something else even at size 0, as ``sets`` does.
+        Whether ``change`` or ``sets`` alter something that is seen even at size 0.
     """
 
     name: str
@@ -60,6 +60,11 @@ class Effect:
     needs: str | None = None
     fixed: bool = False
     rebased: bool = False
+
+    @property
+    def own_base(self) -> bool:
+        """Whether the rig differs from the others even where the effect has no size."""
+        return self.rebased or P.GAUGE_STIFFNESS in self.sets
 
     def put(self, p: FloatArray, size: float, drawn: Mapping[P, float] | None = None) -> FloatArray:
         """Return the parameters with the effect at a size in them."""
@@ -95,8 +100,15 @@ def inverse(place: P, poles: float = 1.0) -> Change:
     return change
 
 
-def soft_drive(p: FloatArray, inertia: float, hold_hz: float) -> None:
-    """Give the drive an inertia and a speed loop that is slower than the motion."""
-    loop = 2.0 * math.pi * hold_hz
-    p[P.MOTOR_INERTIA] = inertia
+DRIVE = [P.MOTOR_INERTIA, P.CRANK_INERTIA, P.SERVO_P, P.SERVO_I, P.GEAR_STIFFNESS, P.GEAR_DAMPING]
+
+
+def heavier(p: FloatArray, factor: float) -> None:
+    """Make the drive so many times larger: as quick as before, moved by so much less by loads."""
+    p[DRIVE] *= factor
+
+
+def slow_loop(p: FloatArray, hold_hz: float) -> None:
+    """Give the motor a speed loop that is slower than the motion."""
+    loop, inertia = 2.0 * math.pi * hold_hz, p[P.MOTOR_INERTIA]
     p[P.SERVO_P], p[P.SERVO_I] = 1.4 * inertia * loop, inertia * loop**2

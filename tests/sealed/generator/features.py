@@ -6,6 +6,7 @@ make a recording.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -112,6 +113,7 @@ def density(rig: Rig, channel: int, frequency_hz: FloatArray) -> FloatArray:
     return out
 
 
+@lru_cache(maxsize=512)
 def line_sigma(rig: Rig, run: Run, channel: int) -> FloatArray:
     """Return the standard deviation of each number of :func:`line_spectrum`."""
     count = run.periods / run.frequency_hz * rig.sample_rate_hz

@@ -203,6 +203,7 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
         "imitators": [],
         "classes": {},
         "separated_by": content.separated_by,
+        "background": case.background,
         "nuisances": [{"name": x.effect.name, "snr": x.snr} for x in case.always],
         "true_hull": {
             "mass_kg": float(p[P.MASS]),

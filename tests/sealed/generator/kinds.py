@@ -1,17 +1,22 @@
 """What a case holds: drawn by kind, with the right answers that go with it."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from tests.sealed.generator.background import QUIET_PARTS, Background
 from tests.sealed.generator.catalogue import BY_NAME, CATALOGUE
 from tests.sealed.generator.ceiling import applicable
 from tests.sealed.generator.design import Campaign
 from tests.sealed.generator.effect import Effect
 from tests.sealed.generator.outside import ABOVE, ALSO_RIGHT, OUTSIDE, TWINS
+from tests.sealed.generator.parameters import FloatArray
 from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import INVISIBLE, Sized, sized
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Kind = Literal["none", "friction-above", "coefficients", "single", "pair", "outside", "twin"]
 Verdict = Literal["none", "coefficients", "gap", "unknown"]
@@ -49,6 +54,18 @@ class Content:
     stages: tuple[str, ...]
     separated_by: str | None = None
 
+    def without_size(self, p: FloatArray) -> FloatArray:
+        """Return the parameters with what the effects bring before they have a size.
+
+        What no answer is to name, friction above the dynamometers, is there as it is.
+        """
+        for found in self.effects:
+            if self.verdict == "none":
+                p = found.put(p)
+            elif found.effect.own_base:
+                p = found.effect.put(p, 0.0, found.drawn)
+        return p
+
 
 def drawn_kind(rng: np.random.Generator, *, null: bool) -> Kind:
     """Return a kind with its share as probability."""
@@ -69,17 +86,21 @@ class Drawing:
     campaign: Campaign
     situation: Situation
     projection: Projection
+    background: Background
     rng: np.random.Generator
 
     def _one(self, pool: list[Effect], wanted: float, tries: int = 5) -> Sized:
-        """Return an effect of the pool that reaches half of what is wanted, or the last tried."""
-        found = None
+        """Return an effect of the pool with half of what is wanted, or the last quiet one."""
+        kept = None
         for i in self.rng.permutation(len(pool))[:tries]:
             found = sized(self.situation, self.projection, pool[i], wanted, self.rng)
+            if self.background.of_parts(found) > QUIET_PARTS:
+                continue
+            kept = found
             if 0.5 * wanted < found.snr < 2.0 * wanted:
                 break
-        assert found is not None, "no effect for this rig"
-        return found
+        assert kept is not None, "no effect for this rig"
+        return kept
 
     def _pool(self, effects: tuple[Effect, ...]) -> list[Effect]:
         return [
@@ -90,7 +111,16 @@ class Drawing:
 
     def draw(self, kind: Kind) -> Content:
         """Return the content of a case of this kind."""
-        return getattr(self, "_" + kind.replace("-", "_"))()  # type: ignore[no-any-return]
+        contents: dict[Kind, Callable[[], Content]] = {
+            "none": self._none,
+            "friction-above": self._friction_above,
+            "coefficients": self._coefficients,
+            "single": self._single,
+            "pair": self._pair,
+            "outside": self._outside,
+            "twin": self._twin,
+        }
+        return contents[kind]()
 
     def _none(self) -> Content:
         return Content("none", "none", (), ((),), ())

@@ -26,8 +26,8 @@ OUTSIDE: tuple[Effect, ...] = (
     Effect("rod-offset", MECHANISM, "guide beside the crank's centre", 0.02, 0.1,
            {P.ROD_OFFSET: 1.0}, signed=True, needs="rod"),
     Effect("carriage-mode", STRUCTURE, "frame at 3.3 Hz, shaken by rails and wheels", 5.0, 300.0,
-           {P.FRAME_SHAKE: 1.0},
-           sets={**CONTACT, P.FRAME_STIFFNESS: 2.15e6, P.FRAME_MASS: 5e3, P.FRAME_DAMPING: 6e3},
+           {P.FRAME_SHAKE: 100.0},  # of a mass that the model's load does not shake
+           sets={**CONTACT, P.FRAME_STIFFNESS: 2.15e8, P.FRAME_MASS: 5e5, P.FRAME_DAMPING: 6e5},
            draws={P.FRAME_SHAKE_HZ: (2.0, 4.5)}, settles=None),
     Effect("ventilation", WATER, "air drawn down while the strut goes down", 1.0, 40.0,
            {P.VENTILATION: 1.0}, settles=None, needs="speed"),

@@ -64,6 +64,8 @@ def _amplifiers(p: FloatArray, shown: FloatArray, times: FloatArray, rate_hz: fl
     if p[P.SKEW_AFT] or p[P.SKEW_FORE]:
         skews = p[[P.SKEW_AFT, P.SKEW_FORE]] * rate_hz
         shown = np.array([delayed(row, skew) for row, skew in zip(shown, skews, strict=True)])
+    if p[P.HUM] == 0.0:
+        return shown
     turn = 2.0 * math.pi * p[P.HUM_HZ] * times + p[P.HUM_PHASE]
     hum = p[P.HUM] * (np.sin(turn) + 0.2 * np.sin(3.0 * turn))
     return np.asarray(shown + hum)

@@ -59,14 +59,18 @@ class Situation:
         )
 
     @cached_property
-    def _bases(self) -> dict[float | None, FloatArray]:
+    def _bases(self) -> dict[tuple[float | None, bytes], FloatArray]:
         return {}
 
     def base(self, settles: float | None) -> FloatArray:
         """Return the features without any effect."""
-        if settles not in self._bases:
-            self._bases[settles] = self.features_of(self.parameters, settles)
-        return self._bases[settles]
+        return self._kept(self.parameters, settles)
+
+    def _kept(self, p: FloatArray, settles: float | None) -> FloatArray:
+        key = (settles, p.tobytes())
+        if key not in self._bases:
+            self._bases[key] = self.features_of(p, settles)
+        return self._bases[key]
 
     def signature(self, effect: Effect, size: float, drawn: Drawn | None = None) -> FloatArray:
         """Return what an effect at a size changes, in sigma, beside the effect's own base."""
@@ -74,9 +78,8 @@ class Situation:
         if effect.measured:
             return self.measured(p) - self.base(None)
         base = self.base(effect.settles)
-        if effect.sets or effect.rebased:
-            still = effect.put(self.parameters, 0.0, drawn)
-            base = self.features_of(still, effect.settles)
+        if effect.own_base:
+            base = self._kept(effect.put(self.parameters, 0.0, drawn), effect.settles)
         return self.features_of(p, effect.settles) - base
 
     def tamed(
