@@ -118,13 +118,22 @@ def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
     return np.array(campaign.hull.restoring if given is None else given, dtype=np.float64)
 
 
-def stated_of(campaign: Campaign, settings: Settings, model: ModelUncertainty | None) -> Stated:
-    """Return the standard uncertainties: the settings', else the inertia's and the set-points'."""
+def stated_of(
+    campaign: Campaign, settings: Settings, model: ModelUncertainty | None, *, motion_asked: bool
+) -> Stated:
+    """Return the standard uncertainties: the settings', else the inertia's and the set-points'.
+
+    Parameters
+    ----------
+    motion_asked
+        Whether set-points stand in for displacements that were not measured: only then does it
+        matter how well eccentricity and phase were set.
+    """
     stated = settings.uncertainty
     found: dict[str, float] = {}
     if model is not None:
         found |= {name: getattr(model, name) for name in _BODY}
-    runs = campaign.runs
+    runs = campaign.runs if motion_asked else ()
     found["amplitude_relative"] = max(
         (one.u_eccentricity_m / one.eccentricity_m for one in runs if one.eccentricity_m > 0.0),
         default=0.0,

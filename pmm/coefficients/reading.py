@@ -149,13 +149,16 @@ def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
 def _places(
     before: Zero, after: Zero, task: Task, recording: Recording
 ) -> tuple[float, float, float]:
-    """Times of zero, run and zero on one clock: UTC, else the order of the runs."""
+    """Places of zero, run and zero on one clock: UTC, else the order of the runs.
+
+    A rig that is simulated faster than time has UTC that its records' lengths do not fit into.
+    """
     utc = (before.utc_s, _utc_s(recording), after.utc_s)
     numbers = (before.number, task.number, after.number)
     for clock in (utc, numbers):
-        if None not in clock:
-            first, own, last = (float(at) for at in clock if at is not None)
-            return first, own, last
+        known = [float(at) for at in clock if at is not None]
+        if len(known) == 3 and known[0] < known[1] < known[2]:
+            return known[0], known[1], known[2]
     return 0.0, 0.5, 1.0
 
 

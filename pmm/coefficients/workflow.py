@@ -9,6 +9,7 @@ from pathlib import Path
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.measured import MOTION_ASKED
 from analysis.coefficients.stated import Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
@@ -204,9 +205,14 @@ def _read(
         tuple(one for one in (*zeros, *found) if isinstance(one, Done)),
         tuple(one for one in (*zeros, *found) if isinstance(one, Failed)),
         work,
-        stated_of(campaign, settings, model),
+        stated_of(campaign, settings, model, motion_asked=_asked(cycles)),
         body,
     )
+
+
+def _asked(cycles: Sequence[Cycle]) -> bool:
+    """Whether a set-point's motion stands in for one that was not measured."""
+    return any(flag.code == MOTION_ASKED.code for one in cycles for flag in one.flags)
 
 
 def _all(
