@@ -39,7 +39,7 @@ class Console:
 
     def __init__(self, settings: Settings, connection: Connection, end: Callable[[], None]) -> None:
         self.door = settings.door
-        self.hub = Hub(self._replied, self._ended, _utc)
+        self.hub = Hub(self._replied, self._written, _utc)
         self.loop = LoopSide(connection, self.hub.take, self._lost)
         self._end = end
         plans = Plans(settings.rig_path, settings.plans, settings.output)
@@ -51,8 +51,8 @@ class Console:
     def _replied(self, reply: Reply) -> None:
         self.loop.replied(reply)
 
-    def _ended(self, notice: Notice) -> None:
-        if notice.folder is not None and notice.outcome is not None and notice.outcome.file:
+    def _written(self, notice: Notice) -> None:
+        if notice.folder is not None:
             self.finished.look_at(notice.folder)
 
     def _lost(self) -> None:
@@ -153,7 +153,7 @@ def _routes(console: Console) -> list[BaseRoute]:
 
 
 def _file(name: str) -> Callable[[Request], Awaitable[Response]]:
-    async def served(request: Request) -> Response:
+    async def served(_request: Request) -> Response:
         return FileResponse(PAGE / name)
 
     return served

@@ -74,7 +74,7 @@ def frame_picture(frame: Frame) -> dict[str, Any]:
         "free_bytes": status.free_bytes,
         "bus": asdict(frame.bus),
         "loop": {key: _plain(value) for key, value in asdict(frame.loop).items()},
-        "needles": _needles(frame.needles),
+        "needles": needles_picture(frame.needles),
         "trace": trace_picture(frame.trace),
     }
 
@@ -110,7 +110,7 @@ def outcome_picture(
         "at": at,
         "flags": [one.message for one in outcome.flags],
         "rows": [_row(one) for one in outcome.harmonics],
-        "needles": _needles(needles),
+        "needles": needles_picture(needles),
     }
 
 
@@ -119,7 +119,8 @@ def number_of_time(value: float) -> float | None:
     return round(value, 6) if math.isfinite(value) else None
 
 
-def _needles(needles: Needles | None) -> dict[str, Any] | None:
+def needles_picture(needles: Needles | None) -> dict[str, Any] | None:
+    """Return readings; ``None`` where there are none."""
     if needles is None:
         return None
     return {

@@ -1,4 +1,4 @@
-"""Coefficients of finished runs beside earlier ones and a reference: worked out in a process apart."""
+"""Coefficients of finished runs beside earlier ones and a reference, in a process apart."""
 
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
@@ -54,7 +54,7 @@ def _points(folder: Path) -> Iterator[dict[str, Any]]:
     from pmm.coefficients.workflow import coefficients_of
 
     settings = Settings(nonlinear=False, zero_frequency=False)
-    found = coefficients_of([folder], settings, _Here(), lambda done, total, what: None)
+    found = coefficients_of([folder], settings, _Here(), _silent)
     result = found.result
     widths = result.half_widths
     for row, entry in enumerate(result.entries):
@@ -67,6 +67,10 @@ def _points(folder: Path) -> Iterator[dict[str, Any]]:
             "half_width": float(widths[row]),
             "runs": list(entry.runs),
         }
+
+
+def _silent(_done: int, _total: int, _what: str) -> None:
+    """Show no progress."""
 
 
 def _reference_points(path: Path, points: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:

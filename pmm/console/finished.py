@@ -51,6 +51,8 @@ class Finished:
             except BrokenExecutor as error:
                 self._pool = None
                 figures = {"points": [], "problems": [f"coefficients: {error}"]}
+            except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+                figures = {"points": [], "problems": [f"coefficients: {error!r}"]}
             self._hub.figures = figures
             self._hub.broadcast({"type": "figures", "figures": figures})
 

@@ -12,11 +12,22 @@ from pmm.console.encoding import (
     encode,
     frame_picture,
     hello_picture,
+    needles_picture,
     notice_picture,
     outcome_picture,
     trace_picture,
 )
-from pmm.console.messages import FloatArray, Frame, Hello, Notice, Reply, Told, Trace
+from pmm.console.messages import (
+    WRITTEN,
+    FloatArray,
+    Frame,
+    Hello,
+    Needles,
+    Notice,
+    Reply,
+    Told,
+    Trace,
+)
 from pmm.console.traces import POINTS
 
 _NOTICES: Final = 200
@@ -29,8 +40,8 @@ class Hub:
     ----------
     replied
         Takes the replies to orders.
-    ended
-        Told of every run that ended.
+    written
+        Told when a campaign's file holds one more run.
     utc
         Date and time in ISO 8601.
     """
@@ -38,7 +49,7 @@ class Hub:
     def __init__(
         self,
         replied: Callable[[Reply], None],
-        ended: Callable[[Notice], None],
+        written: Callable[[Notice], None],
         utc: Callable[[], str],
     ) -> None:
         self.hello: Hello | None = None
@@ -49,9 +60,10 @@ class Hub:
         self.figures: dict[str, Any] = {}
         self.last: Frame | None = None
         self.connected = False
-        self._replied, self._ended, self._utc = replied, ended, utc
+        self._replied, self._written, self._utc = replied, written, utc
         self._notices: deque[dict[str, Any]] = deque(maxlen=_NOTICES)
         self._count, self._began = 0, utc()
+        self._needles: Needles | None = None
         self._ring: FloatArray = np.empty((0, 0))
         self._ring_first, self._ring_start_s = 0, 0.0
 
@@ -110,6 +122,7 @@ class Hub:
                 "connected": self.connected,
                 "hello": None if self.hello is None else hello_picture(self.hello),
                 "frame": None if self.last is None else frame_picture(self.last),
+                "needles": needles_picture(self._needles),
                 "trace": trace_picture(trace),
                 "notices": list(self._notices),
                 "plans": self.plans,
@@ -135,6 +148,7 @@ class Hub:
 
     def _frame(self, frame: Frame) -> None:
         self.last = frame
+        self._needles = frame.needles or self._needles
         self._keep(frame.trace)
         if self.clients:
             self.broadcast(frame_picture(frame))
@@ -154,10 +168,12 @@ class Hub:
         self._ring_start_s = trace.start_s + (count - ring.shape[1]) / rate_hz
 
     def _notice(self, notice: Notice) -> None:
+        if notice.kind == WRITTEN:
+            self._written(notice)
+            return
         self.add_notice(notice)
         if notice.outcome is not None:
             folder = str(notice.folder or "")
             entry = outcome_picture(notice.outcome, notice.needles, folder, self._utc())
             self.finished.append(entry)
             self.broadcast({"type": "finished", "entry": entry})
-            self._ended(notice)

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from pmm.recorder.lateness import CycleStatistics
 from pmm.run.status import RunOutcome, Status
 
 FloatArray = NDArray[np.float64]
+WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
 
 
 class OrderKind(StrEnum):

@@ -1,4 +1,4 @@
-"""Plans that the console offers: found beside the rig's file, read and checked as ``pmm run`` does."""
+"""Plans that the console offers: found in a folder, read and checked as ``pmm run`` does."""
 
 import hashlib
 from collections.abc import Iterator

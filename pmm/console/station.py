@@ -7,6 +7,7 @@ Nothing here waits for a browser. Orders are taken between two cycles; frames ar
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor
+from itertools import accumulate
 from typing import Final
 
 from hardware.description.errors import PmmError
@@ -180,7 +181,8 @@ class Station:
             if not self._idle:
                 raise RunStateError(f"{self._present.plan.name} is under way; stop it first")
             name, self._present = self._present.plan.name, None
-            self.control = self._controlled(())
+            before, self.control = self.control, self._controlled(())
+            self.control.follow(before)
         else:
             found = [one for one in self._waiting if one.number == number]
             if not found:
@@ -205,7 +207,8 @@ class Station:
         if self._left and self._present is not None:
             return
         self._present = self._waiting.popleft()
-        self.control = self._controlled(self._present.runs)
+        before, self.control = self.control, self._controlled(self._present.runs)
+        self.control.follow(before)
         self._notice("plan", f"{self._present.plan.name} is next", plan=self._present.number)
         if goes_on:
             self.control.request(Command.START)
@@ -237,11 +240,10 @@ class Station:
 
     def _show_idle(self) -> None:
         """Let the traces go on between runs, and devices not keep their samples for ever."""
-        row, parts = 0, []
-        for device in sampled_devices(self._rig):
-            for block in device.take():
-                parts.append((row, block))
-            row += len(device.channels)
+        devices = sampled_devices(self._rig)
+        rows = accumulate((len(one.channels) for one in devices), initial=0)
+        taken = [(row, one.take()) for row, one in zip(rows, devices, strict=False)]
+        parts = [(row, block) for row, blocks in taken for block in blocks]
         if parts:
             self._traces.add_parts(self._rig.number, parts)
 
@@ -264,7 +266,6 @@ class Station:
             self._told_outcomes += 1
             if self._present is None:
                 continue
-            self._writer.write(self._present)
             self._link.tell(
                 Notice(
                     "outcome",
@@ -277,6 +278,7 @@ class Station:
                 )
             )
             self._latest = None
+            self._writer.write(self._present, self._link.tell)
 
     def _notice(self, kind: str, text: str, plan: int = 0) -> None:
         time_s = self._rig.number / self._rig.configuration.sample_rate_hz

@@ -1,8 +1,9 @@
 """The campaign's file, written anew after each run, beside the loop."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor, Future, wait
 
-from pmm.console.messages import QueuedPlan
+from pmm.console.messages import WRITTEN, Notice, QueuedPlan
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.rig_file import RigFile
 from pmm.run.campaign_folder import finished_runs
@@ -21,12 +22,12 @@ class Writer:
         self._rig_file, self._executor = rig_file, executor
         self._pending: list[Future[None]] = []
 
-    def write(self, plan: QueuedPlan) -> None:
-        """Write the file of a plan's folder."""
+    def write(self, plan: QueuedPlan, tell: Callable[[Notice], None]) -> None:
+        """Write the file of a plan's folder, and tell when it is there."""
         if self._executor is None:
-            self._write(plan)
+            self._write(plan, tell)
         else:
-            self._pending.append(self._executor.submit(self._write, plan))
+            self._pending.append(self._executor.submit(self._write, plan, tell))
 
     def failures(self) -> list[str]:
         """Return what went wrong since the last call."""
@@ -40,6 +41,7 @@ class Writer:
         wait(self._pending)
         return self.failures()
 
-    def _write(self, plan: QueuedPlan) -> None:
+    def _write(self, plan: QueuedPlan, tell: Callable[[Notice], None]) -> None:
         done = finished_runs(plan.folder, plan.plan.runs)
         write_campaign(plan.folder, plan.plan, self._rig_file, done)
+        tell(Notice(WRITTEN, 0.0, plan.plan.name, plan=plan.number, folder=plan.folder))

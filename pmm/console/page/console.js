@@ -15,7 +15,7 @@ function draw() {
   due = false;
   const frame = latest;
   if (!frame) return;
-  traces.gate = [frame.opened_s, frame.closed_s];
+  traces.mark(frame.opened_s, frame.closed_s);
   traces.draw();
   readings.show(frame.needles);
   showState(frame);
@@ -97,6 +97,7 @@ function begin(snapshot) {
   alarms.begin(snapshot.notices);
   plans.take(snapshot.plans);
   showDesk(snapshot.desk);
+  if (snapshot.needles) readings.show(snapshot.needles);
   if (snapshot.frame) { latest = snapshot.frame; soon(); }
   document.body.dataset.ready = "yes";
 }

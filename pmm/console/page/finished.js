@@ -2,6 +2,7 @@
 import { byId, digits, html, nice, plusMinus, svg, text } from "./svg.js";
 
 const FORCES = ["N", "N m"];
+const SIGNS = { complete: "✓", stopped: "■", fault: "▲" };
 
 export class Finished {
   begin(hello, entries) {
@@ -19,18 +20,18 @@ export class Finished {
     const made = (rows.length ? rows : [null]).map((row, k) => {
       const at = row ? this.channels.findIndex((one) => one.name === row.channel) : -1;
       const width = row ? Math.max(needles?.widths[at]?.[1] ?? 0, needles?.widths[at]?.[2] ?? 0) || row.half_width : null;
-      const first = k ? ["", "", ""] : [entry.run, entry.outcome + (entry.reason ? `: ${entry.reason}` : ""), String(entry.periods)];
+      const first = k ? ["", ""] : [`${SIGNS[entry.outcome] ?? ""} ${entry.run}`, String(entry.periods)];
       const still = row && row.in_phase === 0 && row.quadrature === 0;
-      const numbers = !row ? ["", "", "", ""] : [`${row.channel} [${row.unit}]`,
+      const numbers = !row ? ["", "", "", ""] : [row.channel,
         still ? `mean ${digits(row.mean, width)}` : digits(row.in_phase, width), still ? "" : digits(row.quadrature, width), plusMinus(width)];
-      return html("tr", { ...(k ? { class: "more" } : {}), "data-run": entry.run },
-        ...[...first, ...numbers].map((one, n) => html("td", n > 3 ? { class: "n" } : {}, one)));
+      return html("tr", { ...(k ? { class: "more" } : {}), "data-run": entry.run, title: `${entry.outcome} ${entry.reason}` },
+        ...[...first, ...numbers].map((one, n) => html("td", n === 1 || n > 2 ? { class: "n" } : {}, one)));
     });
     byId("finished-table").tBodies[0].prepend(...made);
   }
 }
 
-const W = 460, H = 230, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
+const W = 620, H = 225, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
 
 export class Coefficients {
   constructor() {

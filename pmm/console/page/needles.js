@@ -101,6 +101,7 @@ export class Card {
 
   clear() {
     this.dials.forEach((dial) => dial.show(null, null, this.scale || 1));
+    this.phasor.show([0, ...this.phasor.arrows.flatMap(() => [0, 0])], [], this.order ?? 1, 1);
     text(this.note, "no reading");
   }
 }

@@ -45,7 +45,7 @@ export class Readings {
   }
 
   show(needles) {
-    if (!needles) { if (this.last) text(byId("finality"), "last reading"); return; }
+    if (!needles) return text(byId("finality"), this.last ? "last reading" : "no reading");
     this.last = needles;
     for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final);
     text(byId("finality"), needles.final ? "final: whole periods" : "provisional: between pulses");

@@ -8,7 +8,7 @@ const GATES = { closed: "closed", armed: "armed", open: "open", held: "hold" };
 export function showState(frame) {
   attribute(byId("state"), "data-tone", TONES[frame.state] ?? "moves");
   text(byId("state-name"), (SIGNS[frame.state] ?? "▶ ") + frame.state);
-  text(byId("state-run"), frame.run ? `${frame.run} (${frame.kind}), run ${frame.run_number} of ${frame.run_count}` : "no run");
+  text(byId("state-run"), frame.run ? `${frame.run}, ${frame.run_number} of ${frame.run_count}` : "no run");
   const gate = GATES[frame.gate];
   attribute(byId("gate"), "data-gate", gate);
   text(byId("gate-name"), gate);
@@ -33,12 +33,14 @@ function facts(frame) {
   }
   if (frame.set) found.push(["carriage, set", `${digits(frame.set.carriage_speed_m_s)} m/s in ${frame.set.medium}`]);
   const bus = frame.bus;
-  const busText = bus.nodes ? `${bus.ok ? "in order" : "NOT IN ORDER"}, ${bus.nodes} nodes, ${bus.error_frames} error frames` : "none";
+  const busText = bus.nodes ? `${bus.ok ? "in order" : "NOT IN ORDER"}, ${bus.nodes} nodes` : "none";
   found.push(["bus", busText, bus.ok ? "" : "bad"]);
+  if (bus.nodes) found.push(["error frames", String(bus.error_frames)]);
   const free = frame.free_bytes;
   found.push(["disk", free === null ? "nothing recorded" : `${(free / 1e9).toFixed(1)} GB left`, free !== null && free < 1e9 ? "bad" : ""]);
   const loop = frame.loop;
-  found.push(["loop", `99 % within ${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)} ms, late ${loop.late} of ${loop.cycles}`]);
+  found.push(["cycles, 99 %", `${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)} ms`]);
+  found.push(["late cycles", `${loop.late} of ${loop.cycles}`]);
   found.push(["rig time", `${frame.time_s.toFixed(1)} s`]);
   return found;
 }
@@ -79,6 +81,8 @@ export function showProgress(frame, plans) {
   }
 }
 
+const WORDS = { state: "state: ", outcome: "ended: ", plan: "plan: " };
+
 export class Alarms {
   constructor() { this.box = byId("alarms"); this.count = 0; }
 
@@ -87,7 +91,7 @@ export class Alarms {
   add(notice) {
     if (notice.kind === "alarm") this.count += 1;
     const time = html("time", {}, `${notice.time_s.toFixed(1)} s`);
-    this.box.prepend(html("li", { "data-kind": notice.kind }, time, notice.kind === "state" ? `state: ${notice.text}` : notice.text));
+    this.box.prepend(html("li", { "data-kind": notice.kind }, time, `${WORDS[notice.kind] ?? ""}${notice.text}`));
     while (this.box.children.length > 60) this.box.lastChild.remove();
     text(byId("alarm-count"), this.count ? `${this.count} so far` : "none");
   }

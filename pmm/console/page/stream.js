@@ -1,6 +1,7 @@
 // The stream of frames: comes back by itself, and says what was missed meanwhile.
 const KEPT = "pmm-session";
 const SEEN = "pmm-seen";
+const A_MOMENT = 25; // frames: shorter gaps in which nothing happened are not worth a word
 
 function session() {
   const own = sessionStorage.getItem(KEPT);
@@ -59,8 +60,9 @@ export class Stream {
     const seen = this.seen;
     const newest = snapshot.notices.at(-1)?.id ?? 0;
     this.seen = { n: now, id: newest, at: Date.now(), began: snapshot.began };
-    if (!seen || seen.n === undefined || seen.began !== snapshot.began || now - seen.n < 3) return;
+    if (!seen || seen.n === undefined || seen.began !== snapshot.began) return;
     const happened = snapshot.notices.filter((one) => one.id > (seen.id ?? 0));
+    if (now - seen.n < A_MOMENT && !happened.length) return;
     this.handlers.missed({ frames: now - seen.n, seconds: (Date.now() - seen.at) / 1000, happened });
   }
 

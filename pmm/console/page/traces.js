@@ -16,7 +16,7 @@ class Scale {
       if (one > high) high = one;
     }
     if (low > high) return;
-    const span = Math.max(high - low, 1e-9);
+    const span = Math.max(high - low, 1e-4 * Math.abs(high), 1e-9);
     const grown = low < this.low || high > this.high;
     if (grown || span < 0.5 * (this.high - this.low)) {
       this.low = low - 0.1 * span;
@@ -39,33 +39,37 @@ class Chart {
       mark.style.borderColor = colours[at];
       return html("span", {}, mark, channels[k].name);
     }));
+    const values = (_plot, splits, _axis, _space, step) => {
+      const places = Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+      return splits.map((one) => one.toFixed(places));
+    };
     const axis = { stroke: css("--quiet"), grid: { stroke: css("--line"), width: 1 }, ticks: { stroke: css("--line") }, font: "12px system-ui" };
     this.plot = new uPlot({
       width: 300, height,
       cursor: { show: false }, select: { show: false }, legend: { show: false },
       scales: { x: { time: false, range: () => this.ring.window() }, y: { range: () => [this.scale.low, this.scale.high] } },
-      axes: [{ ...axis, size: 30 }, { ...axis, size: 60 }],
+      axes: [{ ...axis, size: 30 }, { ...axis, size: 64, space: 24, values }],
       series: [{}, ...members.map((_, at) => ({ stroke: colours[at], width: 1.5, points: { show: false }, spanGaps: false }))],
       hooks: { drawClear: [(plot) => this.gate(plot)] },
     }, this.data, this.box);
   }
 
-  // The gate is marked behind the traces, with an edge of its own so that no colour has to be seen.
+  // Gates are marked behind the traces, with edges of their own so that no colour has to be seen.
   gate(plot) {
-    const [opened, closed] = this.ring.gate;
-    if (opened === null) return;
     const [from, to] = this.ring.window();
-    const left = plot.valToPos(Math.max(opened, from), "x", true);
-    const right = plot.valToPos(Math.min(closed ?? to, to), "x", true);
-    if (right <= left) return;
-    const { ctx, bbox } = plot;
-    ctx.save();
-    ctx.fillStyle = css("--gate-wash");
-    ctx.fillRect(left, bbox.top, right - left, bbox.height);
-    ctx.fillStyle = css("--gate");
-    if (opened >= from) ctx.fillRect(left, bbox.top, 3, bbox.height);
-    if (closed !== null && closed <= to) ctx.fillRect(right - 3, bbox.top, 3, bbox.height);
-    ctx.restore();
+    for (const [opened, closed] of this.ring.gates) {
+      const left = plot.valToPos(Math.max(opened, from), "x", true);
+      const right = plot.valToPos(Math.min(closed ?? to, to), "x", true);
+      if (right <= left) continue;
+      const { ctx, bbox } = plot;
+      ctx.save();
+      ctx.fillStyle = css("--gate-wash");
+      ctx.fillRect(left, bbox.top, right - left, bbox.height);
+      ctx.fillStyle = css("--gate");
+      if (opened >= from) ctx.fillRect(left, bbox.top, 3, bbox.height);
+      if (closed !== null && closed <= to) ctx.fillRect(right - 3, bbox.top, 3, bbox.height);
+      ctx.restore();
+    }
   }
 
   draw() {
@@ -78,7 +82,7 @@ class Chart {
 }
 
 export class Traces {
-  constructor() { this.charts = []; this.gate = [null, null]; this.box = byId("charts"); addEventListener("resize", () => this.fit()); }
+  constructor() { this.charts = []; this.gates = []; this.box = byId("charts"); addEventListener("resize", () => this.fit()); }
 
   begin(hello) {
     this.channels = hello.channels;
@@ -91,12 +95,13 @@ export class Traces {
 
   build() {
     const groups = [];
-    const units = [...new Set(this.channels.map((one) => one.unit))];
+    const rank = (unit) => { const at = ["N", "N m", "m"].indexOf(unit); return at < 0 ? 9 : at; };
+    const units = [...new Set(this.channels.map((one) => one.unit))].sort((a, b) => rank(a) - rank(b));
     for (const unit of units) {
       const members = this.channels.map((one, k) => (one.unit === unit ? k : -1)).filter((k) => k >= 0);
       for (let k = 0; k < members.length; k += PER_CHART) groups.push(members.slice(k, k + PER_CHART));
     }
-    const height = Math.max(130, Math.min(240, Math.floor(420 / groups.length)));
+    const height = Math.max(110, Math.min(240, Math.floor((470 - 22 * groups.length) / groups.length)));
     this.charts.forEach((one) => one.plot.destroy());
     this.charts = groups.map((members) => new Chart(this, members, this.channels, height));
     this.box.replaceChildren(...this.charts.flatMap((one) => [one.legend, one.box]));
@@ -106,6 +111,13 @@ export class Traces {
   fit() {
     const width = this.box.clientWidth;
     if (width) this.charts.forEach((one) => one.resize(width));
+  }
+
+  // Gates of the last 20 s; a gate that closes replaces itself as it was open.
+  mark(opened, closed) {
+    const from = this.times ? this.window()[0] : 0;
+    this.gates = this.gates.filter(([one, end]) => one !== opened && end !== null && end > from);
+    if (opened !== null) this.gates.push([opened, closed]);
   }
 
   window() { const end = this.times[POINTS - 1]; return [end - (POINTS - 1) * this.step, end]; }
