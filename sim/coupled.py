@@ -19,7 +19,7 @@ from sim.drive import SHAFT
 from sim.loaded_drive import LoadedDrive, LoadedState
 from sim.period import Period, Spectra
 from sim.relaxation import LONGEST_SWEEP, relax
-from sim.settled import fine_enough, last_period
+from sim.settled import fine_enough, last_period, substeps
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block, Stage
 
@@ -64,6 +64,27 @@ class Coupled:
         )
 
     def run(
+        self, state: tuple[Any, Any, Any], block: Block, inputs: Signals
+    ) -> tuple[tuple[Any, Any, Any], Signals]:
+        """Return states and signals over the block.
+
+        Where a gear's teeth ring faster than the samples follow, there are steps between them; the
+        carriage's speed stays over these as at the sample that they lead to.
+        """
+        if self.drive.settings.gear is None or not block.count:
+            return self._in_stretches(state, block, inputs)
+        times = substeps(self.drive.system.A, 1.0 / block.sample_rate_hz)
+        lone = 1 if block.first == 0 else 0  # a run's first sample has no step before it
+        first = 0 if lone else times * (block.first - 1) + 1
+        count = times * (block.count - lone) + lone
+        fine = {name: np.repeat(values, times)[-count:] for name, values in inputs.items()}
+        state, out = self._in_stretches(
+            state, Block(first, count, times * block.sample_rate_hz), fine
+        )
+        last = 0 if lone else times - 1
+        return state, {name: values[last::times] for name, values in out.items()}
+
+    def _in_stretches(
         self, state: tuple[Any, Any, Any], block: Block, inputs: Signals
     ) -> tuple[tuple[Any, Any, Any], Signals]:
         """Return states and signals over the block, swept in stretches."""

@@ -4,6 +4,7 @@ A clearance that opens twice a period has no balance of harmonics that sweeps co
 in time instead, with steps that fit its fastest vibration.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Final
@@ -14,6 +15,8 @@ from sim.period import Period
 from sim.signals import FloatArray
 
 _STEP_RAD: Final = 0.1  # of the fastest vibration, at most
+_SUBSTEP_RAD: Final = 0.3
+_DAMPED: Final = 0.1  # damping ratio from which what a clearance gives back settles at any step
 _MOST_DOUBLED: Final = 10
 _SETTLED: Final = 1e-9
 _MOST_PERIODS: Final = 300
@@ -32,6 +35,17 @@ def fine_enough(period: Period, rates: FloatArray) -> Period:
             break
         points *= 2
     return replace(period, points=points)
+
+
+def substeps(rates: FloatArray, step_s: float) -> int:
+    """Return into how many steps to part one for a clearance in a linear system.
+
+    What the clearance gives back goes on between samples by the polynomial of those before. With a
+    vibration that the samples do not follow and that hardly decays, that feeds it.
+    """
+    found = np.linalg.eigvals(rates)
+    ringing = found[(found.imag > 0.0) & (-found.real < _DAMPED * np.abs(found))]
+    return max(math.ceil(step_s * float(ringing.imag.max(initial=0.0)) / _SUBSTEP_RAD), 1)
 
 
 def last_period(
