@@ -6,7 +6,9 @@ blocks. numba comes with the extra ``fast``; it is loaded when the first such lo
 
 from collections.abc import Callable
 from functools import cache
+from hashlib import sha256
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -30,7 +32,34 @@ def compile_loop(function: FunctionT) -> FunctionT:
 
     # Sums may be taken in another order; nothing is assumed about infinities and NaN.
     any_order = {"reassoc", "contract", "nsz"}
-    return cast("FunctionT", numba.njit(cache=True, nogil=True, fastmath=any_order)(function))
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(_cache_folder(before))
+    try:
+        compiled = numba.njit(cache=True, nogil=True, fastmath=any_order)(function)
+    finally:
+        config.CACHE_DIR = before
+    return cast("FunctionT", compiled)
+
+
+@cache
+def _cache_folder(chosen: str) -> Path:
+    """Return where the compiled loops are kept: another folder for every change of their sources.
+
+    numba looks at the file of a function only, not at those of the functions that it calls.
+
+    Parameters
+    ----------
+    chosen
+        The folder that the user has chosen for numba; empty for beside the sources.
+    """
+    here = Path(__file__).parent
+    contents = sha256()
+    for source in sorted(here.rglob("*.py")):
+        text = source.read_bytes()
+        if b"compile_loop" in text:
+            contents.update(text)
+    return (Path(chosen) if chosen else here / "__pycache__") / f"sim-{contents.hexdigest()[:16]}"
 
 
 def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArray:

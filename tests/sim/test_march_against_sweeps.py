@@ -1,6 +1,7 @@
 """Oracle: sweeps over whole blocks in NumPy; and each law's array form."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
-from sim import coupled, hull
+from sim import compiled, coupled, hull
 from sim.acting import Acting, Point
 from sim.compiled_laws import law_force
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
@@ -127,3 +128,20 @@ def test_laws_of_ones_own_are_swept_around_the_march() -> None:
         runs.append(chain.run(chain.start(200.0, 1), 400)[1]["force_aft"])
     assert not has_number(Doubled(300.0))
     np.testing.assert_allclose(runs[0], runs[1], rtol=0.0, atol=1e-10 * np.abs(runs[1]).max())
+
+
+def test_compiled_loops_are_kept_apart_for_every_change_of_their_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A loop keeps what it calls, of which numba does not see that it has changed."""
+    package = tmp_path / "sim"
+    package.mkdir()
+    monkeypatch.setattr(compiled, "__file__", str(package / "compiled.py"))
+    folders = []
+    for called, other in (("1.0", "a"), ("2.0", "a"), ("2.0", "b")):
+        (package / "law.py").write_text(f"@compile_loop\ndef law(): return {called}\n")
+        (package / "other.py").write_text(f"name = {other!r}\n")
+        folders.append(compiled._cache_folder.__wrapped__(""))
+    assert folders[0].parent == package / "__pycache__"
+    assert folders[0] != folders[1] == folders[2]
+    assert compiled._cache_folder.__wrapped__(str(tmp_path)).parent == tmp_path
