@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
 from pmm.classic_rows import ClassicRow, classic_rows
 from pmm.report.labels import units_loads_first
@@ -118,7 +119,8 @@ class RunRows:
     reference, reference_channel, reference_frequency_hz
         What told the phase; the channel is ``None`` for a photocell or a given frequency.
     window
-        ``"found steady"``, ``"given"`` or ``"not steady"`` (all periods were used).
+        ``"found steady"``, ``"given"``, ``"run's gate"`` (run control had it) or ``"not steady"``
+        (all periods were used).
     window_opened_s, window_closed_s, window_periods
         The periods that the gates were taken from.
     steady_tolerance
@@ -204,7 +206,8 @@ def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple
 def window_kind(analysis: "Analysis") -> str:
     """Return how the window was come by; see :class:`RunRows`."""
     if analysis.settings.opens_s is not None:
-        return "given"
+        own = analysis.recording.provenance.get(GATE_OPENED)
+        return "run's gate" if own == repr(analysis.settings.opens_s) else "given"
     steady = all(flag.code != "not_steady" for flag in analysis.flags)
     return "found steady" if steady else "not steady"
 

@@ -12,6 +12,7 @@ from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
+from analysis.resolver.opening import check_opening, with_own_gate
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.saturation import saturation_flags
 from analysis.resolver.set_point import set_point_flags
@@ -39,7 +40,8 @@ class Settings:
     gate_periods
         Periods of each gate; ``None`` takes the whole stretch as one gate.
     opens_s
-        Open the first gate at this very time instead of finding where the run is steady.
+        Open the first gate at this very time instead of finding where the run is steady, or of
+        taking the gate that run control had.
     periods
         Number of periods from ``opens_s`` on; all that follow if ``None``.
     steady_tolerance
@@ -100,7 +102,8 @@ def analyse(
         or longer than the steady stretch, harmonics beyond the sampling.
     """
     _check(settings)
-    _check_opening(recording, settings)
+    settings = with_own_gate(recording, settings)
+    check_opening(recording, settings)
     reference = choose_reference(recording, choice, settings.opens_s)
     chosen = recording.select(settings.channels or _default_channels(recording, reference))
     edges = _edges(chosen, reference, settings)
@@ -151,15 +154,6 @@ def _check(settings: Settings) -> None:
             raise ConfigurationError(f"{name} = {value} makes no sense; it must be 1 or more")
     if settings.periods is not None and settings.opens_s is None:
         raise ConfigurationError("a number of periods needs the time at which the gate opens")
-
-
-def _check_opening(recording: Recording, settings: Settings) -> None:
-    if settings.opens_s is None or recording.start_s <= settings.opens_s <= recording.end_s:
-        return
-    raise ConfigurationError(
-        f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
-        f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
-    )
 
 
 def _edges(recording: Recording, reference: PhaseReference, settings: Settings) -> FloatArray:

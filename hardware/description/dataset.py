@@ -30,3 +30,7 @@ ATTR_SAMPLE_RATE: Final = "sample_rate_hz"
 ATTR_SET_POINT: Final = "set_point"  # JSON of a SetPoint
 ATTR_PROVENANCE: Final = "provenance"  # JSON, text to text
 ATTR_FLAGS: Final = "flags"  # JSON, a list of flags
+
+# Keys of the provenance that run control writes: the gate that the photocell opened and closed.
+GATE_OPENED: Final = "gate_opened_s"
+GATE_PERIODS: Final = "gate_periods"

@@ -1,4 +1,4 @@
-"""``pmm demo``: a small simulated campaign, analysed, as a table, plots and a page."""
+"""``pmm demo``: a small campaign run on the simulated rig, as a table, plots and a page."""
 
 import click
 
@@ -9,10 +9,11 @@ import click
 )
 @click.option("--vertical-only", is_flag=True, help="Leave out the horizontal campaign.")
 def demo(output: str, vertical_only: bool) -> None:
-    """Simulate a small campaign, analyse it and write a report: see what this program does.
+    """Run a small campaign on the simulated rig and write a report: see what this program does.
 
-    Heave and pitch on the vertical oscillator, sway and yaw on the horizontal one. The folder gets
-    the campaigns with their recordings, the plots and one HTML page.
+    Heave and pitch on the vertical oscillator, sway and yaw on the horizontal one, through the same
+    run control, recorder and protocols as on a real rig. The folder gets the campaigns with their
+    recordings, the plots and one HTML page.
     """
     from pmm.cli.demonstrating import run
 

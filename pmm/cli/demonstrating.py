@@ -1,5 +1,6 @@
-"""What ``pmm demo`` does."""
+"""What ``pmm demo`` does: two campaigns run, recorded and analysed on the simulated rig."""
 
+import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import as_file, files
@@ -8,13 +9,14 @@ from pathlib import Path
 from analysis.readers import read_recording
 from analysis.resolver.analyse import Analysis, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from pmm.campaign import CAMPAIGN_FILE
 from pmm.campaign_file import read_campaign
 from pmm.cli.analyse import DEFAULT_LEVEL
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import print_compact
+from pmm.cli.run_work import Request, work
 from pmm.cli.screen import busy, output, show_progress
-from pmm.cli.simulating import copy_campaign, simulate_runs
 from pmm.tables import run_rows
 
 CAMPAIGNS = ("vertical", "horizontal")
@@ -30,7 +32,7 @@ class Shown:
 
 
 def run(folder_name: str, *, with_horizontal: bool = True) -> None:
-    """Simulate, analyse, print and report; what an earlier demo wrote there is replaced."""
+    """Run, analyse, print and report; what an earlier demo wrote there is replaced."""
     folder = Path(folder_name)
     check_folder(folder, "--output")
     names = CAMPAIGNS if with_horizontal else CAMPAIGNS[:1]
@@ -41,7 +43,7 @@ def run(folder_name: str, *, with_horizontal: bool = True) -> None:
         [run_rows(one.analysis, file=str(one.path), level=DEFAULT_LEVEL) for one in runs],
         (FORCE_AFT.name, FORCE_FORE.name),
     )
-    _write_plots([shown[0] for shown in campaigns], folder / "plots")
+    _write_plots([shown[1] for shown in campaigns], folder / "plots")
     _write_page(runs, folder / PAGE, pasted("demo", "--output", folder))
     again = pasted("analyse", runs[0].path)
     for line in (f"plots   {folder / 'plots'}", f"again   {again}", f"{folder / PAGE}"):
@@ -49,13 +51,13 @@ def run(folder_name: str, *, with_horizontal: bool = True) -> None:
 
 
 def _campaign(name: str, folder: Path) -> list[Shown]:
-    """Simulate and analyse one of the campaigns that come with the package."""
-    with as_file(files("pmm.cli") / "campaigns" / f"{name}.toml") as file:
-        campaign = read_campaign(file)
-        seed = campaign.simulation.seed
-        written = list(simulate_runs(campaign, campaign.runs, folder, seed, overwrite=True))
-        copy_campaign(file, folder)
-    paths = [Path(one.file) for one in written]
+    """Run and analyse one of the plans that come with the package, on the simulated rig."""
+    if (folder / CAMPAIGN_FILE).exists():  # an earlier demo's
+        shutil.rmtree(folder)
+    with as_file(files("pmm.cli") / "demo_rigs" / name) as rig:
+        work(Request(str(rig / "plan.toml"), (), False, str(folder), False, False, False))
+    campaign = read_campaign(folder / CAMPAIGN_FILE)
+    paths = [one.recording_path(folder) for one in campaign.runs]
     return [
         Shown(path, analyse(read_recording(path), campaign.reference, campaign.analysis))
         for path in show_progress(paths, f"analysing {name}")
@@ -66,7 +68,7 @@ def _write_plots(runs: Sequence[Shown], folder: Path) -> None:
     from pmm.report.plots import save_figures
 
     for one in show_progress(runs, "plotting"):
-        save_figures(one.analysis, folder, one.path.stem)
+        save_figures(one.analysis, folder, one.path.parent.name)
 
 
 def _write_page(runs: Sequence[Shown], page: Path, command: str) -> None:
@@ -76,6 +78,6 @@ def _write_page(runs: Sequence[Shown], page: Path, command: str) -> None:
         write_page(
             [one.analysis for one in runs],
             page,
-            title="Simulated heave, pitch, sway and yaw",
+            title="Heave, pitch, sway and yaw on the simulated rig",
             command=command,
         )

@@ -10,6 +10,7 @@ import numpy as np
 
 from analysis.readers.netcdf import write_recording
 from analysis.recording import FloatArray, Recording
+from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from pmm.recorder.disk import DiskFullError, free_bytes
@@ -213,4 +214,12 @@ def _provenance(run: RunData) -> dict[str, str]:
         "configuration_sha256": json.dumps(dict(header.configuration_sha256)),
         "readings": json.dumps({name: asdict(one) for name, one in header.readings.items()}),
     }
-    return found | (run.cycles.as_text() if run.cycles else {})
+    return found | _gate(run) | (run.cycles.as_text() if run.cycles else {})
+
+
+def _gate(run: RunData) -> dict[str, str]:
+    """Return when the pulses opened and closed the gate, as far as it came."""
+    last = run.texts[HARMONICS][-1] if run.texts[HARMONICS] else {}
+    if not {"opened_s", "periods"} <= set(last):
+        return {}
+    return {GATE_OPENED: repr(last["opened_s"]), GATE_PERIODS: str(last["periods"])}

@@ -18,6 +18,7 @@ from pmm.tables import floored, window_kind
 WINDOWS = {
     "found steady": "steady stretch",
     "given": "window given",
+    "run's gate": "the run's own gate",
     "not steady": "all periods, not steady",
 }
 _PACKAGES = ("pmm", "numpy", "scipy", "matplotlib")

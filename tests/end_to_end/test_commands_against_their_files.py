@@ -21,8 +21,8 @@ from pmm.cli.simulating import seed_of
 from pmm.tables import format_value
 
 HOUSE = Path(__file__).parents[2]
-SHIPPED = HOUSE / "pmm" / "cli" / "campaigns"
-HEAVE = ("simulate", SHIPPED / "vertical.toml", "--run", "heave-1.20")
+SHIPPED = HOUSE / "examples"
+HEAVE = ("simulate", SHIPPED / "vertical" / "campaign.toml", "--run", "heave-1.20")
 
 
 def run(*arguments: str | Path) -> Result:
@@ -109,7 +109,7 @@ def test_runs_that_are_not_recorded_yet_are_said(folder: Path) -> None:
 
 def test_simulate_writes_a_campaign_folder(folder: Path) -> None:
     assert sorted(path.name for path in folder.iterdir()) == ["campaign.toml", "heave-1.20.nc"]
-    shipped = (SHIPPED / "vertical.toml").read_bytes()
+    shipped = (SHIPPED / "vertical" / "campaign.toml").read_bytes()
     assert (folder / "campaign.toml").read_bytes() == shipped
     recording = read_recording(folder / "heave-1.20.nc")
     assert recording.set_point is not None
@@ -129,7 +129,14 @@ def test_a_recording_is_never_replaced_unasked(folder: Path) -> None:
 
 
 def test_another_campaigns_file_is_not_replaced(folder: Path) -> None:
-    other = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20", "--output", folder)
+    other = (
+        "simulate",
+        SHIPPED / "horizontal" / "campaign.toml",
+        "--run",
+        "sway-0.20",
+        "--output",
+        folder,
+    )
     refused = run(*other)
     assert refused.exit_code == 2
     assert "campaign.toml: there already" in refused.stderr
@@ -137,7 +144,7 @@ def test_another_campaigns_file_is_not_replaced(folder: Path) -> None:
 
 def test_simulated_runs_are_not_put_among_measured_ones(tmp_path: Path) -> None:
     path = tmp_path / "campaign.toml"
-    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    text = (SHIPPED / "vertical" / "campaign.toml").read_text(encoding="utf-8")
     path.write_text(text.replace('name = "heave-1.20"', 'name = "heave"\nfile = "a.csv"'))
     refused = run("simulate", path, "--output", tmp_path)
     assert refused.exit_code == 2
@@ -145,7 +152,12 @@ def test_simulated_runs_are_not_put_among_measured_ones(tmp_path: Path) -> None:
 
 
 def test_one_run_alone_is_the_run_among_all(folder: Path, tmp_path: Path) -> None:
-    assert run("simulate", SHIPPED / "vertical.toml", "--output", tmp_path / "all").exit_code == 0
+    assert (
+        run(
+            "simulate", SHIPPED / "vertical" / "campaign.toml", "--output", tmp_path / "all"
+        ).exit_code
+        == 0
+    )
     alone, among = (read_recording(one / "heave-1.20.nc") for one in (folder, tmp_path / "all"))
     np.testing.assert_array_equal(alone.values("force_aft"), among.values("force_aft"))
     other = read_recording(tmp_path / "all" / "pitch-1.20.nc")
@@ -154,13 +166,20 @@ def test_one_run_alone_is_the_run_among_all(folder: Path, tmp_path: Path) -> Non
 
 
 def test_an_unknown_run_is_named(tmp_path: Path) -> None:
-    done = run("simulate", SHIPPED / "vertical.toml", "--run", "heave-1.2", "--output", tmp_path)
+    done = run(
+        "simulate",
+        SHIPPED / "vertical" / "campaign.toml",
+        "--run",
+        "heave-1.2",
+        "--output",
+        tmp_path,
+    )
     assert done.exit_code == 2
     assert "no run 'heave-1.2'; did you mean 'heave-1.20'?" in done.stderr
 
 
 def test_a_run_beyond_the_struts_is_named(tmp_path: Path) -> None:
-    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    text = (SHIPPED / "vertical" / "campaign.toml").read_text(encoding="utf-8")
     path = tmp_path / "heavy.toml"
     path.write_text(text.replace("eccentricity_mm = 20.0", "eccentricity_mm = 60.0"))
     done = run("simulate", path, "--output", tmp_path / "runs", "--run", "pitch-0.50")
@@ -289,7 +308,7 @@ def test_a_folder_that_cannot_be_made_is_named(folder: Path, tmp_path: Path) -> 
 
 
 def test_a_refused_run_leaves_no_folder(tmp_path: Path) -> None:
-    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    text = (SHIPPED / "vertical" / "campaign.toml").read_text(encoding="utf-8")
     (tmp_path / "heavy.toml").write_text(text.replace("mass_kg = 70.0", "mass_kg = 7000.0"))
     done = run("simulate", tmp_path / "heavy.toml", "--output", tmp_path / "a" / "b")
     assert done.exit_code == 2
@@ -388,7 +407,7 @@ def test_forces_go_first_and_lengths_are_in_millimetres(folder: Path) -> None:
 @pytest.mark.parametrize("command", ["simulate", "demo"])
 def test_an_output_in_whose_place_a_file_stands(command: str, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    campaign = () if command == "demo" else (SHIPPED / "vertical.toml",)
+    campaign = () if command == "demo" else (SHIPPED / "vertical" / "campaign.toml",)
     done = run(command, *campaign, "--output", tmp_path / "file")
     assert (done.exit_code, done.stdout) == (2, "")
     assert "is a file, not a folder" in done.stderr

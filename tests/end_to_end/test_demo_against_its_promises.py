@@ -20,22 +20,22 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
 def test_the_last_line_is_the_page(demo: tuple[Path, Result]) -> None:
     folder, done = demo
     assert done.exit_code == 0
-    assert done.stderr == ""
+    assert "11 of 11 runs complete" in done.stdout
     assert done.stdout.splitlines()[-1] == str(folder / "report.html")
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "heave-0.50" in page
-    assert "pitch-1.20" in page
+    assert "heave-f0.5-a20" in page
+    assert "pitch-f1.2-a20" in page
     assert not re.search(r"(?:src|href)=\"(?:https?:)?//", page)
 
 
 def test_the_table_has_a_line_per_run_and_force(demo: tuple[Path, Result]) -> None:
     lines = demo[1].stdout.splitlines()
-    assert len([line for line in lines if re.search(r"force_(?:aft|fore) \[N\]\s+1 ", line)]) == 12
+    assert len([line for line in lines if re.search(r"force_(?:aft|fore) \[N\]\s+1 ", line)]) == 14
 
 
 def test_plots_are_written(demo: tuple[Path, Result]) -> None:
     names = {path.name for path in (demo[0] / "plots").iterdir()}
-    assert {"heave-0.50-gate.svg", "heave-0.50-gate.png", "heave-0.50-phasors.svg"} <= names
+    assert {f"heave-f0.5-a20-{one}" for one in ("gate.svg", "gate.png", "phasors.svg")} <= names
 
 
 def test_the_command_it_names_repeats_one_of_them(demo: tuple[Path, Result]) -> None:

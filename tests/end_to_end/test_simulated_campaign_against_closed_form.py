@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 
 from pmm.cli import cli
 
-SHIPPED = Path(__file__).parents[2] / "pmm" / "cli" / "campaigns"
+SHIPPED = Path(__file__).parents[2] / "examples"
 NOISE = "noise_rms = 0.05, resolution = 0.0152587890625, full_scale = 500.0"
 DRIFT = ", drift_per_s = 0.004"
 G_M_S2 = 9.80665
@@ -63,7 +63,7 @@ def channel(rows: dict[str, Any], name: str) -> dict[str, Any]:
 
 
 def test_without_noise_the_forces_are_those_of_theory(tmp_path: Path) -> None:
-    text = (SHIPPED / "vertical.toml").read_text(encoding="utf-8")
+    text = (SHIPPED / "vertical" / "campaign.toml").read_text(encoding="utf-8")
     assert text.count(NOISE) == 2
     assert text.count(DRIFT) == 1
     file = tmp_path / "perfect.toml"
@@ -80,7 +80,9 @@ def test_without_noise_the_forces_are_those_of_theory(tmp_path: Path) -> None:
 
 
 def test_with_noise_theory_lies_within_the_intervals(tmp_path: Path) -> None:
-    assert run("simulate", SHIPPED / "vertical.toml", "--output", tmp_path).exit_code == 0
+    assert (
+        run("simulate", SHIPPED / "vertical" / "campaign.toml", "--output", tmp_path).exit_code == 0
+    )
     misses = []
     for rows in analysed(tmp_path):
         for name, force in expected(rows).items():
@@ -95,7 +97,7 @@ def test_with_noise_theory_lies_within_the_intervals(tmp_path: Path) -> None:
 
 
 def test_the_drift_that_was_put_in_is_taken_out(tmp_path: Path) -> None:
-    arguments = ("simulate", SHIPPED / "vertical.toml", "--run", "heave-0.50")
+    arguments = ("simulate", SHIPPED / "vertical" / "campaign.toml", "--run", "heave-0.50")
     assert run(*arguments, "--output", tmp_path).exit_code == 0
     file = tmp_path / "heave-0.50.nc"
     (rows,) = analysed(file)
@@ -105,7 +107,7 @@ def test_the_drift_that_was_put_in_is_taken_out(tmp_path: Path) -> None:
 
 
 def test_a_wider_level_widens_the_intervals(tmp_path: Path) -> None:
-    arguments = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20")
+    arguments = ("simulate", SHIPPED / "horizontal" / "campaign.toml", "--run", "sway-0.20")
     assert run(*arguments, "--output", tmp_path).exit_code == 0
     file = tmp_path / "sway-0.20.nc"
     narrow, wide = (
@@ -116,7 +118,7 @@ def test_a_wider_level_widens_the_intervals(tmp_path: Path) -> None:
 
 
 def test_gates_of_one_period_each(tmp_path: Path) -> None:
-    arguments = ("simulate", SHIPPED / "horizontal.toml", "--run", "sway-0.20")
+    arguments = ("simulate", SHIPPED / "horizontal" / "campaign.toml", "--run", "sway-0.20")
     assert run(*arguments, "--output", tmp_path).exit_code == 0
     (rows,) = analysed(tmp_path / "sway-0.20.nc", "--gate", "1", "--harmonics", "2")
     assert [gate["periods"] for gate in rows["gates"]] == [1] * 6

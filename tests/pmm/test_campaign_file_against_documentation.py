@@ -36,7 +36,7 @@ HOUSE = Path(__file__).parents[2]
 PAGE = (HOUSE / "docs" / "campaigns.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```toml\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
 IN_CODE = set(re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", PAGE, flags=re.DOTALL)))
-SHIPPED = HOUSE / "pmm" / "cli" / "campaigns"
+SHIPPED = HOUSE / "examples"
 
 
 def _write(folder: Path, text: str) -> Path:
@@ -103,7 +103,7 @@ def _keys(value: Any) -> set[str]:
 
 
 def test_every_key_of_the_json_documents_is_documented(tmp_path: Path) -> None:
-    campaign = str(SHIPPED / "vertical.toml")
+    campaign = str(SHIPPED / "vertical" / "campaign.toml")
     arguments = ["simulate", campaign, "--run", "heave-1.20", "--output", str(tmp_path), "--json"]
     simulated = CliRunner().invoke(cli, arguments, catch_exceptions=False)
     recording = str(tmp_path / "heave-1.20.nc")
@@ -114,13 +114,14 @@ def test_every_key_of_the_json_documents_is_documented(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["vertical", "horizontal"])
-def test_the_examples_are_what_the_package_ships(name: str) -> None:
-    example = HOUSE / "examples" / name / "campaign.toml"
-    assert example.read_bytes() == (SHIPPED / f"{name}.toml").read_bytes()
+@pytest.mark.parametrize("file", ["rig.toml", "simulated.toml"])
+def test_the_demo_runs_on_the_rigs_of_the_examples(name: str, file: str) -> None:
+    shipped = HOUSE / "pmm" / "cli" / "demo_rigs" / name / file
+    assert shipped.read_bytes() == (SHIPPED / name / file).read_bytes()
 
 
 def test_the_vertical_example_is_the_nominal_rig() -> None:
-    rig = read_campaign(SHIPPED / "vertical.toml").rig()
+    rig = read_campaign(SHIPPED / "vertical" / "campaign.toml").rig()
     nominal = vertical_rig()
     assert (rig.oscillator, rig.body, rig.water) == (
         nominal.oscillator,

@@ -1,0 +1,41 @@
+"""When the gate opens: as asked for, as run control had it, or nowhere in the record."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from analysis.recording import Recording
+from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
+from hardware.description.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from analysis.resolver.analyse import Settings
+
+
+def with_own_gate(recording: Recording, settings: "Settings") -> "Settings":
+    """Take the gate that run control had, where it closed within the record."""
+    told = recording.provenance
+    if settings.opens_s is not None or not {GATE_OPENED, GATE_PERIODS} <= set(told):
+        return settings
+    try:
+        opened_s, periods = float(told[GATE_OPENED]), int(told[GATE_PERIODS])
+    except ValueError:
+        return settings
+    if periods < 1 or not recording.start_s <= opened_s <= recording.end_s:
+        return settings
+    return replace(settings, opens_s=opened_s, periods=periods)
+
+
+def check_opening(recording: Recording, settings: "Settings") -> None:
+    """Refuse a gate that cannot open within the record.
+
+    Raises
+    ------
+    ConfigurationError
+        If its time lies before the record or after it.
+    """
+    if settings.opens_s is None or recording.start_s <= settings.opens_s <= recording.end_s:
+        return
+    raise ConfigurationError(
+        f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
+        f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
+    )
