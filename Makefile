@@ -4,13 +4,14 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test lint bench sealed clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
 	@echo "make test   install and run the tests"
 	@echo "make lint   formatting, types, imports"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
+	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
 $(VENV)/.user: pyproject.toml constraints.txt
@@ -24,6 +25,10 @@ $(VENV)/.dev: $(VENV)/.user
 
 $(VENV)/.bench: $(VENV)/.dev
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,bench]"
+	@touch $@
+
+$(VENV)/.sealed: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,peers]"
 	@touch $@
 
 demo: $(VENV)/.user
@@ -40,6 +45,13 @@ lint: $(VENV)/.dev
 
 bench: $(VENV)/.bench
 	$(BIN)/python -m benchmarks
+
+# Scored once for each commit: the commit's hash is the seed.
+sealed: $(VENV)/.sealed
+	$(BIN)/python -m tests.sealed generate --commit $$(git rev-parse HEAD) --output board
+	$(BIN)/pmm gap answer board
+	$(BIN)/python -m tests.sealed rows board
+	$(BIN)/python -m tests.sealed score board --docs docs/scoreboard.md --json board/score.json
 
 clean:
 	rm -rf $(VENV) demo
