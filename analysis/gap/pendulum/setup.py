@@ -1,0 +1,194 @@
+"""What may be other than stated in a test's set-up: the body, the lines, the release, the reading.
+
+They are effects of the same form as the simulator's catalogue, but for one thing: whoever makes a
+test states these numbers with a tolerance. Within it they are nuisances, beyond it causes.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.body import SwingingBody
+from sim.pendulum.effects.base import parameter, suspension_of
+from sim.pendulum.floating import Floating
+from sim.pendulum.suspension import Suspension
+
+if TYPE_CHECKING:
+    from sim.pendulum.pivot import Pendulum
+
+
+@dataclass(frozen=True)
+class InertiaError:
+    """The body's inertia is other than stated, by a share of the whole."""
+
+    share: float = parameter("1", -0.3, 0.3, 0.01)
+
+    name: ClassVar[str] = "inertia"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "more inertia, the added one's included"
+    signature: ClassVar[str] = "T grows by half the share, at any amplitude"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return bench.change_body(self._change)
+
+    def _change(self, body: SwingingBody) -> SwingingBody:
+        if isinstance(body, Floating):
+            return replace(body, inertia=body.inertia + self.share * float(body.mass[0, 0]))
+        if isinstance(body, Suspension):
+            return replace(body, yaw_gyradius_m=body.yaw_gyradius_m * math.sqrt(1.0 + self.share))
+        pivot = cast("Pendulum", body)
+        first = pivot.parts[0]
+        more = replace(first, inertia_kg_m2=first.inertia_kg_m2 + self.share * pivot.inertia_kg_m2)
+        return replace(pivot, parts=(more, *pivot.parts[1:]))
+
+
+@dataclass(frozen=True)
+class RestoringError:
+    """The restoring is other than stated: metacentric height, gravity, lever."""
+
+    share: float = parameter("1", -0.3, 0.3, 0.01)
+
+    name: ClassVar[str] = "restoring"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "more restoring at any displacement"
+    signature: ClassVar[str] = "T falls by half the share, at any amplitude"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return bench.change_body(self._change)
+
+    def _change(self, body: SwingingBody) -> SwingingBody:
+        if isinstance(body, Floating):
+            return replace(body, restoring=body.restoring * (1.0 + self.share))
+        heavy = cast("Any", body)
+        changed = replace(heavy, gravity_m_s2=heavy.gravity_m_s2 * (1.0 + self.share))
+        return cast("SwingingBody", changed)
+
+
+@dataclass(frozen=True)
+class LineExcess:
+    """Lines that are longer than measured by one length: knots, clamps, give at the ends."""
+
+    excess_m: float = parameter("m", -0.1, 0.1, 0.005)
+
+    name: ClassVar[str] = "line_excess"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "l + excess, the same for lines of any length"
+    signature: ClassVar[str] = "T grows by excess/(2 l): more with short lines"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        body = suspension_of(bench, self.name)
+        changed = replace(body, line_length_m=body.line_length_m + self.excess_m)
+        return replace(bench, body=changed)
+
+
+@dataclass(frozen=True)
+class SpacingError:
+    """Lines that hang further apart than measured."""
+
+    half_spacing_error_m: float = parameter("m", -0.02, 0.02, 0.002)
+
+    name: ClassVar[str] = "spacing"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "d + error, the same for any spacing"
+    signature: ClassVar[str] = "T falls by error/d: more with narrow lines"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        body = suspension_of(bench, self.name)
+        changed = replace(body, half_spacing_m=body.half_spacing_m + self.half_spacing_error_m)
+        return replace(bench, body=changed)
+
+
+@dataclass(frozen=True)
+class ClampMass:
+    """Clamps that move with the lines: their mass is in the motion and not in the body's."""
+
+    share: float = parameter("1", 0.0, 0.3, 0.01)
+
+    name: ClassVar[str] = "clamp_mass"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "clamps of a share of the body's mass, at the lines' distance"
+    signature: ClassVar[str] = "k^2 moves towards d^2 by the share"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        body = suspension_of(bench, self.name)
+        square = body.yaw_gyradius_m**2 + self.share * body.half_spacing_m**2
+        k = math.sqrt(square / (1.0 + self.share))
+        mass = body.mass_kg * (1.0 + self.share)
+        return replace(bench, body=replace(body, mass_kg=mass, yaw_gyradius_m=k))
+
+
+@dataclass(frozen=True)
+class LineTwist:
+    """Lines that resist being twisted, or clamps that hold them straight.
+
+    Attributes
+    ----------
+    stiffness_m
+        Stiffness in yaw over the body's weight, both lines together.
+    """
+
+    stiffness_m: float = parameter("m", 0.0, 0.02, 5e-4)
+
+    name: ClassVar[str] = "line_twist"
+    stage: ClassVar[str] = "body"
+    summary: ClassVar[str] = "a restoring moment in yaw beside gravity's"
+    signature: ClassVar[str] = "T falls by stiffness l/(2 d^2): more with long and narrow lines"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on: a spacing of the same restoring in yaw."""
+        body = suspension_of(bench, self.name)
+        square = body.half_spacing_m**2 + self.stiffness_m * body.length_m
+        return replace(bench, body=replace(body, half_spacing_m=math.sqrt(square)))
+
+
+@dataclass(frozen=True)
+class ReleaseError:
+    """A release from elsewhere, or with a rate.
+
+    Attributes
+    ----------
+    further
+        Displacement and rate further than assumed, as a share.
+    turned
+        Rate towards the release, over frequency and displacement.
+    """
+
+    further: float = parameter("1", -0.9, 2.0, 0.02)
+    turned: float = parameter("rad", -1.0, 1.0, 0.02)
+    coordinate: str = ""
+    omega_rad_s: float = 1.0
+
+    name: ClassVar[str] = "release"
+    stage: ClassVar[str] = "release"
+    summary: ClassVar[str] = "let go from elsewhere, or with a rate"
+    signature: ClassVar[str] = "amplitude and phase from the beginning on"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        names = [one.name for one in bench.body.coordinates]
+        at = names.index(self.coordinate) if self.coordinate else 0
+        held = list(bench.release.displacement)
+        rates = list(bench.release.rate) or [0.0] * len(held)
+        c, s = math.cos(self.turned), math.sin(self.turned)
+        q, v = held[at], rates[at] / self.omega_rad_s
+        held[at] = (1.0 + self.further) * (c * q + s * v)
+        rates[at] = (1.0 + self.further) * (c * v - s * q) * self.omega_rad_s
+        release = replace(bench.release, displacement=tuple(held), rate=tuple(rates))
+        return replace(bench, release=release)
+
+
+SETUP: tuple[type[Any], ...] = (
+    InertiaError,
+    RestoringError,
+    LineExcess,
+    SpacingError,
+    ClampMass,
+    LineTwist,
+)
+ON_LINES: tuple[type[Any], ...] = (LineExcess, SpacingError, ClampMass, LineTwist)

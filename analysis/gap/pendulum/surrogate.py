@@ -1,0 +1,116 @@
+"""A bench that does what a simulated record does: where the simulation is somebody else's.
+
+The record of a foreign simulation (a potential flow code, say) becomes a body afloat whose damping
+and restoring are fitted to it. What the bench does not reproduce of the record is the model's own
+error and goes into the uncertainty of every comparison.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.gap.pendulum.causes import Cause, cause
+from analysis.gap.pendulum.hypothesis import Hypothesis, effects_at, fit, null
+from analysis.gap.pendulum.setup import RestoringError
+from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.inertia.numeric import FloatArray
+from hardware.description.errors import PmmError
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.effects import body as effects
+
+_STAGES = (
+    (effects.ViscousDamping,),
+    (effects.ViscousDamping, effects.QuadraticDrag),
+)
+_PERIODS = (
+    (RestoringError,),
+    (RestoringError, effects.AmplitudePeriod),
+    (RestoringError, effects.AmplitudePeriod, effects.NonlinearRestoring),
+)
+_OF_PERIODS = ("restoring", "amplitude_period")
+
+
+@dataclass(frozen=True, eq=False)
+class Surrogate:
+    """A bench and how well it stands for the record.
+
+    Attributes
+    ----------
+    variants
+        Benches one standard deviation away, along each direction in which the record leaves the
+        parameters free: how unsure the bench is, beyond the record's amplitudes above all.
+    rms
+        What it leaves of amplitude (logarithm), phase in rad, mean and third harmonic; 0 where the
+        record has none.
+    """
+
+    bench: PendulumBench
+    variants: tuple[PendulumBench, ...]
+    effects: tuple[str, ...]
+    rms: tuple[float, ...]
+
+
+def surrogate(trial: Trial, *, restoring: bool = True) -> Surrogate:
+    """Fit damping, and restoring that changes with amplitude, to a trial's own record.
+
+    Parameters
+    ----------
+    restoring
+        Whether the restoring may change too; only the decay is followed otherwise.
+    """
+    kinds = KINDS[:2] if restoring else KINDS[:1]
+    problem = Problem((trial,), kinds=kinds)
+    best = null(problem)
+    for stage in _STAGES:
+        best = _better(problem, best, [cause(one) for one in stage])
+    for more in _PERIODS if restoring else ():
+        kept = [one for one in best.causes if one.name not in _OF_PERIODS]
+        best = _better(problem, best, [*kept, *(cause(one) for one in more)])
+    bench = _released(problem, trial, best)
+    left = trial.observed - replace(trial, bench=bench).simulate()
+    rms = tuple(_rms(row) for row in left)
+    return Surrogate(bench, tuple(_variants(trial, best)), best.names, rms)
+
+
+def _variants(trial: Trial, best: Hypothesis) -> Iterator[PendulumBench]:
+    values, vectors = np.linalg.eigh(best.posterior.covariance)
+    for value, vector in zip(values, vectors.T, strict=True):
+        for sign in (1.0, -1.0):  # the other way where this one leaves what a body can do
+            moved = best.units + sign * np.sqrt(value) * vector
+            try:
+                yield trial.bench.with_effects(effects_at(best.causes, moved, trial))
+            except PmmError:
+                continue
+            break
+
+
+def _rms(row: FloatArray) -> float:
+    good = row[np.isfinite(row)]
+    return float(np.sqrt(np.mean(good**2))) if good.size else 0.0
+
+
+def _better(problem: Problem, best: Hypothesis, causes: Sequence[Cause]) -> Hypothesis:
+    start = np.concatenate([_start(best, one) for one in causes])
+    tried = fit(problem, causes, start)
+    return tried if tried.log_evidence > best.log_evidence else best
+
+
+def _start(best: Hypothesis, one: Cause) -> FloatArray:
+    """Return where the best fit has a cause, or its typical value."""
+    at = 0
+    for other in best.causes:
+        if other.name == one.name:
+            return best.units[at : at + len(one.axes)]
+        at += len(other.axes)
+    return 0.1 * one.start
+
+
+def _released(problem: Problem, trial: Trial, best: Hypothesis) -> PendulumBench:
+    """Return the bench with the effects, released as the record was."""
+    left = problem.nuisances.fitted(best.without_signature(problem))
+    error = trial.release_error(0.05 * float(left[0]), 0.1 * float(left[1]))
+    if trial.scaled:
+        error = trial.release_error(0.0, 0.1 * float(left[1]))
+    return trial.bench.with_effects([*best.effects(trial), error])

@@ -1,0 +1,196 @@
+"""What a free oscillation shows, window by window: amplitude, phase, mean and third harmonic.
+
+A window is a whole number of swings of a reference frequency. In each the record is
+
+    x = c + (a + a' t) cos(w t) + (b + b' t) sin(w t) + second and third harmonic
+
+so that decay and another frequency within the window do no harm. The phase is that against the
+reference: it rises where the body swings faster. Measured and simulated records pass the same
+windows, so that what a window does to a decay drops out of the difference.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.inertia.gates import Passages
+from analysis.inertia.numeric import FloatArray
+
+KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadrature")
+_DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3
+_TERMS = 9
+FEWEST_WINDOWS: Final = 8
+MOST_WINDOWS: Final = 60
+_LEAST_PASSAGES = 5
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Where a record is cut.
+
+    Attributes
+    ----------
+    start_s
+        Of the first window, on the record's clock.
+    swings
+        Of the reference frequency in each window.
+    """
+
+    start_s: float
+    reference_rad_s: float
+    swings: int
+    count: int
+
+    @property
+    def length_s(self) -> float:
+        """Of one window."""
+        return 2.0 * math.pi * self.swings / self.reference_rad_s
+
+    @property
+    def centres_s(self) -> FloatArray:
+        """Middles of the windows after the start, shape ``(windows,)``."""
+        return np.asarray(self.length_s * (np.arange(self.count) + 0.5), np.float64)
+
+
+def cut_into_windows(start_s: float, stop_s: float, period_s: float) -> Windows:
+    """Return windows of as few whole swings as leave at most 60 of them."""
+    swings = max(1, math.ceil((stop_s - start_s) / period_s / MOST_WINDOWS))
+    count = int((stop_s - start_s) / (swings * period_s) + 1e-9)
+    return Windows(start_s, 2.0 * math.pi / period_s, swings, count)
+
+
+def swings_of_samples(time_s: FloatArray, values: FloatArray, windows: Windows) -> FloatArray:
+    """Return amplitude (logarithm), phase, mean and third harmonic of each window.
+
+    Parameters
+    ----------
+    time_s, values
+        Shape ``(samples,)``; NaN where a sample is missing.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(5, windows)`` in the order of :data:`KINDS`; phase and third harmonic in rad and
+        over the first's amplitude. NaN where a window has too few samples.
+    """
+    since = time_s - windows.start_s
+    rough = _fitted(since, values, windows, windows.reference_rad_s)
+    # a second time at the record's own frequency: slopes within a window are then small
+    slope = _mean_slope(windows.centres_s, rough[_PERIOD])
+    own = windows.reference_rad_s + slope
+    found = _fitted(since, values, windows, own)
+    found[_PERIOD] += slope * windows.centres_s
+    return found
+
+
+def _mean_slope(time_s: FloatArray, phase_rad: FloatArray) -> float:
+    good = np.isfinite(phase_rad)
+    if good.sum() < 2:
+        return 0.0
+    return float(np.polyfit(time_s[good], phase_rad[good], 1)[0])
+
+
+def _fitted(
+    since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float
+) -> FloatArray:
+    found = np.full((len(KINDS), windows.count), np.nan)
+    inverses: dict[tuple[int, float], FloatArray] = {}  # windows sampled alike share theirs
+    edges = np.searchsorted(since_s, windows.length_s * np.arange(windows.count + 1) - 1e-9)
+    for at, centre in enumerate(windows.centres_s):
+        inside = slice(edges[at], edges[at + 1])
+        good = np.isfinite(values[inside])
+        if good.sum() >= 2 * _TERMS:
+            t = since_s[inside][good] - centre
+            key = (t.size, round(float(t[0] + t[-1]) * omega_rad_s, 9))
+            if key not in inverses or t.size < good.size:
+                inverses[key] = np.asarray(np.linalg.pinv(_terms(t, omega_rad_s)), np.float64)
+            solved = inverses[key] @ values[inside][good]
+            found[:, at] = _described(solved, omega_rad_s * centre)
+    good = np.isfinite(found[_PERIOD])
+    found[_PERIOD, good] = np.unwrap(found[_PERIOD, good])
+    return found
+
+
+def _terms(t: FloatArray, omega_rad_s: float) -> FloatArray:
+    angle = omega_rad_s * t
+    cos, sin = np.cos(angle), np.sin(angle)
+    parts = [np.ones(t.size), cos, sin, t * cos, t * sin]
+    parts += [np.cos(2.0 * angle), np.sin(2.0 * angle), np.cos(3.0 * angle), np.sin(3.0 * angle)]
+    return np.column_stack(parts)
+
+
+def _described(solved: FloatArray, turned_rad: float) -> FloatArray:
+    first = complex(solved[1], -solved[2])
+    size = max(abs(first), 1e-300)
+    third = complex(solved[7], -solved[8]) * (first.conjugate() / size) ** 3 / size
+    phase = np.angle(first * np.exp(-1j * turned_rad))
+    return np.array([math.log(size), phase, solved[0], third.real, third.imag])
+
+
+def swings_of_passages(passages: Passages, windows: Windows, amplitude: float) -> FloatArray:
+    """Return the same from light gates: phase from the times, amplitude from the speeds.
+
+    Parameters
+    ----------
+    amplitude
+        In the first window; a gate tells how it falls, and not how large it is.
+
+    Returns
+    -------
+    FloatArray
+        As :func:`swings_of_samples`; mean and third harmonic are NaN.
+    """
+    found = np.full((len(KINDS), windows.count), np.nan)
+    since = passages.time_s - windows.start_s
+    advance = 0.5 * math.pi + math.pi * passages.number - windows.reference_rad_s * since
+    for at, centre in enumerate(windows.centres_s):
+        inside = np.abs(since - centre) <= 0.5 * windows.length_s
+        if inside.sum() < _LEAST_PASSAGES:
+            continue
+        t = since[inside] - centre
+        every_second = np.where(passages.number[inside] % 2 == 0, 1.0, -1.0)
+        matrix = np.column_stack([np.ones(t.size), every_second, t])
+        rows = np.column_stack([np.log(passages.speed[inside]), advance[inside]])
+        solved, *_ = np.linalg.lstsq(matrix, rows, rcond=None)
+        found[[_DECAY, _PERIOD], at] = solved[0]
+    seen = np.flatnonzero(np.isfinite(found[_DECAY]))
+    if seen.size:
+        found[_DECAY] += math.log(amplitude) - found[_DECAY, seen[0]]
+        # half-swings that were missed before the first window leave whole turns
+        turns = round(float(found[_PERIOD, seen[0]]) / (2.0 * math.pi))
+        found[_PERIOD] -= 2.0 * math.pi * turns
+    return found
+
+
+def scatter(found: FloatArray) -> FloatArray:
+    """Return the standard uncertainty of each window's values, shape ``(5, windows)``.
+
+    It is what is left of them after a smooth curve, larger where the amplitude is small, and wider
+    where neighbours are alike. NaN stays NaN.
+    """
+    spread = np.full(found.shape, np.nan)
+    for kind, values in enumerate(found):
+        good = np.isfinite(values)
+        if good.sum() < FEWEST_WINDOWS:
+            continue
+        size = np.exp(found[_DECAY, good] - np.max(found[_DECAY, good]))
+        shape = np.ones(size.size) if kind == _MEAN else 1.0 / size
+        spread[kind, good] = shape * _rms_about_smooth(values[good], shape)
+    return spread
+
+
+_FLOOR: Final = 2e-6  # what windows and integration leave of an exact record
+_DEGREE: Final = 5
+
+
+def _rms_about_smooth(values: FloatArray, shape: FloatArray) -> float:
+    place = np.linspace(-1.0, 1.0, values.size)
+    degree = min(_DEGREE, values.size // 3)
+    fit = np.polynomial.Legendre.fit(place, values, degree, w=1.0 / shape)
+    left = (values - fit(place)) / shape
+    freedom = max(values.size - degree - 1, 1)
+    alike = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
+    inflation = min(max((1.0 + alike) / max(1.0 - alike, 0.2), 1.0), 5.0)
+    return max(math.sqrt(inflation * float(left @ left) / freedom), _FLOOR)

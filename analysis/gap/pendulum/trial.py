@@ -1,0 +1,256 @@
+"""One measured release beside its simulation, and several of them as one problem."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.pendulum.setup import ReleaseError
+from analysis.gap.pendulum.swings import KINDS, Windows, swings_of_samples
+from analysis.inertia.numeric import FloatArray
+from hardware.description.errors import DataError
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.effects.base import PendulumEffect
+from sim.pendulum.suspension import Suspension
+from sim.signals import recorded
+
+_SAMPLES_A_SWING = 40
+_SEED = 0  # nothing random is switched on
+_FURTHER, _TURNED = 0.05, 0.1  # a release's tolerance where it is read off the record
+_LONG = 0.4  # of a record: over which a smooth deviation keeps its value
+_FAINT = 1e-3  # variance of a curve that is left out
+_ANY_SIZE = 1.0  # of the logarithm: a light gate does not tell the amplitude
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One record and the bench that is to explain it.
+
+    Attributes
+    ----------
+    coordinate
+        Which of the body's is watched, by a sensor channel of the same name.
+    observed, uncertainty
+        Shape ``(5, windows)``, as :func:`~analysis.gap.pendulum.swings.swings_of_samples` gives
+        them; NaN where there is none.
+    scaled
+        Whether the size of the amplitude is unknown (light gates).
+    reference_amplitude
+        At which a power law's damping is stated.
+    variants
+        Benches that the nominal one may be as well, one standard deviation away each.
+    """
+
+    name: str
+    bench: PendulumBench
+    coordinate: str
+    windows: Windows
+    observed: FloatArray
+    uncertainty: FloatArray
+    scaled: bool = False
+    reference_amplitude: float = 0.1
+    variants: tuple[PendulumBench, ...] = ()
+
+    @property
+    def acts_on(self) -> str:
+        """The coordinate as effects name it: empty where the body has only one."""
+        return self.coordinate if isinstance(self.bench.body, Suspension) else ""
+
+    def simulate(self, effects: Iterable[PendulumEffect] = ()) -> FloatArray:
+        """Return what the record would show with some effects on, shape ``(5, windows)``."""
+        bench = self.bench.with_effects(effects)
+        rate_hz = _SAMPLES_A_SWING * self.windows.reference_rad_s / (2.0 * math.pi)
+        count = _SAMPLES_A_SWING * self.windows.swings * self.windows.count + 1
+        true_rate_hz = rate_hz * (1.0 + bench.clock_error)
+        chain = bench.chain()
+        _, run = chain.run(chain.start(true_rate_hz, _SEED), count)
+        (sensor,) = (one for one in bench.sensors if one.channel.name == self.coordinate)
+        time_s = np.arange(count) / rate_hz
+        since = replace(self.windows, start_s=0.0)
+        return swings_of_samples(time_s, run[recorded(sensor.channel).name], since)
+
+    def released(self) -> "Trial":
+        """Return the trial with the release read off its first windows."""
+        good = np.flatnonzero(np.isfinite(self.observed[0]))[:4]
+        if good.size < 4:
+            raise DataError(f"{self.name}: fewer than 4 windows hold data; record longer")
+        at_s = self.windows.centres_s[good]
+        size, phase = (np.polyfit(at_s, self.observed[kind, good], 1)[1] for kind in (0, 1))
+        amplitude, omega = math.exp(float(size)), self.windows.reference_rad_s
+        names = [one.name for one in self.bench.body.coordinates]
+        held, rates = [0.0] * len(names), [0.0] * len(names)
+        at = names.index(self.coordinate)
+        held[at], rates[at] = amplitude * math.cos(phase), -amplitude * omega * math.sin(phase)
+        release = replace(self.bench.release, displacement=tuple(held), rate=tuple(rates))
+        bench = replace(self.bench, release=release)
+        return replace(self, bench=bench, reference_amplitude=amplitude)
+
+    def release_error(self, further: float, turned: float) -> ReleaseError:
+        """Return another release of this trial."""
+        return ReleaseError(further, turned, self.acts_on, self.windows.reference_rad_s)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """A number of the set-up that is known within a standard deviation.
+
+    Attributes
+    ----------
+    make
+        From its error to the effect.
+    own
+        Whether each trial has its own error; all share one otherwise.
+    """
+
+    name: str
+    make: Callable[[float, Trial], PendulumEffect]
+    deviation: float
+    own: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What every hypothesis is held against.
+
+    Attributes
+    ----------
+    kinds
+        The observables that count, of :data:`~analysis.gap.pendulum.swings.KINDS`.
+    model_error
+        Standard deviation of what the nominal simulation itself is unsure of, one for each kind;
+        a smooth curve over each trial.
+    """
+
+    trials: tuple[Trial, ...]
+    tolerances: tuple[Tolerance, ...] = ()
+    kinds: tuple[str, ...] = KINDS
+    model_error: tuple[float, ...] = (0.0,) * len(KINDS)
+
+    @cached_property
+    def _seen(self) -> tuple[NDArray[np.bool_], ...]:
+        counts = np.array([name in self.kinds for name in KINDS])[:, None]
+        return tuple(
+            counts & np.isfinite(one.observed) & np.isfinite(one.uncertainty) for one in self.trials
+        )
+
+    def flat(self, parts: Sequence[FloatArray]) -> FloatArray:
+        """Return the trials' values that count, one after the other."""
+        return np.concatenate([part[seen] for part, seen in zip(parts, self._seen, strict=True)])
+
+    @cached_property
+    def uncertainty(self) -> FloatArray:
+        """Standard deviation of each observation, shape ``(observations,)``."""
+        return self.flat([one.uncertainty for one in self.trials])
+
+    @cached_property
+    def observed(self) -> FloatArray:
+        """The observations, shape ``(observations,)``."""
+        return self.flat([one.observed for one in self.trials])
+
+    @cached_property
+    def trial(self) -> NDArray[np.intp]:
+        """Number of each observation's trial."""
+        parts = [np.full(seen.shape, at) for at, seen in enumerate(self._seen)]
+        return np.concatenate([p[seen] for p, seen in zip(parts, self._seen, strict=True)])
+
+    @cached_property
+    def kind(self) -> NDArray[np.intp]:
+        """Number of each observation's kind."""
+        return np.concatenate([np.nonzero(seen)[0] for seen in self._seen])
+
+    @cached_property
+    def amplitude(self) -> FloatArray:
+        """Amplitude of the window that each observation belongs to."""
+        parts = [
+            np.broadcast_to(np.exp(one.observed[0]), one.observed.shape) for one in self.trials
+        ]
+        return self.flat(parts)
+
+    @cached_property
+    def centre_s(self) -> FloatArray:
+        """Middle of the window that each observation belongs to."""
+        parts = [np.broadcast_to(one.windows.centres_s, one.observed.shape) for one in self.trials]
+        return self.flat(parts)
+
+    def predict(self, effects: Callable[[Trial], Sequence[PendulumEffect]]) -> FloatArray:
+        """Return what all records would show, shape ``(observations,)``."""
+        return self.flat([one.simulate(effects(one)) for one in self.trials])
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """What the nominal simulation shows."""
+        return self.predict(lambda _: ())
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Measured less nominal, in sigma."""
+        return (self.observed - self.nominal) / self.uncertainty
+
+    @cached_property
+    def nuisances(self) -> Nuisances:
+        """Releases, amplitudes of gates, tolerances: columns in sigma."""
+        columns = []
+        for at, trial in enumerate(self.trials):
+            spread = _ANY_SIZE if trial.scaled else _FURTHER
+            further = trial.release_error(0.2 * spread, 0.0)
+            columns.append(self._column(at, further, 0.2))
+            columns.append(self._column(at, trial.release_error(0.0, 0.2 * _TURNED), 0.2))
+            if trial.scaled:
+                own = (self.trial == at) & (self.kind == 0)
+                columns.append(_ANY_SIZE * own / self.uncertainty)
+            columns += [self._varied(at, one) for one in trial.variants]
+        for known in self.tolerances:
+            columns += self._tolerated(known)
+        columns += self._unsure()
+        return Nuisances(np.column_stack(columns))
+
+    def _unsure(self) -> list[FloatArray]:
+        """Return columns of what the nominal simulation itself may be wrong by."""
+        found: list[FloatArray] = []
+        for kind, error in enumerate(self.model_error):
+            for at in range(len(self.trials)) if error > 0.0 else ():
+                smooth = self.smooth((self.trial == at) & (self.kind == kind))
+                found += list((error * smooth / self.uncertainty[:, None]).T)
+        return found
+
+    def smooth(self, rows: NDArray[np.bool_]) -> FloatArray:
+        """Return columns whose random sum is a smooth curve of unit size over some windows.
+
+        Parameters
+        ----------
+        rows
+            Observations of one kind and trial; the columns are zero elsewhere.
+        """
+        if not rows.any():
+            return np.empty((rows.size, 0))
+        time_s = self.centre_s[rows]
+        apart = (time_s[:, None] - time_s) / (_LONG * max(float(np.ptp(time_s)), 1e-9))
+        values, vectors = np.linalg.eigh(np.exp(-0.5 * apart**2))
+        kept = values > _FAINT
+        columns = np.zeros((rows.size, int(kept.sum())))
+        columns[rows] = vectors[:, kept] * np.sqrt(values[kept])
+        return columns
+
+    def _tolerated(self, known: Tolerance) -> list[FloatArray]:
+        made = [known.make(known.deviation, trial) for trial in self.trials]
+        each = [self._column(at, effect, 1.0) for at, effect in enumerate(made)]
+        return each if known.own else [np.sum(each, axis=0)]
+
+    def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
+        trial = self.trials[at]
+        other = replace(trial, bench=replace(bench, release=trial.bench.release))
+        return self._change(at, other.simulate() - trial.simulate())
+
+    def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
+        """Return the change by an effect on one trial, per whole of which it is a share."""
+        trial = self.trials[at]
+        return self._change(at, (trial.simulate([effect]) - trial.simulate()) / share)
+
+    def _change(self, at: int, change: FloatArray) -> FloatArray:
+        parts = [np.zeros(one.observed.shape) for one in self.trials]
+        parts[at] = change
+        return self.flat(parts) / self.uncertainty

@@ -1,0 +1,173 @@
+"""How far the gap shrinks on swings that the fit has not seen, by regime of amplitude.
+
+Half of each record's range of amplitude (in its logarithm) is withheld, first the small swings,
+then the large ones. Everything is fitted to the rest: releases, tolerances, causes.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.gaussian import Nuisances, posterior
+from analysis.gap.pendulum.hypothesis import Hypothesis, fit, held, null
+from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.inertia.numeric import FloatArray
+
+_DRAWS = 400
+_SEED = 20261
+_DECAY, _PERIOD = 0, 1
+FEWEST = 5  # windows in either half
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """One hypothesis on the withheld swings.
+
+    Attributes
+    ----------
+    gap
+        Root mean square of measured less foretold amplitude (logarithm), in u; of whatever counts
+        where amplitudes do not.
+    amplitude_gap
+        The same of the amplitude, in the record's unit.
+    period_gap
+        The same of the phase, in rad.
+    shrinkage, low, high
+        Share of the gap without a cause that goes away, noise floor taken off, and its 95 %
+        interval from what the fitted swings leave open.
+    """
+
+    causes: tuple[str, ...]
+    gap: float
+    amplitude_gap: float
+    period_gap: float
+    shrinkage: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Regime:
+    """What was withheld, and how each hypothesis foretold it.
+
+    Attributes
+    ----------
+    amplitude
+        Range of the withheld windows' amplitudes.
+    before
+        Without a cause.
+    """
+
+    name: str
+    windows: int
+    amplitude: tuple[float, float]
+    before: Foretold
+    foretold: tuple[Foretold, ...]
+
+
+def foretell(problem: Problem, sets: Sequence[Hypothesis]) -> tuple[Regime, ...]:
+    """Withhold small swings, then large ones, and foretell them with some sets of causes."""
+    found = []
+    for name, large in (("small swings", False), ("large swings", True)):
+        hidden = [_hidden(trial, large=large) for trial in problem.trials]
+        if min(_fewest(rows, one) for rows, one in zip(hidden, problem.trials, strict=True)) >= (
+            FEWEST
+        ):
+            found.append(_regime(name, problem, hidden, sets))
+    return tuple(found)
+
+
+def _hidden(trial: Trial, *, large: bool) -> NDArray[np.bool_]:
+    size = trial.observed[_DECAY]
+    middle = 0.5 * (np.nanmin(size) + np.nanmax(size))
+    return np.asarray(size > middle if large else size <= middle)
+
+
+def _fewest(hidden: NDArray[np.bool_], trial: Trial) -> int:
+    good = np.isfinite(trial.observed[_DECAY])
+    return int(min((good & hidden).sum(), (good & ~hidden).sum()))
+
+
+def _regime(
+    name: str,
+    problem: Problem,
+    hidden: Sequence[NDArray[np.bool_]],
+    sets: Sequence[Hypothesis],
+) -> Regime:
+    seen = replace(
+        problem,
+        trials=tuple(
+            replace(trial, observed=np.where(rows, np.nan, trial.observed))
+            for trial, rows in zip(problem.trials, hidden, strict=True)
+        ),
+    )
+    parts = [
+        np.broadcast_to(rows, (len(t.observed), rows.size))
+        for rows, t in zip(hidden, problem.trials, strict=True)
+    ]
+    rows = problem.flat([part.astype(float) for part in parts]) > 0.5
+    plain = _left(problem, null(seen), rows)
+    before = _foretold(problem, rows, (), plain, plain)
+    after = []
+    for one in sets:
+        left = _left(problem, fit(seen, one.causes, one.units), rows)
+        after.append(_foretold(problem, rows, one.names, plain, left))
+    sizes = problem.amplitude[rows]
+    count = int(sum(r.sum() for r in hidden))
+    return Regime(name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after))
+
+
+def _left(
+    problem: Problem, one: Hypothesis, rows: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
+    full = held(problem, one.causes, one.units)
+    whole = problem.nuisances.columns
+    among = Nuisances(whole[~rows])
+    left = full.without_signature(problem)
+    columns = np.hstack([whole, full.columns])
+    both = posterior(left[~rows], columns[~rows], Nuisances(np.zeros((int((~rows).sum()), 0))))
+    found = left[rows] - whole[rows] @ among.fitted(left[~rows])
+    root = np.linalg.cholesky(both.covariance)
+    drawn = np.random.default_rng(_SEED).standard_normal((_DRAWS, len(root)))
+    return found, found - drawn @ (columns[rows] @ root).T
+
+
+def _foretold(
+    problem: Problem,
+    rows: NDArray[np.bool_],
+    causes: tuple[str, ...],
+    plain: tuple[FloatArray, FloatArray],
+    left: tuple[FloatArray, FloatArray],
+) -> Foretold:
+    kind = problem.kind[rows]
+    decay, period = kind == _DECAY, kind == _PERIOD
+    chosen = decay if decay.any() else np.ones_like(decay)
+    absolute = left[0] * problem.uncertainty[rows]
+    share, low, high = 0.0, 0.0, 0.0
+    if causes:
+        share = _shrinks(plain[0][chosen], left[0][chosen])
+        shares = [_shrinks(plain[0][chosen], one[chosen]) for one in left[1]]
+        low, high = (float(value) for value in np.quantile(shares, (0.025, 0.975)))
+    return Foretold(
+        causes,
+        _rms(left[0][chosen]),
+        _rms((absolute * problem.amplitude[rows])[decay]),
+        _rms(absolute[period]),
+        share,
+        min(low, share),
+        max(high, share),
+    )
+
+
+def _rms(left: FloatArray) -> float:
+    return float(np.sqrt(np.mean(left**2))) if left.size else math.nan
+
+
+def _shrinks(before: FloatArray, after: FloatArray) -> float:
+    """Return the share of a gap that goes away, the noise floor of 1 u taken off both."""
+    old, new = (math.sqrt(max(_rms(one) ** 2 - 1.0, 0.0)) for one in (before, after))
+    return 1.0 - new / old if old > 0.0 else 0.0

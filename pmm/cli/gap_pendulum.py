@@ -1,0 +1,20 @@
+"""``pmm gap pendulum``: why a pendulum test or a free decay and its simulation differ."""
+
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.argument("file", metavar="FILE.toml")
+@click.option("--most", type=click.IntRange(1, 3), default=3, show_default=True, help="Causes.")
+@click.option("--plot", metavar="FOLDER", help="Draw measured and simulated swings there.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
+def pendulum(**options: Any) -> None:
+    """Find what separates a free decay or a bifilar test from its simulation.
+
+    FILE names the records and what is known of the set-up (docs/gap-pendulums.md).
+    """
+    from pmm.cli.gap_pendulum_work import Request, run
+
+    run(Request(**options))

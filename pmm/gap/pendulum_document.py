@@ -1,0 +1,50 @@
+"""A pendulum's diagnosis as a document for programs."""
+
+from dataclasses import asdict
+from typing import Any, Final
+
+from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.hypothesis import Hypothesis
+
+SCHEMA: Final = "pmm-gap-pendulum-1"
+
+
+def document(name: str, found: Diagnosis) -> dict[str, Any]:
+    """Return everything that was found, as plain numbers and texts."""
+    verdict = found.verdict
+    return {
+        "schema": SCHEMA,
+        "name": name,
+        "best": list(verdict.best),
+        "inflation": verdict.inflation,
+        "probabilities": {
+            "+".join(names) or "none": share
+            for names, share in verdict.by_set.items()
+            if share > 1e-9
+        },
+        "classes": verdict.by_class,
+        "causes": verdict.by_cause,
+        "parameters": parameters(found.best),
+        "where": [asdict(one) for one in found.where],
+        "laws": [
+            {"name": law.name, "log_ratio": law.log_ratio, "possible": law.possible}
+            for law in found.laws
+        ],
+        "alternatives": [asdict(one) for one in found.alternatives],
+        "withheld": [asdict(one) for one in found.regimes],
+        "next": [asdict(one) for one in found.proposals],
+    }
+
+
+def parameters(best: Hypothesis) -> dict[str, dict[str, dict[str, float]]]:
+    """Return each cause's parameters: value and standard uncertainty (before inflation)."""
+    spread = best.posterior.covariance.diagonal() ** 0.5
+    found: dict[str, dict[str, dict[str, float]]] = {}
+    at = 0
+    for one in best.causes:
+        rows = found.setdefault(one.name, {})
+        for axis in one.axes:
+            value = axis.value(float(best.units[at]))
+            rows[axis.name] = {"value": value, "uncertainty": axis.deviation * float(spread[at])}
+            at += 1
+    return found
