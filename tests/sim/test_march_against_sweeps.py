@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
-from sim import compiled, coupled, hull
+from sim import compiled, coupled, coupled_steady, hull, hull_steady
 from sim.acting import Acting, Point
 from sim.compiled_laws import law_force
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
@@ -112,9 +112,27 @@ def test_balance_gives_what_sweeps_do(monkeypatch: pytest.MonkeyPatch) -> None:
     laws = (*(Acting(one) for one in EXAMPLES[:5]), Acting(EXAMPLES[7], Point.AFT))
     rig = replace(_loaded(vertical_rig().ideal(), laws), drive=vertical_rig().drive)
     found = steady_run(rig, SET_POINT).spectra["force_aft"]
-    monkeypatch.setattr(hull, "periodic_laws", lambda *_: None)
+    monkeypatch.setattr(hull_steady, "periodic_laws", lambda *_: None)
     swept = steady_run(rig, SET_POINT).spectra["force_aft"]
     np.testing.assert_allclose(found, swept, rtol=0.0, atol=1e-11 * np.abs(swept).max())
+
+
+def test_laws_swept_with_the_torque_are_those_balanced_for_each_torque(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    quadratic = Acting(Quadratic(300.0), Point.TRANSLATION, in_water=True)
+    rig = replace(
+        vertical_rig().ideal(),
+        mounting=Mounting(2e5, 300.0),
+        forces=(Acting(Coulomb(0.5), Point.AFT), quadratic),
+    )
+    rig = replace(rig, drive=replace(rig.drive, motor=Servo()))
+    together = steady_run(rig, SetPoint(1.0, 0.02, 0.7)).spectra
+    monkeypatch.setattr(coupled_steady, "_with_swept_laws", lambda *_: None)
+    nested = steady_run(rig, SetPoint(1.0, 0.02, 0.7)).spectra
+    for name in ("shaft_speed", "force_aft", "force_fore", "load_torque"):
+        scale = np.abs(nested[name]).max()
+        np.testing.assert_allclose(together[name], nested[name], rtol=0.0, atol=1e-10 * scale)
 
 
 def test_laws_of_ones_own_are_swept_around_the_march() -> None:
