@@ -83,9 +83,10 @@ def doubts(
         return ()
     stack = Stack.of(runs)
     nominal = Simulator(rig, stack, tuple(on), reference_channel).steady(())
-    found = [*_of_frequency(runs), *_of_scatter(runs)]
+    found = list(_of_frequency(runs))
     for channel in (*STRUTS, *FORCES):
         found += _of_channel(rig, stack, nominal, channel)
+    found += _of_scatter(runs)
     first = {(one.run, one.channel): one for one in reversed(found)}
     return tuple(reversed(first.values()))
 
@@ -99,7 +100,8 @@ def judged(
 ) -> tuple[Recentred, tuple[Doubt, ...]]:
     """Return the rig about which to go on, and what is wrong with the recordings.
 
-    A doubt stands only if it stays when the coefficients are fitted to the other runs.
+    A doubt stands only if it stays when the coefficients are fitted: to the other runs, or to all,
+    whichever leaves fewer doubts.
 
     Raises
     ------
@@ -111,10 +113,12 @@ def judged(
         return Recentred(rig), found
     bad = {one.run for one in found}
     good = [run for run in runs if run.name not in bad]
-    there = recentred(rig, good if len(good) >= _FEW else runs, priors, on, reference_channel)
-    if not there.units:
-        return there, found
-    return there, doubts(there.rig, runs, on, reference_channel)
+    fitted = [some for some in (good, runs) if len(some) >= _FEW]
+    tried = []
+    for some in fitted if bad else fitted[:1]:
+        there = recentred(rig, some, priors, on, reference_channel)
+        tried.append((there, doubts(there.rig, runs, on, reference_channel)))
+    return min(tried, key=lambda one: len(one[1])) if tried else (Recentred(rig), found)
 
 
 def _of_channel(

@@ -30,6 +30,8 @@ from pmm.gap.load import Loaded, load_campaign
 from sim.effects.catalogue import catalogue, find, user_effects
 from sim.effects.effect import Effect
 
+_FEWEST = 3  # runs
+
 Progress = Callable[[str], None]
 
 
@@ -123,6 +125,9 @@ def examine(
     progress("reading")
     loaded = load_campaign(file, (), lambda name: progress(f"reading {name}"), options.sensors)
     there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
+    if len(fitted) < _FEWEST:
+        why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
+        raise DataError(f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}{why}")
     settings = Settings(
         known,
         case.priors,

@@ -59,7 +59,7 @@ def load_campaign(
     """
     path = path / CAMPAIGN_FILE if path.is_dir() else path
     campaign = read_campaign(path)
-    rig = _unlimited(campaign.rig())
+    rig = unlimited(campaign.rig())
     left_out: dict[str, str] = {}
     found: list[tuple[Run, Observed]] = []
     for run in campaign.runs:
@@ -79,7 +79,7 @@ def load_campaign(
     return Loaded(campaign, rig, tuple(_gap_runs(campaign, kept)), left_out, reference)
 
 
-def _unlimited(rig: SimulatedRig) -> SimulatedRig:
+def unlimited(rig: SimulatedRig) -> SimulatedRig:
     """Return a rig that refuses nothing: the runs were made, and settings are off by a tolerance.
 
     A run at the oscillator's highest frequency has to be simulated a little above it too.
