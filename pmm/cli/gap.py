@@ -9,6 +9,7 @@ _JOBS = {
     "add": "pmm.cli.gap_add",
     "answer": "pmm.cli.gap_answer",
     "check": "pmm.cli.gap_check",
+    "pendulum": "pmm.cli.gap_pendulum",
     "diagnose": "pmm.cli.gap_diagnose",
 }
 
