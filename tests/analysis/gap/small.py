@@ -1,0 +1,66 @@
+"""Small campaigns in memory: a rig that believes one thing, recordings of another."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from analysis.gap.components import GapRun, Stack
+from analysis.gap.fit import Problem
+from analysis.gap.forward import Simulator
+from analysis.gap.free import columns, free_numbers
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.noise import pooled
+from analysis.gap.observe import observe
+from analysis.gap.priors import Priors
+from analysis.readers.dataset import from_dataset
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.a5_trigger_jitter import TriggerJitter
+from sim.effects.applied import switch_on
+from sim.effects.campaign import CampaignRun
+from sim.effects.effect import Effect
+from sim.rig import SimulatedRig
+from sim.run import simulate
+
+POINTS = (
+    SetPoint(0.5, 0.02, 0.0, 1.0),
+    SetPoint(1.0, 0.02, 0.0, 1.0),
+    SetPoint(1.0, 0.01, 0.0, 1.0),
+    SetPoint(0.5, 0.02, math.pi, 1.0),
+    SetPoint(1.0, 0.02, math.pi, 1.0),
+    SetPoint(1.0, 0.02, 0.0, 0.0, Medium.AIR),
+)
+
+
+def record(
+    rig: SimulatedRig, effects: Sequence[Effect], seed: int, points: Sequence[SetPoint] = POINTS
+) -> tuple[GapRun, ...]:
+    """Simulate and observe a campaign of eight periods a run, its pulses scattered as usual."""
+    every = (TriggerJitter(Priors().pulse_scatter_rad), *effects)
+    return tuple(one_run(rig, every, seed, number, point) for number, point in enumerate(points))
+
+
+def one_run(
+    rig: SimulatedRig, effects: Sequence[Effect], seed: int, number: int, point: SetPoint
+) -> GapRun:
+    place = CampaignRun(number, 400.0 * number, 300.0 if number else 0.0, None)
+    changed, really = switch_on(effects, rig, point, place)
+    dataset = simulate(
+        changed,
+        really,
+        periods=8,
+        sample_rate_hz=64.0,
+        seed=1000 * seed + number,
+        name=f"r{number}",
+    )
+    seen = observe(replace(from_dataset(dataset), set_point=point))
+    periods = seen.analysis.stretch.period_count
+    return GapRun(f"r{number}", point, place, seen.observation, periods, 64.0)
+
+
+def problem_of(rig: SimulatedRig, runs: Sequence[GapRun]) -> Problem:
+    """Return the problem that a diagnosis holds its hypotheses against."""
+    priors = Priors()
+    free = free_numbers(rig, priors)
+    simulator = Simulator(rig, Stack.of(pooled(runs)))
+    nuisances = Nuisances(columns(simulator, free, priors))
+    return Problem(simulator, nuisances, tuple(one.name for one in free))

@@ -1,0 +1,103 @@
+"""What is put into simulated campaigns is what the diagnosis says, and nothing where nothing is."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+from analysis.gap.components import STEADY_PARTS
+from analysis.gap.diagnose import Diagnosis, Settings, diagnose
+from analysis.gap.forecast import forecast, further, planned
+from analysis.gap.free import free_numbers
+from analysis.gap.priors import Priors
+from analysis.gap.verdict import NONE, UNKNOWN
+from hardware.description.setpoint import SetPoint
+from pmm.gap.answer import effect_rows
+from sim.effects.catalogue import build, find
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import record
+
+FEW = ("coulomb-friction", "amplifier-lag")
+
+
+def diagnosed(
+    rig: SimulatedRig, effects: Sequence[str], seed: int, known: Sequence[str] = FEW
+) -> Diagnosis:
+    runs = record(rig, [build(one) for one in effects], seed)
+    return diagnose(rig, runs, Settings({name: find(name) for name in known}))
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -> None:
+    found = diagnosed(rig, (), seed)
+    assert found.probabilities.best == NONE
+    assert found.best is None
+    assert sum(found.probabilities.by_answer.values()) == pytest.approx(1.0)
+    assert not any(one.beyond for one in found.walk.steps)
+
+
+@pytest.fixture(scope="module")
+def friction(rig: SimulatedRig) -> Diagnosis:
+    return diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 21)
+
+
+def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
+    _holds(friction, "coulomb-friction:friction_n=0.3")
+    assert max(friction.stages, key=lambda name: friction.stages[name]) == "structure"
+    beyond = {one.what for one in friction.walk.steps if one.beyond}
+    assert "forces" in beyond
+    assert "strut motion" not in beyond
+
+
+def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
+    assert friction.shrinkage is not None
+    assert friction.shrinkage.before > 5.0
+    assert friction.shrinkage.after < 1.0
+    assert friction.shrinkage.share > 0.9
+
+
+def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: SimulatedRig) -> None:
+    priors, problem = Priors(), friction.problem
+    point = SetPoint(0.75, 0.03, 0.0, 1.0)
+    there = further(problem, [planned(problem, point, 0)], free_numbers(rig, priors), priors)
+    assert friction.best is not None
+    told = forecast(problem, there, friction.best.fit)
+    plain = forecast(problem, there, None)
+    really = there.simulator.steady([build("coulomb-friction:friction_n=0.3")])
+    steady = np.array([one.part in STEADY_PARTS for one in there.simulator.stack.components])
+    assert steady.all()
+    off = (really - there.simulator.nominal) / there.simulator.stack.uncertainty - told.mean
+    without = (really - there.simulator.nominal) / there.simulator.stack.uncertainty - plain.mean
+    spread = np.sqrt(1.0 + np.sum(told.root**2, axis=1))
+    assert np.abs(off / spread).max() < 3.0
+    assert np.linalg.norm(off) < 0.2 * np.linalg.norm(without)
+
+
+@pytest.mark.parametrize("said", ["quadratic-damping", "amplifier-lag"])
+def test_other_effects_are_named_with_their_parameters(rig: SimulatedRig, said: str) -> None:
+    _holds(diagnosed(rig, (said,), 22, (said, "coulomb-friction")), said)
+
+
+def test_two_at_once_are_both_named(rig: SimulatedRig) -> None:
+    put_in = ("coulomb-friction:friction_n=0.3", "cross-talk:aft=0.03,fore=0.02")
+    found = diagnosed(rig, put_in, 23, ("coulomb-friction", "cross-talk"))
+    assert found.probabilities.best == "coulomb-friction+cross-talk"
+    _holds(found, put_in[0])
+
+
+def test_an_effect_that_is_taken_out_of_the_catalogue_is_unknown(rig: SimulatedRig) -> None:
+    found = diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 24, ("amplifier-lag",))
+    assert found.probabilities.best == UNKNOWN
+
+
+def _holds(found: Diagnosis, said: str) -> None:
+    """Hold the named effect's intervals against what was put in, a quarter wider than 95 %."""
+    put_in = build(said)
+    assert found.best is not None
+    assert put_in.name in found.probabilities.best.split("+")
+    (row,) = [one for one in effect_rows(found.best.fit) if one["name"] == put_in.name]
+    for key, value in asdict(put_in).items():
+        told = row["parameters"][key]
+        wider = 0.25 * (told["high"] - told["low"])
+        assert told["low"] - wider <= value <= told["high"] + wider, (key, told)

@@ -1,0 +1,63 @@
+"""The evidence is the density of a multivariate normal, computed directly."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import multivariate_normal
+
+from analysis.gap.gaussian import Nuisances, cosine, left_over, null_evidence, rooted
+from analysis.gap.polynomial import log_evidence
+
+COUNT = 9
+SHARED = 0.5 * COUNT * np.log(2.0 * np.pi)
+seeds = st.integers(0, 10_000)
+
+
+def drawn(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    generator = np.random.default_rng(seed)
+    return (
+        5.0 * generator.standard_normal(COUNT),
+        3.0 * generator.standard_normal((COUNT, 3)),
+        2.0 * generator.standard_normal((COUNT, 2)),
+    )
+
+
+@given(seeds)
+def test_of_the_nuisances_alone(seed: int) -> None:
+    residual, wide, _ = drawn(seed)
+    direct = multivariate_normal.logpdf(residual, cov=np.eye(COUNT) + wide @ wide.T)
+    assert null_evidence(residual, Nuisances(wide)) == pytest.approx(direct + SHARED, abs=1e-7)
+
+
+@given(seeds)
+def test_of_an_effect_beside_them(seed: int) -> None:
+    residual, wide, columns = drawn(seed)
+    covariance = np.eye(COUNT) + wide @ wide.T + columns @ columns.T
+    direct = multivariate_normal.logpdf(residual, cov=covariance)
+    problem = SimpleNamespace(residual=residual, nuisances=Nuisances(wide))
+    found = log_evidence(problem, columns, np.ones(COUNT, dtype=bool))
+    assert found == pytest.approx(direct + SHARED, abs=1e-7)
+
+
+@given(seeds)
+def test_of_some_observations_is_that_of_their_marginal(seed: int) -> None:
+    residual, wide, columns = drawn(seed)
+    rows = np.arange(COUNT) < 5
+    covariance = (np.eye(COUNT) + wide @ wide.T + columns @ columns.T)[:5, :5]
+    direct = multivariate_normal.logpdf(residual[:5], cov=covariance) + 2.5 * np.log(2.0 * np.pi)
+    problem = SimpleNamespace(residual=residual, nuisances=Nuisances(wide))
+    assert log_evidence(problem, columns, rows) == pytest.approx(direct, abs=1e-7)
+
+
+@given(seeds)
+def test_roots_make_the_nuisances_metric(seed: int) -> None:
+    residual, wide, columns = drawn(seed)
+    nuisances = Nuisances(wide)
+    inverse = np.linalg.inv(np.eye(COUNT) + wide @ wide.T)
+    assert left_over(residual, nuisances) ** 2 == pytest.approx(residual @ inverse @ residual)
+    root = rooted(nuisances, columns)
+    assert root.T @ root == pytest.approx(columns.T @ inverse @ columns)
+    assert cosine(columns, columns @ [[1.0, 2.0], [0.5, -1.0]], nuisances) == pytest.approx(1.0)

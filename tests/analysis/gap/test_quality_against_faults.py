@@ -1,0 +1,92 @@
+"""Faults of recordings, put in one by one, are found, and nothing else is."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.gap.components import GapRun, Part
+from analysis.gap.priors import Priors
+from analysis.gap.quality import Doubt, doubts, judged
+from sim.effects.catalogue import build
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import record
+
+
+def scaled(run: GapRun, channel: str, factor: float) -> GapRun:
+    seen = run.observed
+    own = np.array([one.channel == channel and one.part in (Part.MEAN, Part.IN_PHASE,
+                    Part.QUADRATURE) for one in seen.components])  # fmt: skip
+    values = np.where(own, factor * seen.values, seen.values)
+    uncertainty = np.where(own, abs(factor) * seen.uncertainty, seen.uncertainty)
+    return replace(run, observed=replace(seen, values=values, uncertainty=uncertainty))
+
+
+def changed(
+    runs: tuple[GapRun, ...], at: int, change: Callable[[GapRun], GapRun]
+) -> tuple[GapRun, ...]:
+    return tuple(change(run) if number == at else run for number, run in enumerate(runs))
+
+
+def test_nothing_is_wrong_with_a_clean_campaign(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    there, found = judged(rig, clean, Priors())
+    assert found == ()
+    assert there.rig is rig
+
+
+@pytest.mark.parametrize("name", ["coulomb-friction", "gauge-compliance"])
+def test_an_effect_is_no_fault(rig: SimulatedRig, name: str) -> None:
+    assert doubts(rig, record(rig, [build(name)], seed=2)) == ()
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1000.0, "mN in place of N"),
+        (1.0 / 9.80665, "kgf in place of N"),
+        (180.0 / math.pi, "degrees in place of radians"),
+        (-1.0, "sign is the opposite"),
+        (2.5, "2.5 times as large"),
+    ],
+)
+@pytest.mark.parametrize("at", [0, 4])
+def test_one_file_in_other_units(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], factor: float, said: str, at: int
+) -> None:
+    found = doubts(rig, changed(clean, at, lambda run: scaled(run, "force_aft", factor)))
+    assert [(one.run, one.channel) for one in found] == [(f"r{at}", "force_aft")]
+    assert said in found[0].reason
+
+
+def test_all_files_in_other_units(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    runs = tuple(scaled(run, "force_fore", 1.0 / 9.80665) for run in clean)
+    (found,) = doubts(rig, runs)
+    assert found == Doubt("", "force_fore", found.reason)
+    assert "kgf" in found.reason
+    assert "in all runs" in found.reason
+
+
+def test_a_run_at_another_frequency(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    told = replace(clean[1].set_point, frequency_hz=1.1)
+    run = record(rig, (), 3, [clean[1].set_point])[0]
+    at = next(i for i, one in enumerate(run.observed.components) if one.part is Part.FREQUENCY)
+    values = run.observed.values.copy()
+    values[at] = math.log(1.0 / 1.1)
+    wrong = replace(run, name="r1", set_point=told, observed=replace(run.observed, values=values))
+    found = doubts(rig, changed(clean, 1, lambda _: wrong))
+    assert "made at 1 Hz, not at the 1.1 Hz" in {one.run: one for one in found}["r1"].reason
+
+
+def test_a_model_that_is_far_off_is_no_fault_of_the_files(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    (a11, a12), (a21, a22) = rig.water.added_mass
+    off = replace(rig, water=replace(rig.water, added_mass=((0.4 * a11, a12), (a21, 1.6 * a22))))
+    there, found = judged(off, clean, Priors())
+    assert found == ()
+    assert there.moved["a11"] == pytest.approx(0.6 * a11, rel=0.01)
+    assert there.moved["a22"] == pytest.approx(-0.6 * a22, rel=0.01)

@@ -1,0 +1,67 @@
+"""Withheld are whole regimes of runs, never samples or parts of a run."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.gap.components import Component, GapRun, Observation, Part, Stack
+from analysis.gap.regimes import regimes
+from analysis.gap.withheld import predict_withheld
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.campaign import CampaignRun
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of
+
+points = st.builds(
+    SetPoint,
+    frequency_hz=st.sampled_from([0.5, 0.8, 1.1]),
+    eccentricity_m=st.sampled_from([0.01, 0.02]),
+    strut_phase_rad=st.sampled_from([0.0, math.pi]),
+    carriage_speed_m_s=st.sampled_from([0.0, 1.2]),
+    medium=st.sampled_from(list(Medium)),
+)
+
+
+def bare(number: int, point: SetPoint) -> GapRun:
+    seen = Observation((Component("force_aft", Part.MEAN),), np.zeros(1), np.ones(1))
+    return GapRun(f"r{number}", point, CampaignRun(number, 0.0, 0.0, None), seen, 8, 64.0)
+
+
+@given(st.lists(points, min_size=3, max_size=12))
+def test_a_regime_holds_all_runs_of_its_value_and_leaves_enough(given_: list[SetPoint]) -> None:
+    runs = [bare(number, point) for number, point in enumerate(given_)]
+    fields = {
+        "frequency": "frequency_hz",
+        "amplitude": "eccentricity_m",
+        "phase": "strut_phase_rad",
+        "speed": "carriage_speed_m_s",
+        "medium": "medium",
+    }
+    found = regimes(runs)
+    assert len({one.runs for one in found}) == len(found)
+    for one in found:
+        values = [getattr(run.set_point, fields[one.what]) for run in runs]
+        inside = {values[at] for at in one.runs}
+        outside = {value for at, value in enumerate(values) if at not in one.runs}
+        assert len(inside) == 1
+        assert not inside & outside
+        assert len(runs) - len(one.runs) >= 3
+
+
+def test_no_observation_of_a_withheld_run_is_fitted(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    problem = problem_of(rig, clean)
+    stack: Stack = problem.simulator.stack
+    for regime in regimes(stack.runs)[::3]:
+        (before,) = predict_withheld(problem, None, (regime,))
+        assert set(stack.run[before.rows]) == set(regime.runs)
+        # What a withheld run showed instead cannot change what is predicted of it.
+        moved = replace(stack, values=stack.values + np.where(before.rows, stack.uncertainty, 0.0))
+        other = replace(problem, simulator=replace(problem.simulator, stack=moved))
+        (after,) = predict_withheld(other, None, (regime,))
+        assert np.all(after.left - before.left > 0.0)
+        assert np.all(after.left - before.left < 1.0 + 1e-9)

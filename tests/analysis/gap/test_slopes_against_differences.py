@@ -1,0 +1,44 @@
+"""The columns that a fit is linear in are the simulator's own derivatives."""
+
+import numpy as np
+import pytest
+
+from analysis.gap.candidate import candidates
+from analysis.gap.components import STEADY_PARTS, GapRun
+from analysis.gap.fit import at, built
+from analysis.gap.free import Free, free_numbers
+from analysis.gap.priors import Priors
+from sim.effects.catalogue import find
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of
+
+
+@pytest.mark.parametrize("name", ["coulomb-friction", "quadratic-damping", "amplifier-lag"])
+def test_of_an_effect(name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    problem = problem_of(rig, clean)
+    chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
+    fit = at(problem, chosen, chosen[0].start)
+    step = 1e-3
+    for axis in range(len(fit.units)):
+        sides = []
+        for sign in (1.0, -1.0):
+            moved = fit.units.copy()
+            moved[axis] += sign * step
+            sides.append(problem.simulator.steady(built(chosen, moved)))
+        slope = problem.whitened(sides[0] - sides[1]) / (2.0 * step)
+        parts = problem.simulator.stack.components
+        steady = np.array([one.part in STEADY_PARTS for one in parts])
+        off = np.linalg.norm((fit.columns[:, axis] - slope)[steady])
+        assert off < 0.1 * np.linalg.norm(slope[steady])
+
+
+def test_of_the_free_numbers(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    problem = problem_of(rig, clean)
+    free: tuple[Free, ...] = free_numbers(rig, Priors())
+    base = problem.simulator.steady(())
+    for at_, one in enumerate(free):
+        sides = [one.steady(problem.simulator, units) for units in (0.02, -0.02)]
+        slope = problem.whitened(sides[0] - sides[1]) / 0.04
+        off = np.linalg.norm(problem.nuisances.columns[:, at_] - slope)
+        assert off <= 0.02 * np.linalg.norm(slope) + 1e-6, one.name
+    assert np.isfinite(base).all()
