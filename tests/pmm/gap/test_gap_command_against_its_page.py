@@ -1,0 +1,133 @@
+"""``docs/gap.md``: its commands run, from a raw campaign to a cured simulator."""
+
+import json
+import re
+import shlex
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from pmm.gap.report import JSON_SCHEMA
+from sim.effects.catalogue import catalogue
+
+HOUSE = Path(__file__).parents[3]
+PAGE = (HOUSE / "docs" / "gap.md").read_text()
+FEW = ("coulomb-friction", "amplifier-lag")
+TRUTH_N = 0.3
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(cli, arguments)
+
+
+def commands(first: str) -> list[list[str]]:
+    """Return the commands of the page's block that begins with one."""
+    blocks = re.findall(r"^```sh\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE)
+    (block,) = [one for one in blocks if one.startswith(first)]
+    return [shlex.split(line)[1:] for line in block.strip().splitlines()]
+
+
+@pytest.fixture(scope="module")
+def few() -> Iterator[None]:
+    """A catalogue of a handful, so that the page's commands take seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            "pmm.gap.examine.catalogue", lambda: {name: catalogue()[name] for name in FEW}
+        )
+        yield
+
+
+@pytest.fixture(scope="module")
+def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Result]:
+    """The page's commands, run one after the other in a folder of their own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("gap"))
+        simulate, diagnose, add, again = commands("pmm simulate")
+        simulate[1] = str(HOUSE / simulate[1])
+        (held_out,) = commands("pmm gap rig --hold-out")
+        found = {
+            "simulate": run(*simulate),
+            "diagnose": run(*diagnose),
+            "json": run(*diagnose[:2], *held_out[2:], "--json"),
+            "add": run(*add),
+            "again": run(*again),
+            "twice": run(*add, "--effect", FEW[0]),
+        }
+        page, file = Path("gap.html").read_text(), Path("rig/campaign.toml").read_text()
+        kept = Path("rig/campaign.toml.1").read_text()
+    return found | {"page": page, "file": file, "kept": kept}  # type: ignore[dict-item]
+
+
+def test_all_of_them_succeed(told: dict[str, Result]) -> None:
+    for name in ("simulate", "diagnose", "json", "add", "again"):
+        assert told[name].exit_code == 0, (name, told[name].output)
+
+
+def test_friction_is_found_and_its_size(told: dict[str, Result]) -> None:
+    said = told["diagnose"].stdout
+    assert said.startswith("gap: coulomb-friction; probability ")
+    low, high = map(float, re.findall(r"friction_n = \S+ \((\S+) to (\S+)\)", said)[0])
+    assert low - 0.002 < TRUTH_N < high + 0.002
+
+
+def test_withheld_runs_are_predicted(told: dict[str, Result]) -> None:
+    found = json.loads(told["json"].stdout)
+    assert found["schema"] == JSON_SCHEMA
+    assert found["held_out"] == ["heave-1.10-20", "pitch-1.10-20"]
+    assert not set(found["held_out"]) & set(found["runs"])
+    best, *controls = found["controls"]
+    assert best["before_u"] > 10.0
+    assert best["after_u"] < 1.3
+    assert all(one["after_u"] > best["after_u"] for one in controls[1:])
+    assert sum(one["probability"] for one in found["ranking"]) <= 1.0 + 1e-9
+
+
+def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:
+    file, kept = str(told["file"]), str(told["kept"])
+    assert kept == (HOUSE / "examples" / "gap" / "campaign.toml").read_text()
+    assert file.startswith(kept.rstrip("\n"))
+    (added,) = tomllib.loads(file)["effects"]
+    assert added["name"] == "coulomb-friction"
+    assert added["parameters"]["friction_n"] == pytest.approx(TRUTH_N, rel=0.02)
+
+
+def test_the_cured_simulator_has_no_gap(told: dict[str, Result]) -> None:
+    assert told["again"].stdout.startswith("gap: no gap beyond u")
+
+
+def test_an_effect_is_not_added_twice(told: dict[str, Result]) -> None:
+    assert told["twice"].exit_code == 2
+    assert "coulomb-friction is in [[effects]] already" in told["twice"].stderr
+
+
+def test_the_page_stands_alone(told: dict[str, Result]) -> None:
+    page = str(told["page"])
+    assert page.count("<svg") == 4
+    for title in ("Where", "Which", "How far", "Coefficients", "What remains", "Next"):
+        assert f"<h2>{title}</h2>" in page
+    assert not re.findall(r'(?:src|href)="(?!#)', page)
+    assert "<script" not in page
+    assert "mathdefault" not in page
+
+
+def test_misspelt_names_get_the_nearest() -> None:
+    campaign = str(HOUSE / "examples" / "gap")
+    found = run("gap", campaign, "--effects", "coulomb-frictoin")
+    assert found.exit_code == 2
+    assert "coulomb-friction" in found.stderr
+    found = run("gap", campaign, "--hold-out", "frequncy=1.1")
+    assert found.exit_code == 2
+    assert "did you mean 'frequency'" in found.stderr
+    found = run("gap", campaign, "--hold-out", "heave-0.55-20")
+    assert found.exit_code == 2
+    assert "heave-0.50-20" in found.stderr
+
+
+def test_a_campaign_without_recordings_says_so() -> None:
+    found = run("gap", str(HOUSE / "examples" / "gap"), "--effects", "coulomb-friction")
+    assert found.exit_code == 1
+    assert "0 runs" in found.stderr
