@@ -24,6 +24,7 @@ NAMES = (
     "simulator",
     "devices",
     "run_control",
+    "console",
     "inertia",
     "recorder",
     "kill",

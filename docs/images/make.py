@@ -1,6 +1,13 @@
-"""Make the README's pictures anew from the example recording: ``python docs/images/make.py``."""
+"""Make the README's pictures anew: ``python docs/images/make.py``.
 
+Gate and phasors come from the example recording; the console from a run on the simulated rig, where
+chromium and chromedriver are installed.
+"""
+
+import shutil
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import sleep
 
 from analysis.readers import ColumnMap, read_recording
 from analysis.resolver.analyse import Settings, analyse
@@ -8,7 +15,20 @@ from pmm.report.plots import FIGURES
 from pmm.report.style import drawing
 
 HERE = Path(__file__).parent
-EXAMPLE = HERE.parents[1] / "examples" / "recordings"
+EXAMPLES = HERE.parents[1] / "examples"
+EXAMPLE = EXAMPLES / "recordings"
+PLAN = """name = "heave"
+rig = "rig.toml"
+[defaults]
+periods = 8
+settling_periods = 2
+[[runs]]
+name = "heave"
+motion = "heave"
+frequencies_hz = [0.65, 0.83, 1.2]
+amplitudes_mm = 20.0
+speeds_m_s = 1.2
+"""
 
 
 def main() -> None:
@@ -20,6 +40,33 @@ def main() -> None:
     for name in ("gate", "phasors"):
         with drawing():
             FIGURES[name](analysis, 0).savefig(HERE / f"{name}.png", dpi=90)
+    if shutil.which("chromium") and shutil.which("chromedriver"):
+        show_console()
+
+
+def show_console() -> None:
+    """Run a plan under the console and take its picture, light and dark, while a gate is open."""
+    from tests.pmm.console.chromium import browser, console
+
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        shutil.copytree(EXAMPLES / "vertical", folder / "rig")
+        with (
+            console(folder / "rig" / "rig.toml", folder / "out", "--speed", "4") as one,
+            browser(folder / "profile") as page,
+        ):
+            page.open(one.address)
+            page.queue(PLAN)
+            page.press("start")
+            page.until(lambda: "Z_wdot" in page.text("#coefficient"), "coefficients")
+            page.until(lambda: page.text("#gate-name") == "open", "open gate")
+            page.until(lambda: int(page.text("#periods")) >= 4, "four periods")
+            for theme in ("light", "dark"):
+                page.run("document.documentElement.dataset.theme = arguments[0]", theme)
+                page.run("dispatchEvent(new Event('pmm-theme')); scrollTo(0, 0)")
+                page.run("document.querySelector('#plan-form details').open = false")
+                sleep(1.0)
+                page.driver.save_screenshot(str(HERE / f"console-{theme}.png"))
 
 
 if __name__ == "__main__":

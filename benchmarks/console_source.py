@@ -1,0 +1,167 @@
+"""For the console's benchmark: a loop that shows 16 channels, and a watcher without a browser."""
+
+import json
+import math
+import time
+import urllib.request
+from multiprocessing import get_context
+from pathlib import Path
+from socket import create_server
+from typing import Any, Final
+
+import numpy as np
+
+from hardware.description.setpoint import SetPoint
+from pmm.console.app_settings import Settings
+from pmm.console.link import Link
+from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, Trace
+from pmm.console.security import Door
+from pmm.console.server import serve
+from pmm.console.station import TICK_S
+from pmm.recorder.lateness import CycleStatistics
+from pmm.run.gate import GateState
+from pmm.run.states import State
+from pmm.run.status import Status
+
+CHANNELS: Final = 16
+_RATE_HZ: Final = 100.0
+_EACH: Final = round(_RATE_HZ * TICK_S)
+_SESSION: Final = "0123456789abcdef"
+_JOIN_S: Final = 10.0
+_MOMENT_S: Final = 0.005  # nothing is waiting any more
+
+
+class Source:
+    """Serves the console's page with made-up channels; frames go out while :meth:`wait` waits."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._rng = np.random.default_rng(1963)
+        self._number = 0
+        self._spent_s = 0.0
+
+    def __enter__(self) -> "Source":
+        self._socket = create_server(("127.0.0.1", 0))
+        port = self._socket.getsockname()[1]
+        self.address = f"http://127.0.0.1:{port}/"
+        door = Door("127.0.0.1", port)
+        settings = Settings(self._folder / "rig.toml", self._folder, None, self._folder, door)
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        self._process = context.Process(
+            target=serve, args=(settings, self._socket, theirs, None, None)
+        )
+        self._process.start()
+        theirs.close()
+        self._link = Link(ours)
+        self._link.tell(self._hello())
+        self.wait(3.0)
+        self._number, self._spent_s = 0, 0.0
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._link.close()
+        self._process.join(_JOIN_S)
+        self._socket.close()
+
+    @property
+    def server_pid(self) -> int:
+        """The web server's process."""
+        return int(self._process.pid or 0)
+
+    @property
+    def sent_per_s(self) -> float:
+        """Frames a second that were handed on."""
+        return self._number / self._spent_s
+
+    def wait(self, seconds: float) -> None:
+        """Hand on frames for so long."""
+        start = time.monotonic()
+        due = start
+        while (now := time.monotonic()) < start + seconds:
+            self._link.frame(self._frame())
+            due = max(due + TICK_S, now)
+            time.sleep(max(due - time.monotonic(), 0.0))
+        self._spent_s += time.monotonic() - start
+
+    def _hello(self) -> Hello:
+        channels = tuple(ChannelInfo(f"force_{k:02d}", "N", 500.0) for k in range(CHANNELS))
+        return Hello("bench", self._folder, True, channels, _RATE_HZ, _RATE_HZ, 3, 1.0)
+
+    def _frame(self) -> Frame:
+        self._number += 1
+        first = self._number * _EACH
+        theta = 2.0 * np.pi * np.arange(first, first + _EACH) / _RATE_HZ
+        phases = np.arange(CHANNELS)[:, None]
+        noise = self._rng.normal(0.0, 0.5, (CHANNELS, _EACH))
+        values = 40.0 * np.sin(theta + 0.2 * phases) + noise
+        coefficients = self._rng.normal(20.0, 0.05, (CHANNELS, 7))
+        time_s = first / _RATE_HZ
+        status = Status(State.GATE_OPEN, first, time_s, "run", "oscillation", 1, 9, 1.0,
+                        GateState.OPEN, self._number // 25, 1000)  # fmt: skip
+        return Frame(
+            number=self._number,
+            status=status,
+            plan=0,
+            queue=(),
+            set_point=SetPoint(1.0, 0.02, 0.0, 0.0),
+            opened_s=max(time_s - 10.0, 0.0),
+            closed_s=math.nan,
+            shaft_hz=1.0 + float(self._rng.normal(0.0, 1e-3)),
+            axes=(("eccentricity", "m", 0.02), ("phase", "rad", 0.0)),
+            allowed=("next", "hold", "stop", "quick stop"),
+            question="",
+            bus=Bus(True, 9, 0),
+            loop=CycleStatistics(first, 1e-4, 1e-3, 2e-3, 0),
+            needles=Needles(coefficients, np.full((CHANNELS, 7), 0.05), final=False),
+            trace=Trace(first, time_s, values),
+        )
+
+
+class Watcher:
+    """A program that watches a console by its stream, and begins a plan."""
+
+    def __init__(self, address: str) -> None:
+        self._address = address.rstrip("/")
+
+    def __enter__(self) -> "Watcher":
+        from websockets.sync.client import connect
+
+        url = self._address.replace("http", "ws") + f"/stream?session={_SESSION}"
+        self._stream = connect(url, origin=self._address, max_size=None)  # type: ignore[arg-type]
+        self._stream.recv()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stream.close()
+
+    def start(self, plan: str) -> None:
+        """Queue a plan and start it."""
+        self._post("plans/queue", {"text": plan})
+        self._post("command", {"command": "start"})
+
+    def latest(self) -> dict[str, Any]:
+        """Return the newest frame."""
+        frame: dict[str, Any] = {}
+        while True:
+            try:
+                message = json.loads(self._stream.recv(timeout=_MOMENT_S if frame else 10.0))
+            except TimeoutError:
+                return frame
+            found = message.get("frame") if message["type"] == "snapshot" else message
+            frame = found if found and found["type"] == "frame" else frame
+
+    def until(self, rig_s: float) -> None:
+        """Wait until the rig's time has come."""
+        while True:
+            message = json.loads(self._stream.recv(timeout=30.0))
+            if message["type"] == "frame" and message["time_s"] >= rig_s:
+                return
+
+    def _post(self, path: str, body: dict[str, Any]) -> None:
+        headers = {"origin": self._address, "x-pmm-session": _SESSION}
+        request = urllib.request.Request(  # noqa: S310 - our own address
+            f"{self._address}/api/{path}", json.dumps(body).encode(), headers
+        )
+        with urllib.request.urlopen(request) as answer:  # noqa: S310
+            answer.read()
