@@ -28,7 +28,6 @@ _RATE_HZ: Final = 100.0
 _EACH: Final = round(_RATE_HZ * TICK_S)
 _SESSION: Final = "0123456789abcdef"
 _JOIN_S: Final = 10.0
-_MOMENT_S: Final = 0.005  # nothing is waiting any more
 
 
 class Source:
@@ -140,16 +139,15 @@ class Watcher:
         self._post("plans/queue", {"text": plan})
         self._post("command", {"command": "start"})
 
-    def latest(self) -> dict[str, Any]:
-        """Return the newest frame."""
-        frame: dict[str, Any] = {}
-        while True:
-            try:
-                message = json.loads(self._stream.recv(timeout=_MOMENT_S if frame else 10.0))
-            except TimeoutError:
-                return frame
-            found = message.get("frame") if message["type"] == "snapshot" else message
-            frame = found if found and found["type"] == "frame" else frame
+    def loops(self, seconds: float) -> list[dict[str, Any]]:
+        """Watch for a while; return the loop's statistics of each window that ended."""
+        found: list[dict[str, Any]] = []
+        end = time.monotonic() + seconds
+        while time.monotonic() < end or not found:
+            message = json.loads(self._stream.recv(timeout=30.0))
+            if message["type"] == "frame" and message["loop"]["cycles"]:
+                found += [message["loop"]] * (message["loop"] not in found[-1:])
+        return found[1:] or found
 
     def until(self, rig_s: float) -> None:
         """Wait until the rig's time has come."""

@@ -31,6 +31,7 @@ from pmm.run.journal import Taps
 from pmm.run.states import Command, RunStateError
 
 _LEAST_TOKEN: Final = 16
+_WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
 _JOIN_S: Final = 10.0
 
 
@@ -194,7 +195,7 @@ def _station(request: Request, rig_file: RigFile, connection: Connection) -> Ite
 
     period_s = 1.0 / rig_file.sample_rate_hz / request.speed
     pacer = CountingPacer(
-        RealTime(period_s, time.monotonic, time.sleep), period_s, round(1.0 / period_s)
+        RealTime(period_s, time.monotonic, time.sleep), period_s, round(_WINDOW_S / period_s)
     )
     taps, answers = Taps(), Answers()
     link = Link(connection)

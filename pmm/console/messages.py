@@ -193,7 +193,7 @@ class Frame:
     question
         What the operator is asked.
     loop
-        Lateness of all cycles since the rig was opened.
+        Lateness of the cycles of the last ten seconds.
     """
 
     number: int

@@ -11,13 +11,12 @@ class CountingPacer:
     ----------
     period_s
         Of the cycles on the clock.
-    refresh
-        After how many cycles the statistics are worked out anew: it costs more than a cycle's
-        share of it.
+    window
+        Over how many cycles statistics are taken: what was late long ago says nothing of now.
     """
 
-    def __init__(self, inner: Pacer, period_s: float, refresh: int) -> None:
-        self._inner, self._refresh = inner, refresh
+    def __init__(self, inner: Pacer, period_s: float, window: int) -> None:
+        self._inner, self._period_s, self._window = inner, period_s, window
         self._lateness = Lateness(period_s)
         self._count = 0
         self._known = CycleStatistics(0, 0.0, 0.0, 0.0, 0)
@@ -30,8 +29,8 @@ class CountingPacer:
         return late_s
 
     def statistics(self) -> CycleStatistics:
-        """Return lateness so far, as of the last time it was worked out."""
-        if self._count >= self._refresh or not self._known.cycles:
-            self._count = 0
+        """Return the lateness of the last full window; no cycles before there is one."""
+        if self._count >= self._window:
             self._known = self._lateness.statistics()
+            self._lateness, self._count = Lateness(self._period_s), 0
         return self._known

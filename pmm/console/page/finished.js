@@ -59,10 +59,11 @@ export class Coefficients {
     const highs = points.map((one) => one.value + (one.half_width ?? 0)), lows = points.map((one) => one.value - (one.half_width ?? 0));
     const right = Math.max(...points.map((one) => one.frequency_hz)) * 1.1;
     const span = Math.max(Math.max(...highs) - Math.min(...lows), 0.05 * Math.abs(points[0].value), 1e-12);
-    const high = Math.max(...highs) + 0.15 * span, low = Math.min(...lows) - 0.15 * span;
+    const middle = (Math.max(...highs) + Math.min(...lows)) / 2;
+    const high = middle + 0.65 * span, low = middle - 0.65 * span;
     const x = (f) => LEFT + (f / right) * (W - LEFT - RIGHT);
     const y = (v) => TOP + ((high - v) / (high - low)) * (H - TOP - BOTTOM);
-    const step = nice(span / 4);
+    const step = nice(span / 6);
     const parts = [];
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) {
       parts.push(svg("line", { class: "ring", x1: LEFT, x2: W - RIGHT, y1: y(v), y2: y(v) }),

@@ -48,7 +48,7 @@ export class Readings {
     if (!needles) return text(byId("finality"), this.last ? "last reading" : "no reading");
     this.last = needles;
     for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final);
-    text(byId("finality"), needles.final ? "final: whole periods" : "provisional: between pulses");
+    text(byId("finality"), needles.final ? "final" : "provisional");
     attribute(byId("finality"), "data-final", needles.final ? "yes" : "no");
     if (!byId("all-channels").open) return;
     this.cells.forEach((row, k) => row.forEach((cell, at) =>

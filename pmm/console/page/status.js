@@ -39,8 +39,9 @@ function facts(frame) {
   const free = frame.free_bytes;
   found.push(["disk", free === null ? "nothing recorded" : `${(free / 1e9).toFixed(1)} GB left`, free !== null && free < 1e9 ? "bad" : ""]);
   const loop = frame.loop;
-  found.push(["cycles, 99 %", `${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)} ms`]);
-  found.push(["late cycles", `${loop.late} of ${loop.cycles}`]);
+  const late = loop.cycles ? `${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)}` : "–";
+  found.push(["loop late, 99 %", late]);
+  found.push(["late cycles", loop.cycles ? `${loop.late} of the last ${loop.cycles}` : "–"]);
   found.push(["rig time", `${frame.time_s.toFixed(1)} s`]);
   return found;
 }

@@ -82,7 +82,7 @@ class Chart {
 }
 
 export class Traces {
-  constructor() { this.charts = []; this.gates = []; this.box = byId("charts"); addEventListener("resize", () => this.fit()); }
+  constructor() { this.charts = []; this.turn = 0; this.gates = []; this.box = byId("charts"); new ResizeObserver(() => this.fit()).observe(this.box); }
 
   begin(hello) {
     this.channels = hello.channels;
@@ -104,13 +104,16 @@ export class Traces {
     const height = Math.max(110, Math.min(240, Math.floor((470 - 22 * groups.length) / groups.length)));
     this.charts.forEach((one) => one.plot.destroy());
     this.charts = groups.map((members) => new Chart(this, members, this.channels, height));
+    this.width = 0;
     this.box.replaceChildren(...this.charts.flatMap((one) => [one.legend, one.box]));
     this.fit();
   }
 
   fit() {
     const width = this.box.clientWidth;
-    if (width) this.charts.forEach((one) => one.resize(width));
+    if (!width || width === this.width) return;
+    this.width = width;
+    this.charts.forEach((one) => one.resize(width));
   }
 
   // Gates of the last 20 s; a gate that closes replaces itself as it was open.
@@ -140,5 +143,10 @@ export class Traces {
     });
   }
 
-  draw() { this.charts.forEach((one) => one.draw()); }
+  // More than one chart's worth of traces take turns, so that a slow machine keeps up.
+  draw() {
+    const turns = this.channels.length > PER_CHART ? 2 : 1;
+    this.turn = (this.turn + 1) % turns;
+    this.charts.forEach((one, k) => { if (k % turns === this.turn) one.draw(); });
+  }
 }
