@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive import SHAFT, DriveSettings, Shaft
 from sim.hull import Hull
@@ -75,6 +76,11 @@ class CoupledMarch:
         states, torques
             Of the shaft: its state, and the torques of the last samples; ``None`` and nothing
             before a run's first sample, in which nothing deviates yet.
+
+        Raises
+        ------
+        ConfigurationError
+            If the sample is one of a gear with backlash: sweeps cannot solve it either.
         """
         from sim.marching import march
         from sim.shaft_loop import linkages_of
@@ -89,11 +95,23 @@ class CoupledMarch:
         whole = self.hull.mounting.joint is not None
         outputs = np.empty((self.block.count, OUTPUTS if whole else OUTPUTS - 2))
         links = linkages_of(self.mechanism)
-        if march(self.model.model, self.model.table, course, shaft, links, outputs) >= 0:
+        bad = march(self.model.model, self.model.table, course, shaft, links, outputs)
+        if bad >= 0:
+            self._check_unsettled(float(self.block.time_s[bad]))
             return None
         after = marched_state(course) if self.hull.system.states else hull_state
         force = outputs[:, 6:8] + course.loads[TORQUE_DEGREE:, :2]
         return shaft, course, after, self._signals(shaft.motion, course.struts[1:], force)
+
+    def _check_unsettled(self, time_s: float) -> None:
+        gear = self.shaft.settings.gear
+        if gear is not None:
+            raise ConfigurationError(
+                f"drive: at {time_s:.4g} s the gear's teeth strike so hard that the sample has no "
+                f"solution, with stiffness_n_m_rad = {gear.stiffness_n_m_rad:g} and "
+                f"damping_n_m_s_rad = {gear.damping_n_m_s_rad:g}; make the teeth softer, or else "
+                f"try another sample rate"
+            )
 
     def _course(self, told: Shaft, state: HullState, known: int) -> "Course":
         struts = self._struts(told)

@@ -1,13 +1,18 @@
 """Effects of clearances against flights from side to side and plastic impacts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.applied import switch_on
 from sim.effects.d4_gear_backlash import GearBacklash
 from sim.effects.effect import Effect
+from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k6b_free_play import FreePlay
+from sim.gear import Gear
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig, vertical_rig
 from tests.sim.effects.against_theory import mismatch
@@ -131,3 +136,15 @@ def test_blocks_give_the_samples_of_the_whole_run(effect: Effect) -> None:
     joined = np.concatenate(parts)
     scale = np.abs(whole["force_aft"]).max()
     np.testing.assert_allclose(joined, whole["force_aft"], rtol=0.0, atol=1e-11 * scale)
+
+
+def test_teeth_too_stiff_to_be_solved_are_told_from_what_has_no_march() -> None:
+    set_point = SetPoint(1.0, 0.03, np.pi)
+    hard = replace(RIG, drive=replace(RIG.drive, gear=Gear(0.02, 1e8, 1.0, 0.005)))
+    chain = hard.chain(set_point)
+    with pytest.raises(ConfigurationError, match=r"stiffness_n_m_rad = 1e\+08 .*make the teeth so"):
+        chain.run(chain.start(200.0, 1), 400)
+    held, changed = switch_on((GearBacklash(), JointPlay()), RIG, set_point)
+    chain = held.chain(changed)
+    with pytest.raises(ConfigurationError, match="leave out play that friction holds"):
+        chain.run(chain.start(200.0, 1), 400)
