@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.candidate import candidates, turned
 from analysis.gap.fit import Fit, Problem, at, expected_evidence, joined, most_probable, refine
-from analysis.gap.gaussian import Nuisances, left_over, null_evidence
+from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
 from analysis.gap.unknown import Deviation, find_deviation
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -26,6 +26,7 @@ R = TypeVar("R")
 LEADERS: Final = 8  # effects that are refined in full
 _NAMED = 4  # hypotheses of each kind that are given a remainder
 _HOPELESS = 50.0
+FORMS: Final = (0.0, 0.03, 0.1, 0.2, 0.3)  # by how much of itself a signature may be off
 PARTNERS: Final = 6  # second effects that are refined for each leader
 HIDDEN: Final = (
     2.0  # sigma of a typical signature below which an effect cannot be seen in these runs
@@ -161,14 +162,37 @@ def _named_all(problem: Problem, fits: Sequence[Fit], none: float) -> tuple[Name
 
 
 def with_remainder(problem: Problem, fit: Fit) -> Named:
-    """Return a hypothesis with whatever it leaves as a deviation of no particular form."""
+    """Return a hypothesis as nature may have it: in a form of its own, or with something beside.
+
+    Its own form is a signature that is off by some share of itself, component by component;
+    something beside is a deviation of no particular form. The better of the two counts.
+    """
+    formed = max((_in_own_form(problem, fit, share) for share in FORMS), key=_by_evidence)
     left = problem.residual - fit.signature
     wider = Nuisances(np.hstack((problem.nuisances.columns, fit.columns)))
     deviation = find_deviation(problem.simulator.stack, left, wider)
     own = left_over(fit.signature, problem.nuisances)
     size = left_over(deviation.mean, problem.nuisances)
     gain = deviation.log_evidence - null_evidence(left, wider)
-    return Named(fit, fit.log_evidence + max(gain, 0.0), size / max(own, 1.0), deviation)
+    beside = Named(fit, fit.log_evidence + max(gain, 0.0), size / max(own, 1.0), deviation)
+    return max((formed, beside), key=_by_evidence)
+
+
+def _by_evidence(one: Named) -> float:
+    return one.log_evidence
+
+
+def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
+    """Return a hypothesis whose signature is off by a share of itself, at random."""
+    weight = 1.0 / np.sqrt(1.0 + (share * fit.signature) ** 2)
+    nuisances = Nuisances(problem.nuisances.columns * weight[:, None])
+    columns = fit.columns * weight[:, None]
+    target = fit.linearised(problem.residual) * weight
+    found = posterior(target, columns, nuisances)
+    cost = misfit(target - columns @ found.mean, nuisances) + float(found.mean @ found.mean)
+    log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
+    log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
+    return Named(fit, log_density, share, _NOTHING)
 
 
 def _each(

@@ -16,7 +16,7 @@ from sim.effects.effect import Effect
 NONE: Final = "none"
 UNKNOWN: Final = "unknown"
 COEFFICIENTS: Final = "coefficients"
-TOLERATED: Final = 0.35  # remainder over signature at which a name is worth half
+TOLERATED: Final = 0.45  # remainder over signature at which a name is worth half
 _STEEP = 6.0
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
