@@ -87,7 +87,7 @@ class Station:
         self._waiting: deque[QueuedPlan] = deque()
         self._present: QueuedPlan | None = None
         self._writer = Writer(rig_file, executor)
-        self._due_s = -1.0
+        self._due_s = clock()
         self._ticks = self._told_alarms = self._told_outcomes = 0
         self._told_state: State | None = None
         self._latest: Needles | None = None
@@ -99,7 +99,7 @@ class Station:
         self._tell_news(control)
         now_s = self._clock()
         if now_s >= self._due_s:
-            self._due_s = max(self._due_s + TICK_S, now_s)
+            self._due_s += TICK_S * (1.0 + (now_s - self._due_s) // TICK_S)
             self._ticks += 1
             self._link.frame(self._frame(control))
 

@@ -81,5 +81,7 @@ def served(
             assert ended.wait(10.0)
     finally:
         end.set()
-        thread.join(10.0)
+        pools = [one for one in threading.enumerate() if one.name.startswith("AnyIO")]
+        for one in (thread, *pools):  # the pool's threads end soon after their event loop
+            one.join(10.0)
         theirs.close()

@@ -1,0 +1,170 @@
+"""The rig's side of the console without a browser: plans in a row, frames, orders and refusals."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import count, pairwise
+from pathlib import Path
+
+import numpy as np
+
+from hardware.pacing import FreeRunning
+from pmm.console.asking import Answers
+from pmm.console.messages import Frame, Notice, Order, OrderKind, QueuedPlan, Reply, Told
+from pmm.console.pacing import CountingPacer
+from pmm.console.station import Station
+from pmm.plan.plan import Plan
+from pmm.plan.run_plan import RunPlan
+from pmm.run.journal import Taps
+from pmm.run.states import State
+from tests.pmm.run.harness import Bench, bench, oscillation
+
+
+@dataclass
+class Heard:
+    """Takes what the loop tells, in place of the pipe."""
+
+    frames: list[Frame] = field(default_factory=list)
+    told: list[Told] = field(default_factory=list)
+    waiting: list[Order] = field(default_factory=list)
+    lost: bool = False
+
+    def frame(self, frame: Frame) -> None:
+        self.frames.append(frame)
+
+    def tell(self, message: Told) -> None:
+        self.told.append(message)
+
+    def orders(self) -> list[Order]:
+        found, self.waiting = self.waiting, []
+        return found
+
+    def notices(self, kind: str) -> list[str]:
+        return [one.text for one in self.told if isinstance(one, Notice) and one.kind == kind]
+
+
+@dataclass
+class Shown:
+    """A station on the simulated rig."""
+
+    station: Station
+    heard: Heard
+    bench: Bench
+    numbers: Iterator[int] = field(default_factory=lambda: count(1))
+
+    def order(self, kind: OrderKind, text: str = "", plan: QueuedPlan | None = None) -> Reply:
+        """Give an order and run the cycle that takes it."""
+        self.heard.waiting.append(Order(next(self.numbers), kind, text, plan=plan))
+        self.station.step()
+        replies = [one for one in self.heard.told if isinstance(one, Reply)]
+        return replies[-1]
+
+    def queue(self, number: int, name: str, *runs: RunPlan) -> Reply:
+        """Queue a plan."""
+        folder = self.bench.folder / name
+        folder.mkdir(exist_ok=True)
+        plan = Plan(name, Path("plan.toml"), Path("rig.toml"), runs, "", "0" * 64)
+        return self.order(OrderKind.QUEUE, plan=QueuedPlan(number, plan, folder, runs))
+
+    def until(self, state: State, within: int = 6000) -> None:
+        """Step until a state is reached."""
+        for _ in range(within):
+            if self.station.control.state is state:
+                return
+            self.station.step()
+        raise AssertionError(f"still {self.station.control.state}: {self.heard.notices('alarm')}")
+
+
+@contextmanager
+def _shown(folder: Path) -> Iterator[Shown]:
+    with bench(folder, [], start=False) as one:
+        heard = Heard()
+        station = Station(
+            one.rig,
+            one.control._conduct.rig_file,
+            heard,  # type: ignore[arg-type]
+            Answers(),
+            CountingPacer(FreeRunning(), 0.01, 100),
+            Taps(),
+            lambda: one.world.time_s,
+            lambda: "2026-01-01T00:00:00+00:00",
+            {},
+        )
+        yield Shown(station, heard, one)
+
+
+def _short(name: str) -> RunPlan:
+    return oscillation(name, 2.0, periods=2, max_periods=2)
+
+
+def test_plans_follow_each_other_and_every_point_of_a_trace_is_shown_once(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        for _ in range(40):
+            one.station.step()
+        assert one.queue(1, "first", _short("a"), _short("b")).done
+        assert one.queue(2, "second", _short("a")).done
+        assert one.order(OrderKind.COMMAND, "start").done
+        for _ in range(20000):
+            one.station.step()
+            if len(one.heard.notices("outcome")) == 3 and one.station.at_rest:
+                break
+        outcomes = [o.outcome for o in one.heard.told if isinstance(o, Notice) and o.outcome]
+        assert [(o.run, o.outcome) for o in outcomes] == [
+            ("a", "complete"),
+            ("b", "complete"),
+            ("a", "complete"),
+        ]
+        assert one.heard.notices("written") == ["first", "first", "second"]
+        assert (tmp_path / "second" / "campaign.toml").exists()
+        traces = [frame.trace for frame in one.heard.frames if frame.trace.values.size]
+        for before, after in pairwise(traces):
+            assert after.first == before.first + before.values.shape[1]
+        numbers = [frame.number for frame in one.heard.frames]
+        assert numbers == list(range(1, len(numbers) + 1))
+        steps_s = np.diff([frame.status.time_s for frame in one.heard.frames])
+        assert np.abs(steps_s - 0.04).max() < 0.0101  # a cycle
+        assert abs(steps_s.mean() - 0.04) < 0.02 / len(
+            steps_s
+        )  # first and last frame, a cycle each
+
+
+def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "first", _short("a"))
+        one.queue(2, "second", _short("b"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        assert one.order(OrderKind.COMMAND, "stop").done
+        for _ in range(1000):
+            one.station.step()
+        assert one.station.control.state in (State.STOPPED, State.IDLE)
+        assert one.order(OrderKind.COMMAND, "start").done
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "b"
+        one.order(OrderKind.COMMAND, "quick stop")
+        one.until(State.STOPPED)
+
+
+def test_orders_that_make_no_sense_are_refused_and_change_nothing(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        for kind, text, why in (
+            (OrderKind.COMMAND, "start", "no plan is queued"),
+            (OrderKind.COMMAND, "hold", "refused in state idle"),
+            (OrderKind.COMMAND, "fly", "fly"),
+            (OrderKind.DROP, "7", "no plan 7"),
+            (OrderKind.ANSWER, "5", "nobody asks"),
+        ):
+            reply = one.order(kind, text)
+            assert not reply.done
+            assert why in reply.text
+        assert not one.queue(1, "empty").done
+        one.queue(2, "plan", _short("a"))
+        one.queue(3, "later", _short("b"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.STARTING)
+        assert "under way" in one.order(OrderKind.DROP, "2").text
+        assert one.order(OrderKind.DROP, "3").done
+        one.order(OrderKind.COMMAND, "quick stop")
+        one.until(State.STOPPED)
+        assert one.order(OrderKind.DROP, "2").done
+        assert not one.order(OrderKind.COMMAND, "start").done
