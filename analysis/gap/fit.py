@@ -184,7 +184,7 @@ def _slope(
         kept = inside(parts, moved)
         if abs(kept[axis] - units[axis]) > 0.5 * step:
             change = problem.simulator.predict(built(parts, kept)) - base
-            return problem.whitened(change) / (kept[axis] - units[axis])
+            return np.asarray(problem.whitened(change) / (kept[axis] - units[axis]), np.float64)
     return np.zeros_like(base)
 
 

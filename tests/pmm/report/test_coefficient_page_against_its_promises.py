@@ -20,7 +20,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     (folder / "reference.csv").write_text(
         "frequency_hz,speed_m_s,Z_w,Z_q\n0.5,1.2,-190,-12\n1,1.2,-210,-12\n"
     )
-    settings = '[uncertainty]\nlag_s = 1e-4\n[[references]]\nfile = "reference.csv"\nallowance_relative = 0.01\n'
+    reference = 'file = "reference.csv"\nallowance_relative = 0.01\n'
+    settings = f"[uncertainty]\nlag_s = 1e-4\n[[references]]\n{reference}"
     (folder / "coefficients.toml").write_text(settings)
     result = CliRunner().invoke(
         cli, ["report", str(folder), "--uncertainty", "monte-carlo", "--trials", "2000"]
