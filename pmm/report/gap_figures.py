@@ -70,7 +70,7 @@ def _matrix(
 
 def _draw_cells(
     axes: "Axes", values: FloatArray, rows: Sequence[tuple[str, str, int]], runs: Sequence[str]
-) -> "object":
+) -> "QuadMesh":
     import matplotlib as mpl
     from matplotlib.colors import BoundaryNorm
 
