@@ -16,6 +16,7 @@ from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
