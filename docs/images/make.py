@@ -20,7 +20,7 @@ EXAMPLE = EXAMPLES / "recordings"
 PLAN = """name = "heave"
 rig = "rig.toml"
 [defaults]
-periods = 8
+periods = 14
 settling_periods = 2
 [[runs]]
 name = "heave"
@@ -52,15 +52,15 @@ def show_console() -> None:
         folder = Path(name)
         shutil.copytree(EXAMPLES / "vertical", folder / "rig")
         with (
-            console(folder / "rig" / "rig.toml", folder / "out", "--speed", "4") as one,
+            console(folder / "rig" / "rig.toml", folder / "out", "--speed", "2") as one,
             browser(folder / "profile") as page,
         ):
             page.open(one.address)
             page.queue(PLAN)
             page.press("start")
             page.until(lambda: "Z_wdot" in page.text("#coefficient"), "coefficients")
-            page.until(lambda: page.text("#gate-name") == "open", "open gate")
-            page.until(lambda: int(page.text("#periods")) >= 4, "four periods")
+            page.until(lambda: "3 of 3" in page.text("#state-run"), "last run")
+            page.until(lambda: int(page.text("#periods")) >= 5, "five periods")
             for theme in ("light", "dark"):
                 page.run("document.documentElement.dataset.theme = arguments[0]", theme)
                 page.run("dispatchEvent(new Event('pmm-theme')); scrollTo(0, 0)")
