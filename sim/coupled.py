@@ -96,8 +96,10 @@ class Coupled:
             most = 1 if swept else LONGEST_SWEEP
             count = min(most, block.count - first)
             part = Block(block.first + first, count, block.sample_rate_hz)
+            stage, count = self._as_of(part)
+            part = replace(part, count=count)
             given = {name: values[first : first + count] for name, values in inputs.items()}
-            state, out = _Stretch(self, state, part, given).solve()
+            state, out = _Stretch(stage, state, part, given).solve()
             written.append(out)
             first += count
         if len(written) == 1:
@@ -106,6 +108,16 @@ class Coupled:
         return state, {
             name: np.concatenate([out[name] for out in written] or [np.empty(0)]) for name in names
         }
+
+    def _as_of(self, block: Block) -> "tuple[Coupled, int]":
+        """Return the stage with the water as it is at the block's first sample, and for how many.
+
+        The march solves a stretch with one and the same water.
+        """
+        if not hasattr(self.hull, "as_of"):
+            return self, block.count
+        hull, count = self.hull.as_of(block.time_s, 1.0 / block.sample_rate_hz)
+        return (self if hull is self.hull else self.with_part("hull", hull)), count
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the period that the shaft has under its load, and the harmonics of all parts.
@@ -128,9 +140,8 @@ class Coupled:
         steady = replace(old, initial_angle_rad=0.0, start_ramp_s=0.0, stop_at_s=None, ripple=whole)
         stage = replace(self, drive=replace(self.drive, settings=steady))
         hull: Any = self.hull
-        if hasattr(hull, "laws"):
-            laws = tuple(one for one in hull.laws if one.law.periodic)
-            stage = stage.with_part("hull", replace(hull, laws=laws))
+        if hasattr(hull, "repeating"):
+            stage = stage.with_part("hull", hull.repeating)
         fine = fine_enough(real, self.drive.system.A)
         if hasattr(hull, "system") and hull.system.elastic_count:
             fine = fine_enough(fine, hull.system.state_matrix)

@@ -107,6 +107,29 @@ class Hull:
             state, force = self._with_memory(state, struts, instants)
         return state, {"force_aft": force[:, 0].copy(), "force_fore": force[:, 1].copy()}
 
+    def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
+        """Return the model in the water as it is at the first of some samples, and for how many.
+
+        What the water has no input for yet (:attr:`Radiation.onset_s`) has one from the first step
+        that begins after the onset.
+        """
+        if self.radiation is None or not self.radiation.onset_s.any():
+            return self, len(time_s)
+        begun = time_s - step_s
+        later = self.radiation.onset_s[self.radiation.onset_s > begun[0]]
+        radiation = self.radiation.at(float(begun[0]))
+        hull = self if radiation is self.radiation else replace(self, radiation=radiation)
+        return hull, int(np.searchsorted(begun, later.min(initial=np.inf)))
+
+    @property
+    def repeating(self) -> "Hull":
+        """The model as it is long after the start, with the laws that repeat."""
+        laws = tuple(one for one in self.laws if one.law.periodic)
+        radiation = self.radiation
+        if radiation is not None:
+            radiation = replace(radiation, onset_s=np.zeros(radiation.states))
+        return replace(self, laws=laws, radiation=radiation)
+
     def forces_over(self, block: Block, flow_m_s: FloatArray) -> BlockForces:
         """Return the forces over a block, at the flow's speed at each sample."""
         return self._over(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
@@ -118,16 +141,19 @@ class Hull:
         self, state: HullState, struts: FloatArray, instants: Instants
     ) -> tuple[HullState, FloatArray]:
         """Go on in stretches that fit the fastest memory, and one thread of the matrix products."""
-        holds = _holds(self, instants.step_s)
-        marching = marching_of(self, instants.step_s)
+        step_s = instants.step_s
         forces: list[FloatArray] = []
-        for first in range(0, len(struts), LONGEST_SWEEP):
-            part = slice(first, first + LONGEST_SWEEP)
+        first = 0
+        while first < len(struts):
+            hull, count = self.as_of(instants.time_s[first : first + LONGEST_SWEEP], step_s)
+            part = slice(first, first + count)
             here = instants._replace(
                 time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
             )
-            state, force = self._over(here, marching).with_memory(state, struts[part], holds)
+            forces_here = hull._over(here, marching_of(hull, step_s))
+            state, force = forces_here.with_memory(state, struts[part], _holds(hull, step_s))
             forces.append(force)
+            first += count
         return state, np.concatenate(forces)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
@@ -150,8 +176,7 @@ class Hull:
 
     def _settled(self, period: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of the forces after as many periods as it takes."""
-        laws = tuple(one for one in self.laws if one.law.periodic)
-        hull, fine = replace(self, laws=laws), fine_enough(period, self.system.state_matrix)
+        hull, fine = self.repeating, fine_enough(period, self.system.state_matrix)
         given = {one.name: fine.values(inputs[one.name]) for one in self.reads}
 
         def run(state: HullState, turn: int) -> tuple[HullState, Signals]:

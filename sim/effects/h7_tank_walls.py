@@ -13,7 +13,7 @@ from sim.effects.hydrodynamic import damping_at, load, radiation_of
 from sim.effects.situation import Situation
 from sim.linear import ComplexArray
 from sim.rig import SimulatedRig
-from sim.water.tank import Tank, with_walls
+from sim.water.tank import Tank, echo_delay_s, with_walls
 
 MODES = 4
 
@@ -23,8 +23,8 @@ class TankWalls(Effect):
     """Transverse modes: peaks of the damping at w_m, with a ripple of the added mass about them.
 
     ``w_m^2 = g k tanh(k h)``, with whole waves between the walls for heave and pitch, odd half
-    waves for sway and yaw. A real model is undisturbed until the first echo is back; these modes
-    answer weakly from the start. See :mod:`sim.water.tank`.
+    waves for sway and yaw. The model is undisturbed until the first echo is back, after W/c_g
+    with the group velocity c_g at the set frequency. See :mod:`sim.water.tank`.
     """
 
     code: ClassVar[str] = "H7"
@@ -41,7 +41,11 @@ class TankWalls(Effect):
         """Return the rig with the modes beside what its water remembers."""
         tank = Tank(self.breadth_m, self.depth_m, MODES, self.strength, self.damping_ratio)
         walls = with_walls(
-            radiation_of(rig), tank, rig.oscillator.plane, np.array(rig.water.damping)
+            radiation_of(rig),
+            tank,
+            rig.oscillator.plane,
+            np.array(rig.water.damping),
+            echo_delay_s(2.0 * np.pi * set_point.frequency_hz, tank),
         )
         return replace(rig, radiation=walls)
 

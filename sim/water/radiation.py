@@ -1,6 +1,6 @@
 """The water's linear reaction with its memory: infinite-frequency added mass and a state space."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -53,6 +53,9 @@ class Radiation:
         Shape ``(n, 2)``.
     output_matrix
         Shape ``(2, n)``.
+    onset_s
+        Time from the start of a run before which a state has no input, shape ``(n,)``: what comes
+        back from afar is not there yet. All that is said by frequency is of long after it.
 
     Raises
     ------
@@ -64,12 +67,14 @@ class Radiation:
     state_matrix: Annotated[FloatArray, _RowsOrArray()]
     input_matrix: Annotated[FloatArray, _RowsOrArray()]
     output_matrix: Annotated[FloatArray, _RowsOrArray()]
+    onset_s: Annotated[FloatArray, _RowsOrArray()] = field(default_factory=lambda: np.zeros(0))
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}
 
     def __post_init__(self) -> None:
         for name in ("added_mass_infinite", "state_matrix", "input_matrix", "output_matrix"):
             object.__setattr__(self, name, _numbers(name, getattr(self, name)))
+        onset = _numbers("onset_s", self.onset_s)
         n = len(self.state_matrix) if self.state_matrix.ndim else 0
         shapes = {
             "added_mass_infinite": (2, 2),
@@ -79,6 +84,9 @@ class Radiation:
         }
         for name, shape in shapes.items():
             object.__setattr__(self, name, _checked(name, getattr(self, name), shape))
+        object.__setattr__(
+            self, "onset_s", _checked("onset_s", onset if onset.size else np.zeros(n), (n,))
+        )
         fastest_growth = float(max(np.linalg.eigvals(self.state_matrix).real, default=-1.0))
         if fastest_growth >= 0.0:
             raise ConfigurationError(
@@ -96,7 +104,7 @@ class Radiation:
 
     def _key(self) -> tuple[bytes, ...]:
         # Adding 0.0 makes -0.0 the same bytes as 0.0.
-        return tuple((getattr(self, field.name) + 0.0).tobytes() for field in fields(self))
+        return tuple((getattr(self, one.name) + 0.0).tobytes() for one in fields(self))
 
     @property
     def states(self) -> int:
@@ -136,17 +144,30 @@ class Radiation:
         kernel: FloatArray = self.output_matrix @ decayed @ self.input_matrix
         return np.broadcast_to(kernel, (*time.shape, 2, 2))
 
+    def at(self, time_s: float) -> "Radiation":
+        """Return the memory with the inputs that it has so long after the start of a run."""
+        heard = self.onset_s <= time_s
+        if heard.all():
+            return self
+        return replace(self, input_matrix=self.input_matrix * heard[:, None])
+
     def joined(
-        self, state_matrix: ArrayLike, input_matrix: ArrayLike, output_matrix: ArrayLike
+        self,
+        state_matrix: ArrayLike,
+        input_matrix: ArrayLike,
+        output_matrix: ArrayLike,
+        onset_s: float = 0.0,
     ) -> "Radiation":
         """Return the memory with further states beside these: the loads of both add up."""
         from scipy.linalg import block_diag
 
+        more = np.full(len(np.asarray(state_matrix)), onset_s)
         return replace(
             self,
             state_matrix=block_diag(self.state_matrix, np.asarray(state_matrix)),
             input_matrix=np.concatenate([self.input_matrix, input_matrix]),
             output_matrix=np.concatenate([self.output_matrix, output_matrix], axis=1),
+            onset_s=np.concatenate([self.onset_s, more]),
         )
 
     def is_passive(self, tolerance: float = 1e-9) -> bool:
@@ -202,7 +223,7 @@ def _numbers(name: str, values: ArrayLike) -> FloatArray:
         raise ConfigurationError(f"{name} {error}") from error
 
 
-def _checked(name: str, array: FloatArray, shape: tuple[int, int]) -> FloatArray:
+def _checked(name: str, array: FloatArray, shape: tuple[int, ...]) -> FloatArray:
     if array.size == 0 and 0 in shape:
         array = array.reshape(shape)
     if array.shape != shape:

@@ -10,10 +10,10 @@ that adds b to the damping at w_m and a ripple of both signs to the added mass a
 passive by its form, so the model with walls is so as well.
 
 A model that oscillates from rest is undisturbed until the first echo is back, after W/c_g with the
-group velocity c_g (:func:`echo_delay_s`). A few modes do not reproduce that silence: their sum
-answers from the start, weakly. Modes also say nothing of waves that run along the tank, which is
-why their strength and damping are given, not computed; at forward speed the model outruns its
-echoes (:func:`interference_limit`).
+group velocity c_g (:func:`echo_delay_s`). A few modes do not reproduce that silence, as their sum
+answers from the start; so they have no input until then. Modes also say nothing of waves that run
+along the tank, which is why their strength and damping are given, not computed; at forward speed
+the model outruns its echoes (:func:`interference_limit`).
 """
 
 import math
@@ -83,13 +83,18 @@ class Tank:
 
 
 def with_walls(
-    radiation: Radiation, tank: Tank, plane: Plane, constant_damping: ArrayLike = 0.0
+    radiation: Radiation,
+    tank: Tank,
+    plane: Plane,
+    constant_damping: ArrayLike = 0.0,
+    onset_s: float = 0.0,
 ) -> Radiation:
     """Return the radiation in the tank: that of open water with the tank's modes added.
 
     A mode drives both degrees of freedom as they radiate at its frequency: it adds ``strength``
     times the damping matrix there, with two states for each independent motion that radiates.
     ``constant_damping`` is what radiates besides, at all frequencies alike: shape ``(2, 2)``.
+    Before ``onset_s`` after the start of a run nothing drives the modes: see :func:`echo_delay_s`.
     """
     omega = tank.mode_frequencies_rad_s(plane)
     radiated = radiation.damping(omega) + np.asarray(constant_damping)
@@ -99,7 +104,7 @@ def with_walls(
         for shape in shapes:
             state = np.array([[0.0, one], [-one, -2.0 * tank.damping_ratio * one]])
             inputs = np.array([[0.0, 0.0], gain * shape])
-            radiation = radiation.joined(state, inputs, inputs.T)
+            radiation = radiation.joined(state, inputs, inputs.T, onset_s)
     return radiation
 
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Acquisition, Digitiser
 from sim.acting import Acting, Point
@@ -21,6 +22,7 @@ from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.rig import SimulatedRig, vertical_rig
 from sim.water.radiation import Radiation
+from sim.water.tank import Tank, with_walls
 
 MEMORY = Radiation(
     np.array([[40.0, 3.0], [3.0, 12.0]]),
@@ -48,7 +50,7 @@ def everything() -> SimulatedRig:
         vertical_rig(),
         drive=DriveSettings(start_ramp_s=1.1, ripple=(SpeedRipple(2, 0.01),), speed_error=0.01),
         carriage=CarriageSettings(0.01, (Fluctuation(0.02, 0.7),)),
-        radiation=MEMORY,
+        radiation=with_walls(MEMORY, Tank(2.0, 1.0), Plane.VERTICAL, np.eye(2), onset_s=0.434),
         mounting=Mounting(2e5, 300.0, 1e6, 4000.0),
         forces=(
             Acting(Quadratic(100.0)),
