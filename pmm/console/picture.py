@@ -9,13 +9,15 @@ from analysis.resolver.harmonics import Harmonics
 from hardware.rig import Rig
 from pmm.console.messages import Bus, ChannelInfo, FloatArray, Needles
 from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
 from pmm.run.measurement import Measurement
 from pmm.run.run_control import RunControl
 from pmm.run.sampler import header_channels
 from pmm.run.states import ALLOWED
-from pmm.run.status import HarmonicRow
+from pmm.run.status import HarmonicRow, Status
 
 HARMONICS: Final = 3
+_FOLLOWING: Final = 3
 
 
 def channels_of(rig: Rig, rig_file: RigFile) -> tuple[ChannelInfo, ...]:
@@ -48,6 +50,17 @@ def axes_of(rig: Rig) -> tuple[tuple[str, str, float], ...]:
 def allowed(control: RunControl) -> tuple[str, ...]:
     """Return the commands that the present state takes."""
     return tuple(str(one) for one, states in ALLOWED.items() if control.state in states)
+
+
+def present_run(control: RunControl, status: Status) -> RunPlan | None:
+    """Return the run that a status tells of."""
+    return next((one for one in control.runs if one.name == status.run), None)
+
+
+def following(control: RunControl, run: RunPlan | None) -> tuple[str, ...]:
+    """Return the names of the runs that come after one."""
+    ended = {one.run for one in control.outcomes} | {run.name if run else ""}
+    return tuple(one.name for one in control.runs if one.name not in ended)[:_FOLLOWING]
 
 
 class NeedleReader:

@@ -7,7 +7,6 @@ Nothing here waits for a browser. Orders are taken between two cycles; frames ar
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor
-from itertools import accumulate
 from typing import Final
 
 from hardware.description.errors import PmmError
@@ -25,8 +24,17 @@ from pmm.console.messages import (
     Reply,
 )
 from pmm.console.pacing import CountingPacer
-from pmm.console.picture import HARMONICS, NeedleReader, allowed, axes_of, bus_of, channels_of
-from pmm.console.traces import TappedJournal, Traces, points_a_second
+from pmm.console.picture import (
+    HARMONICS,
+    NeedleReader,
+    allowed,
+    axes_of,
+    bus_of,
+    channels_of,
+    following,
+    present_run,
+)
+from pmm.console.traces import TappedJournal, Traces, points_a_second, show_idle
 from pmm.console.writing import Writer
 from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
@@ -34,12 +42,9 @@ from pmm.run.journal import Taps
 from pmm.run.measurement import Measurement
 from pmm.run.recording import Recording
 from pmm.run.run_control import RunControl
-from pmm.run.sampler import sampled_devices
 from pmm.run.states import Command, RunStateError, State
-from pmm.run.status import Status
 
 TICK_S: Final = 0.04
-_FOLLOWING: Final = 3
 _READY: Final = frozenset({State.IDLE, State.STOPPED, State.DONE})
 
 
@@ -122,7 +127,7 @@ class Station:
         for order in self._link.orders():
             self._link.tell(self._carry_out(order))
         if self.control.measurement is None:
-            self._show_idle()
+            show_idle(self._rig, self._traces)
         self.control.step()
         if self.control.finished and self._waiting:
             self._next_plan()
@@ -238,17 +243,7 @@ class Station:
         measurement.journal = TappedJournal(measurement.journal, self._traces)
         return measurement
 
-    def _show_idle(self) -> None:
-        """Let the traces go on between runs, and devices not keep their samples for ever."""
-        devices = sampled_devices(self._rig)
-        rows = accumulate((len(one.channels) for one in devices), initial=0)
-        taken = [(row, one.take()) for row, one in zip(rows, devices, strict=False)]
-        parts = [(row, block) for row, blocks in taken for block in blocks]
-        if parts:
-            self._traces.add_parts(self._rig.number, parts)
-
     def _tell_news(self, control: RunControl) -> None:
-        time_s = self._rig.number / self._rig.configuration.sample_rate_hz
         if control.state is not self._told_state:
             self._told_state = control.state
             self._notice("state", str(control.state))
@@ -266,27 +261,24 @@ class Station:
             self._told_outcomes += 1
             if self._present is None:
                 continue
+            plan = self._present
             self._link.tell(
-                Notice(
-                    "outcome",
-                    time_s,
-                    outcome.run,
-                    outcome,
-                    self._latest,
-                    self._present.number,
-                    self._present.folder,
-                )
-            )
+                Notice("outcome", self._time_s, outcome.run, outcome, self._latest,
+                       plan.number, plan.folder)
+            )  # fmt: skip
             self._latest = None
-            self._writer.write(self._present, self._link.tell)
+            self._writer.write(plan, self._link.tell)
 
     def _notice(self, kind: str, text: str, plan: int = 0) -> None:
-        time_s = self._rig.number / self._rig.configuration.sample_rate_hz
-        self._link.tell(Notice(kind, time_s, text, plan=plan))
+        self._link.tell(Notice(kind, self._time_s, text, plan=plan))
+
+    @property
+    def _time_s(self) -> float:
+        return self._rig.number / self._rig.configuration.sample_rate_hz
 
     def _frame(self, control: RunControl) -> Frame:
         status = control.status()
-        measurement, run = control.measurement, self._run(control, status)
+        measurement, run = control.measurement, present_run(control, status)
         gate = measurement.gate if measurement is not None else None
         return Frame(
             number=self._ticks,
@@ -304,12 +296,5 @@ class Station:
             loop=self._pacer.statistics(),
             needles=self._needles.read(measurement, status.harmonics),
             trace=self._traces.take(),
-            following=self._following(control, run),
+            following=following(control, run),
         )
-
-    def _run(self, control: RunControl, status: Status) -> RunPlan | None:
-        return next((one for one in control.runs if one.name == status.run), None)
-
-    def _following(self, control: RunControl, run: RunPlan | None) -> tuple[str, ...]:
-        ended = {one.run for one in control.outcomes} | {run.name if run else ""}
-        return tuple(one.name for one in control.runs if one.name not in ended)[:_FOLLOWING]

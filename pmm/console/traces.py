@@ -1,6 +1,7 @@
 """Samples on their way to the screen: tapped beside the recorder, and thinned for the eye."""
 
 from collections.abc import Mapping, Sequence
+from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
@@ -8,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.flags import Flag
+from hardware.rig import Rig
 from hardware.roles import Block, Pulse
 from pmm.console.messages import Trace
 from pmm.recorder.lateness import CycleStatistics
 from pmm.recorder.run_recorder import Outcome
 from pmm.run.journal import Journal
+from pmm.run.sampler import sampled_devices
 
 FloatArray = NDArray[np.float64]
 POINTS: Final = 2000  # of each trace
@@ -80,6 +83,16 @@ class Traces:
         buckets = samples.reshape(len(samples), -1, 2 * self._each)
         places = np.sort(np.stack((buckets.argmin(axis=2), buckets.argmax(axis=2)), axis=2), axis=2)
         return np.take_along_axis(buckets, places, axis=2).reshape(len(samples), -1)
+
+
+def show_idle(rig: Rig, traces: Traces) -> None:
+    """Let the traces go on between runs, and devices not keep their samples for ever."""
+    devices = sampled_devices(rig)
+    rows = accumulate((len(one.channels) for one in devices), initial=0)
+    taken = [(row, one.take()) for row, one in zip(rows, devices, strict=False)]
+    parts = [(row, block) for row, blocks in taken for block in blocks]
+    if parts:
+        traces.add_parts(rig.number, parts)
 
 
 class TappedJournal:

@@ -9,7 +9,8 @@ import { Traces } from "./traces.js";
 
 const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
 const finished = new Finished(), coefficients = new Coefficients();
-let holder = "nobody", latest = null, due = false;
+const FIGURES = 4; // figures change in every fourth frame: nobody reads 25 numbers a second
+let holder = "nobody", latest = null, due = false, shown = false;
 
 function draw() {
   due = false;
@@ -17,13 +18,16 @@ function draw() {
   if (!frame) return;
   traces.mark(frame.opened_s, frame.closed_s);
   traces.draw();
-  readings.show(frame.needles);
+  readings.show(frame.needles, frame.n % FIGURES === 0);
   showState(frame);
-  facts.show(frame);
   alarms.show(frame);
-  showProgress(frame, plans.known);
-  plans.show(frame);
   showButtons(frame);
+  if (frame.n % FIGURES === 0 || !shown) {
+    shown = true;
+    facts.show(frame);
+    showProgress(frame, plans.known);
+    plans.show(frame);
+  }
   showQuestion(frame);
 }
 
@@ -98,6 +102,7 @@ function begin(snapshot) {
   plans.take(snapshot.plans);
   showDesk(snapshot.desk);
   if (snapshot.needles) readings.show(snapshot.needles);
+  shown = false;
   if (snapshot.frame) { latest = snapshot.frame; soon(); }
   document.body.dataset.ready = "yes";
 }

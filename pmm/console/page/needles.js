@@ -31,9 +31,11 @@ class Dial {
     this.root = html("div", { class: `reading ${kind}` }, html("span", {}, name), face, this.value, this.width);
   }
 
-  show(value, width, full) {
-    text(this.value, digits(value, width));
-    text(this.width, plusMinus(width) || " ");
+  show(value, width, full, figures = true) {
+    if (figures) {
+      text(this.value, digits(value, width));
+      text(this.width, plusMinus(width) || " ");
+    }
     const share = value === null ? 0 : Math.max(-1.05, Math.min(1.05, value / full));
     attribute(this.needle, "transform", `rotate(${(share * SWEEP).toFixed(1)} 100 95)`);
     const half = width > 0 ? Math.max(width / full, 0.004) : 0;
@@ -87,16 +89,16 @@ export class Card {
       ...this.dials.map((one) => one.root), this.phasor.root);
   }
 
-  show(row, widths, order, final) {
+  show(row, widths, order, final, figures) {
     const parts = [row[2 * order - 1], row[2 * order]];
     const size = Math.max(...parts.map((one) => Math.abs(one ?? 0)), 1e-9);
     const wanted = nice(size * 1.15);
     if (wanted > this.scale || wanted < this.scale / 4 || order !== this.order) this.scale = wanted;
     this.order = order;
-    this.dials.forEach((dial, k) => dial.show(parts[k], widths[2 * order - 1 + k], this.scale));
+    this.dials.forEach((dial, k) => dial.show(parts[k], widths[2 * order - 1 + k], this.scale, figures));
     this.phasor.show(row, widths, order, nice(Math.max(...row.slice(1).map((one) => Math.abs(one ?? 0)), size) * 1.05));
     attribute(this.root, "data-final", final ? "yes" : "no");
-    text(this.note, `mean ${digits(row[0], widths[0])}  amplitude ${digits(Math.hypot(parts[0] ?? 0, parts[1] ?? 0), Math.max(...widths.slice(1, 3)))}`);
+    if (figures) text(this.note, `mean ${digits(row[0], widths[0])}  amplitude ${digits(Math.hypot(parts[0] ?? 0, parts[1] ?? 0), Math.max(...widths.slice(1, 3)))}`);
   }
 
   clear() {

@@ -44,13 +44,14 @@ export class Readings {
     text(byId("finality"), "no reading");
   }
 
-  show(needles) {
+  // Needles move in every frame; figures only where asked for, and always at the end.
+  show(needles, figures = true) {
     if (!needles) return text(byId("finality"), this.last ? "last reading" : "no reading");
     this.last = needles;
-    for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final);
+    for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final, figures || needles.final);
     text(byId("finality"), needles.final ? "final" : "provisional");
     attribute(byId("finality"), "data-final", needles.final ? "yes" : "no");
-    if (!byId("all-channels").open) return;
+    if (!byId("all-channels").open || !figures) return;
     this.cells.forEach((row, k) => row.forEach((cell, at) =>
       text(cell, `${digits(needles.values[k][at], needles.widths[k][at])} ${plusMinus(needles.widths[k][at])}`)));
   }

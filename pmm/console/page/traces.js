@@ -49,7 +49,7 @@ class Chart {
       cursor: { show: false }, select: { show: false }, legend: { show: false },
       scales: { x: { time: false, range: () => this.ring.window() }, y: { range: () => [this.scale.low, this.scale.high] } },
       axes: [{ ...axis, size: 30 }, { ...axis, size: 64, space: 24, values }],
-      series: [{}, ...members.map((_, at) => ({ stroke: colours[at], width: 1.5, points: { show: false }, spanGaps: false }))],
+      series: [{}, ...members.map((_, at) => ({ stroke: colours[at], width: 1, points: { show: false }, spanGaps: false }))],
       hooks: { drawClear: [(plot) => this.gate(plot)] },
     }, this.data, this.box);
   }
