@@ -46,7 +46,10 @@ def run(folder_name: str, *, with_horizontal: bool = True) -> None:
     _write_plots([shown[1] for shown in campaigns], folder / "plots")
     _write_page(runs, folder / PAGE, pasted("demo", "--output", folder))
     again = pasted("analyse", runs[0].path)
-    for line in (f"plots   {folder / 'plots'}", f"again   {again}", f"{folder / PAGE}"):
+    rig = folder / f"{names[0]}-rig" / "rig.toml"
+    console = pasted("console", rig, "--output", folder / "console")
+    lines = (f"plots   {folder / 'plots'}", f"again   {again}", f"console {console}")
+    for line in (*lines, f"{folder / PAGE}"):
         output().print(line, soft_wrap=True)
 
 
@@ -54,8 +57,10 @@ def _campaign(name: str, folder: Path) -> list[Shown]:
     """Run and analyse one of the plans that come with the package, on the simulated rig."""
     if (folder / CAMPAIGN_FILE).exists():  # an earlier demo's
         shutil.rmtree(folder)
-    with as_file(files("pmm.cli") / "demo_rigs" / name) as rig:
-        work(Request(str(rig / "plan.toml"), (), False, str(folder), False, False, False))
+    rig = folder.with_name(f"{name}-rig")
+    with as_file(files("pmm.cli") / "demo_rigs" / name) as shipped:
+        shutil.copytree(shipped, rig, dirs_exist_ok=True)
+    work(Request(str(rig / "plan.toml"), (), False, str(folder), False, False, False))
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     paths = [one.recording_path(folder) for one in campaign.runs]
     return [
