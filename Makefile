@@ -34,8 +34,9 @@ $(VENV)/.sealed: $(VENV)/.dev
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo
 
+# A file's tests stay together: what they prepare is prepared once.
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check

@@ -4,6 +4,7 @@ import json
 import math
 import time
 import urllib.request
+from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
 from socket import create_server
@@ -122,17 +123,19 @@ class Watcher:
 
     def __init__(self, address: str) -> None:
         self._address = address.rstrip("/")
+        self._held = ExitStack()
 
     def __enter__(self) -> "Watcher":
         from websockets.sync.client import connect
 
         url = self._address.replace("http", "ws") + f"/stream?session={_SESSION}"
-        self._stream = connect(url, origin=self._address, max_size=None)  # type: ignore[arg-type]
+        opened = connect(url, origin=self._address, max_size=None)  # type: ignore[arg-type]
+        self._stream = self._held.enter_context(opened)
         self._stream.recv()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._stream.close()
+        self._held.close()
 
     def start(self, plan: str) -> None:
         """Queue a plan and start it."""

@@ -62,7 +62,7 @@ def test_the_table_has_the_numbers_of_the_json_document(
     table = run("analyse", recording, *options).stdout
     document = json.loads(run("analyse", recording, "--json", *options).stdout)
     printed = re.findall(
-        r"(?:\([^()]* ± [^()]*\)e-?\d+|[-\d.e]+ ± (?:[-\d.e]+|\?)|open(?!:))", table
+        r"(?:\([^()]* ± [^()]*\)e-?\d+|[-\d.e]+ ± (?:[-\d.e]+|\?)|\bopen\b(?!:))", table
     )
     assert len(printed) >= 4 * (1 + 3 * 4)
     assert printed == _values(document)
