@@ -10,8 +10,9 @@ from benchmarks.machine import describe
 from benchmarks.outcome import Outcome, judge
 from benchmarks.page import figure, keep, write_page
 
-# Speed is left out: compiling and timing rivals takes longer than all others together.
-_QUICK = [name for name in NAMES if name != "speed"]
+# Left out: compiling and timing rivals takes longer than all others together, and so does watching
+# browsers in real time, which tests/pmm/console does besides.
+_QUICK = [name for name in NAMES if name not in ("speed", "console")]
 
 
 @pytest.mark.parametrize("name", _QUICK)
