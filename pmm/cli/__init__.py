@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from hardware.description.errors import DataError, PmmError
+from pmm.cli.group import NamingGroup
 
 # Command -> module with a click command of the same name. These modules import nothing heavy at
 # their top, so that ``pmm --help`` can read their help at once.
@@ -30,12 +31,14 @@ _COMMANDS = {
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 
 
-class Commands(click.Group):
+class Commands(NamingGroup):
     """The group of all commands, which turns our errors into messages and exit statuses."""
 
+    names = _COMMANDS
+
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the commands' names."""
-        return sorted(_COMMANDS)
+        """Return the commands' names in the order of the alphabet."""
+        return sorted(self.names)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a command."""
@@ -43,18 +46,6 @@ class Commands(click.Group):
             return None
         command = getattr(import_module(_COMMANDS[name]), name)
         return command if isinstance(command, click.Command) else None
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command that is meant, or say which one may be."""
-        if args[0] not in _COMMANDS and not args[0].startswith("-"):
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], _COMMANDS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"commands: {', '.join(_COMMANDS)}"
-            ctx.fail(f"no command {args[0]!r}; {hint}")
-        return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what it refuses becomes one clear line and an exit status."""

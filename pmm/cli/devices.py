@@ -5,27 +5,16 @@ from typing import Any
 
 import click
 
+from pmm.cli.group import NamingGroup
+
 JOBS = ("scan", "read", "move", "photocell", "gauges", "ports")
 
 
-class Jobs(click.Group):
+class Jobs(NamingGroup):
     """The group of the jobs, in the order in which a rig is put into service."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the jobs' names."""
-        return list(JOBS)
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the job that is meant, or say which one may be."""
-        if args[0] not in JOBS and not args[0].startswith("-"):
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], JOBS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"jobs: {', '.join(JOBS)}"
-            ctx.fail(f"no job {args[0]!r}; {hint}")
-        return super().resolve_command(ctx, args)
+    names = JOBS
+    kind = "job"
 
 
 @click.group(cls=Jobs)

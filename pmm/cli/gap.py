@@ -4,6 +4,8 @@ from importlib import import_module
 
 import click
 
+from pmm.cli.group import NamingGroup
+
 # Job -> module with a click command of the same name; each is imported when it is asked for.
 _JOBS = {
     "add": "pmm.cli.gap_add",
@@ -14,12 +16,11 @@ _JOBS = {
 }
 
 
-class Jobs(click.Group):
+class Jobs(NamingGroup):
     """The group of the jobs."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the jobs' names."""
-        return list(_JOBS)
+    names = _JOBS
+    kind = "job"
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a job."""
@@ -36,18 +37,6 @@ class Jobs(click.Group):
             if args[0].startswith("-") or Path(args[0]).exists():
                 args = ["diagnose", *args]
         return super().parse_args(ctx, args)
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the job that is meant, or say which one may be."""
-        if args[0] not in _JOBS and not args[0].startswith("-"):
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], _JOBS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"jobs: {', '.join(_JOBS)}"
-            ctx.fail(f"no job {args[0]!r}; {hint}")
-        return super().resolve_command(ctx, args)
 
 
 @click.group(cls=Jobs)

@@ -2,27 +2,16 @@
 
 import click
 
+from pmm.cli.group import NamingGroup
+
 ACTIONS = ("check", "show")
 
 
-class Actions(click.Group):
+class Actions(NamingGroup):
     """The group of what can be done with a plan."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the actions' names."""
-        return list(ACTIONS)
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the action that is meant, or say which one may be."""
-        if args[0] not in ACTIONS and not args[0].startswith("-"):
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], ACTIONS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"actions: {', '.join(ACTIONS)}"
-            ctx.fail(f"no action {args[0]!r}; {hint}")
-        return super().resolve_command(ctx, args)
+    names = ACTIONS
+    kind = "action"
 
 
 @click.group(cls=Actions)
