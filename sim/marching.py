@@ -247,15 +247,8 @@ def march(
         _guess(loads, k, unknown, 0)
         if driven:
             _free_shaft(
-                shaft.step,
-                shaft.by_inputs,
-                shaft.to_outputs,
-                shaft.states,
-                torques,
-                k,
-                known,
-                work,
-            )
+                shaft.step, shaft.by_inputs, shaft.to_outputs, shaft.states, torques, k, known, work
+            )  # fmt: skip
             _guess(torques, k, unknown, first)
         else:
             add_struts(struts, k, work, 0)
@@ -270,14 +263,6 @@ def march(
         _keep_model(after, by_loads, struts, states, loads, k, known, unknown)
         if driven:
             _keep_shaft(
-                shaft.by_inputs,
-                shaft.states,
-                torques,
-                shaft.motion,
-                k,
-                known,
-                unknown,
-                first,
-                work,
-            )
+                shaft.by_inputs, shaft.states, torques, shaft.motion, k, known, unknown, first, work
+            )  # fmt: skip
     return -1

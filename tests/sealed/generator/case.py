@@ -76,23 +76,23 @@ class Case:
         return float(np.linalg.norm(self.signature))
 
     @cached_property
-    def library(self) -> Library:
+    def templates(self) -> Library:
         """The catalogue's signatures in this campaign."""
         return Library.of(self.situation, self.projection, self.campaign)
 
     def alone(self, sized: Sized) -> float:
         """Return what is left of one member of a pair, the other and its class taken out, sigma."""
         own = self.projection.left(self.situation.signature(sized.effect, sized.size, sized.drawn))
-        classes = self.library.classes()
+        classes = self.templates.classes()
         rivals = {
             name
             for other in self.content.effects
             if other is not sized
             for name in classes.get(other.effect.name) or [other.effect.name]
         }
-        columns = [i for i, name in enumerate(self.library.names) if name in rivals]
+        columns = [i for i, name in enumerate(self.templates.names) if name in rivals]
         if columns:
-            basis = np.linalg.qr(self.library.units[:, columns])[0]
+            basis = np.linalg.qr(self.templates.units[:, columns])[0]
             own = own - basis @ (basis.T @ own)
         return float(np.linalg.norm(own))
 
@@ -102,7 +102,7 @@ class Case:
         blocks = harmonic_blocks(self.campaign.runs, self.campaign.rig)
         return dict(
             ceiling(
-                self.library, self.signature, self.content.right, self.content.stages, blocks, rng
+                self.templates, self.signature, self.content.right, self.content.stages, blocks, rng
             )
         )
 

@@ -217,10 +217,10 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
     }
     if content.effects and content.verdict != "none":
         absent = {name for answer in content.right for name in answer}
-        near = case.library.imitators(case.signature, sorted(absent))
+        near = case.templates.imitators(case.signature, sorted(absent))
         out["imitators"] = [{"name": name, "cosine": cosine} for name, cosine in near]
         out["angle_deg"] = float(np.degrees(np.arccos(min(near[0][1], 1.0))))
-        out["classes"] = case.library.classes()
+        out["classes"] = case.templates.classes()
         out["ceiling"] = case.reach()
     return out
 
