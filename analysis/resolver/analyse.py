@@ -16,6 +16,8 @@ from analysis.resolver.opening import check_opening, with_own_gate
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.saturation import saturation_flags
 from analysis.resolver.set_point import set_point_flags
+from analysis.resolver.settings import Settings as Settings
+from analysis.resolver.settings import check_settings
 from analysis.resolver.steady import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from analysis.resolver.turning import frequency_flags
@@ -27,37 +29,6 @@ from hardware.description.flags import Flag, Severity
 FloatArray = NDArray[np.float64]
 
 _ENOUGH_STEADY = 3  # periods: a shorter stretch is no stretch
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How to analyse a recording.
-
-    Attributes
-    ----------
-    channels
-        Which channels, in order; if empty, all but the reference's and the shaft angle.
-    gate_periods
-        Periods of each gate; ``None`` takes the whole stretch as one gate.
-    opens_s
-        Open the first gate at this very time instead of finding where the run is steady, or of
-        taking the gate that run control had.
-    periods
-        Number of periods from ``opens_s`` on; all that follow if ``None``.
-    steady_tolerance
-        See :func:`analysis.resolver.steady.find_steady`.
-    hann
-        Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
-    """
-
-    channels: tuple[str, ...] = ()
-    harmonics: int = 3
-    gate_periods: int | None = None
-    opens_s: float | None = None
-    periods: int | None = None
-    steady_tolerance: float = 0.05
-    take_out_drift: bool = True
-    hann: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,7 +72,7 @@ def analyse(
         If the settings contradict each other, or ask for what cannot be: a gate beyond the record
         or longer than the steady stretch, harmonics beyond the sampling.
     """
-    _check(settings)
+    check_settings(settings)
     settings = with_own_gate(recording, settings)
     check_opening(recording, settings)
     reference = choose_reference(recording, choice, settings.opens_s)
@@ -145,15 +116,6 @@ def _default_channels(recording: Recording, reference: PhaseReference) -> tuple[
             f"{recording.name}: no channel is left beside the reference; name the one to resolve"
         )
     return names
-
-
-def _check(settings: Settings) -> None:
-    for name in ("harmonics", "gate_periods", "periods"):
-        value = getattr(settings, name)
-        if value is not None and value < 1:
-            raise ConfigurationError(f"{name} = {value} makes no sense; it must be 1 or more")
-    if settings.periods is not None and settings.opens_s is None:
-        raise ConfigurationError("a number of periods needs the time at which the gate opens")
 
 
 def _edges(recording: Recording, reference: PhaseReference, settings: Settings) -> FloatArray:

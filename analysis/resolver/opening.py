@@ -1,17 +1,14 @@
 """When the gate opens: as asked for, as run control had it, or nowhere in the record."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from analysis.recording import Recording
+from analysis.resolver.settings import Settings
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import ConfigurationError
 
-if TYPE_CHECKING:
-    from analysis.resolver.analyse import Settings
 
-
-def with_own_gate(recording: Recording, settings: "Settings") -> "Settings":
+def with_own_gate(recording: Recording, settings: Settings) -> Settings:
     """Take the gate that run control had, where it closed within the record."""
     told = recording.provenance
     if settings.opens_s is not None or not {GATE_OPENED, GATE_PERIODS} <= set(told):
@@ -25,7 +22,7 @@ def with_own_gate(recording: Recording, settings: "Settings") -> "Settings":
     return replace(settings, opens_s=opened_s, periods=periods)
 
 
-def check_opening(recording: Recording, settings: "Settings") -> None:
+def check_opening(recording: Recording, settings: Settings) -> None:
     """Refuse a gate that cannot open within the record.
 
     Raises

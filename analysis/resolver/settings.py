@@ -1,0 +1,52 @@
+"""How a recording is to be analysed."""
+
+from dataclasses import dataclass
+
+from hardware.description.errors import ConfigurationError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to analyse a recording.
+
+    Attributes
+    ----------
+    channels
+        Which channels, in order; if empty, all but the reference's and the shaft angle.
+    gate_periods
+        Periods of each gate; ``None`` takes the whole stretch as one gate.
+    opens_s
+        Open the first gate at this very time instead of finding where the run is steady, or of
+        taking the gate that run control had.
+    periods
+        Number of periods from ``opens_s`` on; all that follow if ``None``.
+    steady_tolerance
+        See :func:`analysis.resolver.steady.find_steady`.
+    hann
+        Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
+    """
+
+    channels: tuple[str, ...] = ()
+    harmonics: int = 3
+    gate_periods: int | None = None
+    opens_s: float | None = None
+    periods: int | None = None
+    steady_tolerance: float = 0.05
+    take_out_drift: bool = True
+    hann: bool = False
+
+
+def check_settings(settings: Settings) -> None:
+    """Refuse settings that contradict each other.
+
+    Raises
+    ------
+    ConfigurationError
+        If a count is less than one, or a number of periods has no time to begin at.
+    """
+    for name in ("harmonics", "gate_periods", "periods"):
+        value = getattr(settings, name)
+        if value is not None and value < 1:
+            raise ConfigurationError(f"{name} = {value} makes no sense; it must be 1 or more")
+    if settings.periods is not None and settings.opens_s is None:
+        raise ConfigurationError("a number of periods needs the time at which the gate opens")
