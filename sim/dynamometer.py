@@ -1,6 +1,6 @@
 """The dynamometers: what the gauges make of the forces in the struts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -29,7 +29,9 @@ class Gauge:
         beta of a Rayleigh loop: between the extremes F1 and F2 the reading lags by
         (beta/2) (F2 - F)(F - F1), which is (beta/2) (F_m^2 - F^2) between -F_m and F_m.
     zero_drift_n_s
-        Slope of the zero, which is right at time 0.
+        Slope of the zero.
+    zero_drifted_n
+        What it has drifted by before time 0; 0 where the zero is taken then.
     lowest_n, highest_n
         Where the reading stops: a mechanical stop, or an amplifier that saturates.
     """
@@ -40,6 +42,7 @@ class Gauge:
     curvature_1_n: float = 0.0
     hysteresis_1_n: float = 0.0
     zero_drift_n_s: float = 0.0
+    zero_drifted_n: float = 0.0
     lowest_n: float | None = None
     highest_n: float | None = None
 
@@ -56,11 +59,19 @@ class Gauge:
             state, lag = loop(state, true)
             force = force - (self.hysteresis_1_n / 2.0) * lag
         reading = self.gain * force + self.offset_n
-        if self.zero_drift_n_s:
-            reading = reading + self.zero_drift_n_s * block.time_s
+        if self._drifts:
+            reading = reading + (self.zero_drifted_n + self.zero_drift_n_s * block.time_s)
         if self.lowest_n is not None or self.highest_n is not None:
             reading = np.clip(reading, self.lowest_n, self.highest_n)
         return state, reading
+
+    @property
+    def _drifts(self) -> bool:
+        return bool(self.zero_drift_n_s or self.zero_drifted_n)
+
+    def without_drift(self) -> "Gauge":
+        """Return the gauge with a zero that stays where it was taken."""
+        return replace(self, zero_drift_n_s=0.0, zero_drifted_n=0.0) if self._drifts else self
 
 
 @dataclass(frozen=True)
@@ -105,16 +116,10 @@ class Dynamometers:
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the readings; the drift of the zero is left out."""
         steady = Dynamometers(
-            _without_drift(self.aft),
-            _without_drift(self.fore),
+            self.aft.without_drift(),
+            self.fore.without_drift(),
             self.cross_talk_aft,
             self.cross_talk_fore,
         )
         remembers = bool(self.aft.hysteresis_1_n or self.fore.hysteresis_1_n)
         return steady_by_samples(steady, period, inputs, settling=1 if remembers else 0)
-
-
-def _without_drift(gauge: Gauge) -> Gauge:
-    from dataclasses import replace
-
-    return replace(gauge, zero_drift_n_s=0.0) if gauge.zero_drift_n_s else gauge

@@ -18,6 +18,7 @@ from sim.effects.m3_quadratic_gauge import QuadraticGauge
 from sim.effects.m4_gauge_hysteresis import GaugeHysteresis
 from sim.effects.m5_zero_offset import ZeroOffset
 from sim.effects.m6_zero_drift import ZeroDrift
+from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
@@ -100,6 +101,43 @@ def test_drift_in_the_time_domain(set_point: SetPoint, periods: int) -> None:
         for (name, order), value in theory.items()
     ]
     assert np.linalg.norm(gap) < 1e-3 * np.linalg.norm(list(theory.values()))
+
+
+@pytest.mark.parametrize("set_point", SET_POINTS[::11])
+def test_drift_over_a_campaign_in_the_time_domain(set_point: SetPoint) -> None:
+    """The orders as those of the drift within a run; the mean when the run begins, and its growth.
+
+    The window of whole periods from the first pulse, half a period in, is centred half a period
+    and half its length after the run's beginning.
+    """
+    effect, periods = CampaignDrift(2e-3, -1e-3, 600.0), 7
+    theory = effect.signature(Situation.of(VERTICAL, set_point))
+    nominal = in_time(VERTICAL, set_point, periods, 512)
+    changed = in_time(effect.change(VERTICAL, set_point), set_point, periods, 512)
+    middle_s = 0.5 * (1 + periods) / set_point.frequency_hz
+    grown = dict(zip(RECORDED_FORCES, (2e-3 * middle_s, -1e-3 * middle_s), strict=True))
+    for name in RECORDED_FORCES:
+        both = [by_cycles(one, name, periods) for one in (changed, nominal)]
+        found = both[0] - both[1]
+        assert found[0] == pytest.approx(theory[name, 0] + grown[name], rel=1e-9)
+        stated = np.array([theory[name, order] for order in (1, 2, 3)])
+        assert np.linalg.norm(found[1:4] - stated) < 1e-3 * np.linalg.norm(stated)
+
+
+def test_drift_over_a_campaign_in_its_records_at_rest() -> None:
+    """Two zero runs an hour apart read drift times that hour more, to the zero's millisecond."""
+    at_rest = SetPoint(0.5, 0.0)
+    runs = in_order([at_rest] * 4, duration_s=900.0, waiting_s=300.0)
+    effect = CampaignDrift(2e-4, -1e-4)
+    means = []
+    for place in (runs[0], runs[-1]):
+        rig, set_point = switch_on([effect], VERTICAL, at_rest, place)
+        record = in_time(rig, set_point, 5, 128)
+        means.append([record.signals[name].mean() for name in RECORDED_FORCES])
+    np.testing.assert_allclose(np.diff(means, axis=0)[0], [0.72, -0.36], rtol=1e-6)
+    # A zero that is taken before each of them shows none of it.
+    changed = [switch_on([ZeroDrift(2e-4, -1e-4)], VERTICAL, at_rest, run)[0] for run in runs]
+    assert changed[0] == changed[-1]
 
 
 def test_temperature_follows_the_order_of_the_runs() -> None:
