@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -24,6 +24,7 @@ from pmm.console.app_settings import Settings
 from pmm.console.asking import Answers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
+from pmm.console.priority import ADVICE, Priority, before_others, step_back
 from pmm.console.security import LOCAL, Door
 from pmm.console.station import Station
 from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
@@ -198,10 +199,12 @@ def _station(request: Request, rig_file: RigFile, connection: Connection) -> Ite
         RealTime(period_s, time.monotonic, time.sleep), period_s, round(_WINDOW_S / period_s)
     )
     taps, answers = Taps(), Answers()
-    link = Link(connection)
     with ExitStack() as stack:
+        priority = _priority(stack, request.speed)
+        link = Link(connection)
         stack.callback(link.close)
-        executor = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="closing"))
+        closing = ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back)
+        executor = stack.enter_context(closing)
         rig = stack.enter_context(
             Rig(
                 rig_file.hardware,
@@ -217,10 +220,20 @@ def _station(request: Request, rig_file: RigFile, connection: Connection) -> Ite
             rig, rig_file, link, answers, pacer, taps, time.monotonic, _utc,
             {"program": f"pmm {version('pmm')}"}, executor, request.speed,
         )  # fmt: skip
-        link.tell(station.hello())
+        link.tell(replace(station.hello(), priority=str(priority)))
         yield station
         for one in station.close():
             messages().print(one)
+
+
+def _priority(stack: ExitStack, speed: float) -> Priority:
+    """Put the loop first; one that runs faster than the clock would leave nothing to others."""
+    if speed != 1.0:
+        return Priority.ORDINARY
+    found = stack.enter_context(before_others())
+    if found is not Priority.REAL_TIME:
+        messages().print(ADVICE.format(found))
+    return found
 
 
 def _utc() -> str:

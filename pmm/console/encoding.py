@@ -35,6 +35,7 @@ def hello_picture(hello: Hello) -> dict[str, Any]:
         "rig": hello.rig,
         "simulated": hello.simulated,
         "speed": hello.speed,
+        "priority": hello.priority,
         "sample_rate_hz": hello.sample_rate_hz,
         "trace_rate_hz": hello.trace_rate_hz,
         "harmonics": hello.harmonics,

@@ -95,6 +95,8 @@ class Hello:
         Points of a trace per second.
     speed
         How many times as fast as the clock the rig runs; 1 for all that is real.
+    priority
+        Of the loop among the machine's programs, see :mod:`pmm.console.priority`.
     """
 
     rig: str
@@ -105,6 +107,7 @@ class Hello:
     trace_rate_hz: float
     harmonics: int
     speed: float
+    priority: str = "ordinary"
 
 
 @dataclass(frozen=True)
