@@ -4,6 +4,7 @@ import json
 import math
 import time
 import urllib.request
+from collections.abc import Callable
 from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
@@ -154,9 +155,13 @@ class Watcher:
 
     def until(self, rig_s: float) -> None:
         """Wait until the rig's time has come."""
+        self.see(lambda frame: bool(frame["time_s"] >= rig_s))
+
+    def see(self, condition: Callable[[dict[str, Any]], bool]) -> None:
+        """Wait for a frame that shows something."""
         while True:
             message = json.loads(self._stream.recv(timeout=30.0))
-            if message["type"] == "frame" and message["time_s"] >= rig_s:
+            if message["type"] == "frame" and condition(message):
                 return
 
     def _post(self, path: str, body: dict[str, Any]) -> None:
