@@ -71,6 +71,8 @@ class Console:
 
     address: str
     output: Path
+    pid: int
+    said: str = ""  # on its standard error, once it has ended
 
 
 @contextmanager
@@ -85,10 +87,11 @@ def console(rig: Path, output: Path, *options: str) -> Iterator[Console]:
         line = process.stderr.readline()
         found = re.search(r"https?://\S+", line)
         assert found, line + process.stderr.read()
-        yield Console(found.group(), output)
+        one = Console(found.group(), output, process.pid)
+        yield one
         process.send_signal(signal.SIGINT)
-        said = process.communicate(timeout=30)[1]
-        assert process.returncode == 0, said
+        one.said = process.communicate(timeout=30)[1]
+        assert process.returncode == 0, one.said
     finally:
         if process.poll() is None:
             process.kill()
@@ -98,8 +101,11 @@ def console(rig: Path, output: Path, *options: str) -> Iterator[Console]:
 class Browser:
     """A Chromium."""
 
-    def __init__(self, profile: Path, width: int = 1400, height: int = 900) -> None:
+    def __init__(
+        self, profile: Path, width: int = 1400, height: int = 900, *, insecure: bool = False
+    ) -> None:
         options = webdriver.ChromeOptions()
+        options.accept_insecure_certs = insecure
         options.binary_location = str(CHROMIUM)
         for one in ("headless=new", "no-sandbox", "disable-gpu", "disable-background-networking"):
             options.add_argument(f"--{one}")
@@ -161,9 +167,11 @@ class Browser:
 
 
 @contextmanager
-def browser(profile: Path, **size: int) -> Iterator[Browser]:
-    """A browser with a profile of its own."""
-    made = Browser(profile, **size)
+def browser(
+    profile: Path, width: int = 1400, height: int = 900, *, insecure: bool = False
+) -> Iterator[Browser]:
+    """A browser with a profile of its own; an insecure one takes any certificate."""
+    made = Browser(profile, width, height, insecure=insecure)
     try:
         yield made
     finally:

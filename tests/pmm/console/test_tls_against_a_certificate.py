@@ -1,0 +1,128 @@
+"""HTTPS and WSS beyond this machine: another loopback address, a token, a certificate."""
+
+import json
+import ssl
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from http.client import BadStatusLine, HTTPConnection, HTTPSConnection
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+
+from tests.pmm.console import certificates, chromium
+from tests.pmm.console.chromium import browser, console, plan, rig_in
+
+pytestmark = certificates.needed
+HOST = "127.0.0.2"
+TOKEN = "a long and secret token"  # noqa: S105 - the test's own
+SESSION = "0123456789abcdef"
+
+
+@dataclass
+class Remote:
+    """A console that is reached over TLS."""
+
+    address: str
+    trusted: ssl.SSLContext
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        return int(self.address.rstrip("/").rsplit(":", 1)[1])
+
+    @property
+    def origin(self) -> str:
+        """What its own page calls itself."""
+        return self.address.rstrip("/")
+
+    def post(self, path: str, body: object, cookie: str = "") -> tuple[int, str]:
+        """Post as the page does; return the status and the cookie that is given."""
+        given = {"origin": self.origin, "cookie": cookie, "x-pmm-session": SESSION}
+        asking = HTTPSConnection(HOST, self.port, context=self.trusted, timeout=10.0)
+        try:
+            asking.request("POST", path, json.dumps(body), given)
+            answer = asking.getresponse()
+            answer.read()
+            return answer.status, answer.getheader("set-cookie") or ""
+        finally:
+            asking.close()
+
+    def stream(self, cookie: str = "") -> ClientConnection:
+        """Open the stream of frames."""
+        return connect(
+            f"wss://{HOST}:{self.port}/stream?session={SESSION}",
+            ssl=self.trusted,
+            origin=self.origin,  # type: ignore[arg-type]
+            additional_headers={"cookie": cookie},
+            max_size=None,
+        )
+
+
+@contextmanager
+def _remote(folder: Path) -> Iterator[Remote]:
+    certificate, key = certificates.self_signed(folder, HOST)
+    token = folder / "token"
+    token.write_text(TOKEN)
+    options = ("--host", HOST, "--token-file", str(token))
+    options += ("--certificate", str(certificate), "--key", str(key), "--speed", "6")
+    with console(rig_in(folder / "rig"), folder / "out", *options) as one:
+        yield Remote(one.address, ssl.create_default_context(cafile=str(certificate)))
+
+
+def test_token_cookie_and_frames_go_through_tls_alone(tmp_path: Path) -> None:
+    with _remote(tmp_path) as one:
+        assert one.address.startswith(f"https://{HOST}:")
+        quick = {"command": "quick stop"}
+        assert one.post("/api/command", quick)[0] == 401
+        assert one.post("/login", {"token": "a wrong and guessed token"}) == (401, "")
+        with pytest.raises(InvalidStatus) as refused:
+            one.stream()
+        assert refused.value.response.status_code == 403
+        status, given = one.post("/login", {"token": TOKEN})
+        assert status == 200
+        assert "secure" in given.lower()
+        assert "httponly" in given.lower()
+        cookie = given.split(";")[0]
+        assert one.post("/api/command", quick, cookie + "x")[0] == 401
+        with one.stream(cookie) as frames:
+            assert json.loads(frames.recv(timeout=10.0))["type"] == "snapshot"
+            kinds = {json.loads(frames.recv(timeout=10.0))["type"] for _ in range(20)}
+            assert "frame" in kinds
+            assert one.post("/api/plans/queue", {"text": plan("tls")}, cookie)[0] == 200
+
+
+def test_whoever_does_not_know_the_certificate_or_speaks_plainly_gets_nothing(
+    tmp_path: Path,
+) -> None:
+    with _remote(tmp_path) as one:
+        stranger = HTTPSConnection(
+            HOST, one.port, context=ssl.create_default_context(), timeout=10.0
+        )
+        with pytest.raises(ssl.SSLCertVerificationError):
+            stranger.request("GET", "/login")
+        stranger.close()
+        plain = HTTPConnection(HOST, one.port, timeout=10.0)
+        try:
+            plain.request("GET", "/login")
+            with pytest.raises((ConnectionError, BadStatusLine)):
+                plain.getresponse()
+        finally:
+            plain.close()
+
+
+@chromium.needed
+def test_the_page_logs_in_and_draws_over_tls(tmp_path: Path) -> None:
+    with _remote(tmp_path) as one, browser(tmp_path / "profile", insecure=True) as page:
+        page.driver.get(one.address)
+        assert page.driver.current_url == f"{one.address}login"
+        page.find("#token").send_keys("a wrong and guessed token")
+        page.find("#login button").click()
+        page.until(lambda: "not the token" in page.text("#login-said"), "refusal")
+        page.find("#token").clear()
+        page.find("#token").send_keys(TOKEN)
+        page.find("#login button").click()
+        page.until(lambda: page.text("#state-name").endswith("idle"), "console")
+        page.until(lambda: int(page.run("return pmmFrames()")) > 25, "a second's frames")
