@@ -64,6 +64,16 @@ def write_whole(path: Path, text: str) -> None:
     sync_folder(path.parent)
 
 
+def set_aside(path: Path) -> None:
+    """Give a file that cannot be read another name, if it is there: its bytes are kept."""
+    if not path.exists():
+        return
+    number = 1
+    while (other := path.with_name(f"{path.name}.damaged-{number}")).exists():
+        number += 1
+    path.rename(other)
+
+
 def sync_folder(folder: Path) -> None:
     """Bring the names in a folder to the disk, where the system can."""
     if sys.platform == "win32":

@@ -2,16 +2,28 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.raw_log import LogState, look
-from pmm.recorder.files import BUS, MARKER, RECORDING, RECOVERED, SAMPLES, is_run, lock, write_whole
+from pmm.recorder.files import (
+    BUS,
+    MARKER,
+    RECORDING,
+    RECOVERED,
+    SAMPLES,
+    is_run,
+    lock,
+    set_aside,
+    write_whole,
+)
+from pmm.recorder.rebuilding import rebuild
 from pmm.recorder.recording import RunData, convert, read_run
 from pmm.recorder.samples import counts
 
@@ -64,15 +76,22 @@ def runs_in(place: Path) -> tuple[Path, ...]:
     return tuple(found)
 
 
-def recover(folder: Path) -> RecoveredRun:
+def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> RecoveredRun:
     """Make a recording of a run's folder, however the run ended; the same again does nothing.
+
+    Where nothing of the samples' journal is whole, it is decoded again from the raw log.
+
+    Parameters
+    ----------
+    drivers
+        Where the rig's drivers are looked for then; all installed ones by default.
 
     Raises
     ------
     BeingRecordedError
         If a process is recording into it.
     DataError
-        If there is no whole sample in it.
+        If there is no whole sample in it, and none to be decoded.
     DiskFullError
         If there is no room for the recording.
     """
@@ -81,8 +100,11 @@ def recover(folder: Path) -> RecoveredRun:
         log = look(folder / BUS) if (folder / BUS).exists() else LogState(0, 0)
         if (folder / RECORDING).exists() and _readable(folder / RECORDING):
             return _outcome(run, log, _flags_before(folder), was_whole=run.marker is not None)
-        _set_aside(folder / RECORDING)
         flags = _flags(run, log)
+        if run.samples is None:
+            flags += (rebuild(run, drivers),)
+            run = read_run(folder)
+        set_aside(folder / RECORDING)
         convert(run, flags)
         outcome = _outcome(run, log, flags, was_whole=False)
         write_whole(folder / RECOVERED, _text(outcome))
@@ -110,16 +132,6 @@ def _readable(path: Path) -> bool:
         return read_recording(path).sample_count > 0
     except DataError:
         return False
-
-
-def _set_aside(path: Path) -> None:
-    """Give a recording that cannot be read another name."""
-    if not path.exists():
-        return
-    number = 1
-    while (other := path.with_name(f"{path.name}.damaged-{number}")).exists():
-        number += 1
-    path.rename(other)
 
 
 def _flags(run: RunData, log: LogState) -> tuple[Flag, ...]:

@@ -1,8 +1,4 @@
-"""Runs a raw log through the live path again: the same decoding, the same resolver.
-
-The rig is that of the run's own header, on a bus that plays ``bus.blf`` and ports that say the
-lines of ``lines.jsonl`` again. Nothing is sent anywhere.
-"""
+"""Runs a raw log through the live path again: the same decoding, the same resolver."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -14,20 +10,13 @@ import numpy as np
 
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
-from hardware.errors import DriveStateError, HardwareError, TransitionTimeoutError
-from hardware.line_log import LoggedPort
-from hardware.opening import carry_on
-from hardware.pacing import FreeRunning
-from hardware.playback import INTERFACE
-from hardware.rig import Rig
-from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.roles import Pulse
-from hardware.serial_port import PortSettings
-from pmm.recorder.files import BUS, HARMONICS, LINES
-from pmm.recorder.live_path import Gatherer, Taken
+from pmm.recorder.decoding import decode, spread
+from pmm.recorder.files import HARMONICS
+from pmm.recorder.live_path import Taken
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.resolving import largest_difference, resolve_again
-from pmm.recorder.samples import JournalSamples, Piece
+from pmm.recorder.samples import JournalSamples
 
 SAME_READING: Final = 1e-12
 
@@ -97,65 +86,14 @@ def replay(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Replay:
     run = read_run(folder)
     if run.samples is None:
         raise DataError(f"{folder}: holds no whole sample to compare a replay with")
-    if not run.header.rig_tables:
-        raise DataError(
-            f"{folder}: its header does not say what the rig was; nothing can decode it"
-        )
-    tables = dict(run.header.rig_tables)
-    if "bus" in tables:
-        if not (folder / BUS).exists():
-            raise DataError(f"{folder}: {BUS} is missing; without it nothing can be replayed")
-        tables["bus"] = {
-            **tables["bus"],
-            "interface": INTERFACE,
-            "channel": str(folder / BUS),
-            "receive_thread": False,
-            "options": {},
-        }
-    return _compare(run, run.samples, *_played(run, read_rig(tables, drivers)))
-
-
-def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[Taken], list[str]]:
-    """Run the log through a rig; return what each cycle brought, and the faults."""
-    lines: dict[str, list[tuple[int, bytes]]] = {}
-    for cycle, device, text in run.texts[LINES]:
-        lines.setdefault(device, []).append((cycle, text.encode("latin-1")))
-    rigs: list[Rig] = []
-
-    def logged(name: str, _settings: PortSettings) -> LoggedPort:
-        return LoggedPort(lines.get(name, ()), lambda: rigs[0].number)
-
-    taken, faults = [], []
-    with Rig(rig_of, lambda: 0.0, FreeRunning(), lambda _: None, ports=logged) as rig:
-        rigs.append(rig)
-        rig.number = run.header.first_sync - 1
-        carry_on(rig, run.header.opening)
-        path = Gatherer(rig, run.header.first_sync)
-        for _ in range(_cycles(run)):
-            try:
-                rig.cycle()
-            except (DriveStateError, TransitionTimeoutError):
-                pass  # the replayed drives follow the run's commands, not this rig's
-            except HardwareError as error:
-                faults.append(str(error))
-            taken.append(path.step(rig.number))
-        taken.append(path.finish())
-    return taken, faults
-
-
-def _cycles(run: RunData) -> int:
-    """Return how many cycles the run's samples, pulses and lines reach over."""
-    samples = run.samples
-    last = 0 if samples is None else samples.first_sync + samples.sample_count - 1
-    heard = int(run.texts[LINES][-1][0]) if run.texts[LINES] else 0
-    return max(last, heard) - run.header.first_sync + 4
+    return _compare(run, run.samples, *decode(run, drivers))
 
 
 def _compare(
     run: RunData, samples: JournalSamples, taken: list[Taken], faults: list[str]
 ) -> Replay:
     recorded = samples[:, 0 : samples.sample_count]
-    again = _spread([one for each in taken for one in each.samples], recorded, samples.first_sync)
+    again = spread(taken, recorded.shape, samples.first_sync)
     differing = ~((again == recorded) | (np.isnan(again) & np.isnan(recorded)))
     told, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
     return Replay(
@@ -169,13 +107,3 @@ def _compare(
         largest_difference(told, again_read),
         tuple(faults),
     )
-
-
-def _spread(pieces: list[Piece], like: FloatArray, first: int) -> FloatArray:
-    """Put stretches at their places among samples of a shape."""
-    found = np.full(like.shape, np.nan)
-    for start, values in pieces:
-        at = np.arange(start, start + values.shape[1]) - first
-        inside = (at >= 0) & (at < like.shape[1])
-        found[:, at[inside]] = values[:, inside]
-    return found

@@ -1,0 +1,93 @@
+"""Makes a lost journal of samples again out of the raw log, which holds all that it held."""
+
+import os
+from collections.abc import Iterable, Sequence
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import numpy as np
+
+from analysis.recording import FloatArray
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+from pmm.recorder.decoding import decode, spread
+from pmm.recorder.disk import DiskFullError, free_bytes
+from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside, write_whole
+from pmm.recorder.live_path import PATIENCE_CYCLES, Taken
+from pmm.recorder.recording import RunData
+from pmm.recorder.samples import SampleWriter
+from pmm.recorder.texts import as_line
+
+
+def rebuild(run: RunData, drivers: Iterable[EntryPoint] | None = None) -> Flag:
+    """Write ``samples.arrows`` from the raw log, and ``pulses.jsonl`` where that is lost as well.
+
+    The samples are decoded by the same code as in the run, so they are the same bit by bit. A
+    ``samples.arrows`` of which nothing is whole keeps its bytes under another name.
+
+    Raises
+    ------
+    DataError
+        If the raw log holds no sample either, or nothing says how to decode it; nothing is changed.
+    DiskFullError
+        If there is no room for them.
+    ConfigurationError
+        If the run's rig cannot be built, because a driver is not installed for example.
+    """
+    try:
+        taken, _ = decode(run, drivers)
+    except DataError as error:
+        raise DataError(
+            f"{run.folder}: holds no whole sample, and none can be decoded: {error}"
+        ) from error
+    first, values = _joined(run, taken)
+    need = 8 * (values.shape[0] + 1) * values.shape[1]
+    if (free := free_bytes(run.folder)) < need:
+        raise DiskFullError(
+            f"{run.folder / SAMPLES}: needs {need / 1e6:.1f} MB, {free / 1e6:.1f} MB are free; "
+            f"make room, then: pmm recover {run.folder}"
+        )
+    set_aside(run.folder / SAMPLES)
+    _write_samples(run, first, values)
+    lost = [SAMPLES]
+    if not (run.folder / PULSES).exists():
+        _write_pulses(run.folder, taken)
+        lost.append(PULSES)
+    message = f"{' and '.join(lost)} held nothing whole; decoded again from the raw log ({BUS})"
+    return Flag("samples_rebuilt", Severity.WARNING, message)
+
+
+def _joined(run: RunData, taken: Sequence[Taken]) -> tuple[int, FloatArray]:
+    """Return the first SYNC and all samples; at the end, only what every device has delivered."""
+    pieces = [one for each in taken for one in each.samples]
+    first = pieces[0][0] if pieces else 0
+    count = pieces[-1][0] + pieces[-1][1].shape[1] - first if pieces else 0
+    values = spread(taken, (len(run.header.channels), count), first)
+    for _ in range(PATIENCE_CYCLES):
+        if np.isnan(values[:, -1:]).any():
+            values = values[:, :-1]
+    if not values.shape[1]:
+        raise DataError(f"{run.folder}: holds no whole sample, and neither do {BUS} and {LINES}")
+    return first, values
+
+
+def _write_samples(run: RunData, first: int, values: FloatArray) -> None:
+    """Write the stream so that it is there whole or not at all; a SYNC without values is a gap."""
+    writer = SampleWriter(run.header)
+    there = np.flatnonzero(~np.isnan(values).all(axis=0))
+    stretches = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)
+    part = run.folder / f".{SAMPLES}.part"
+    with part.open("wb") as file:
+        file.write(writer.head())
+        file.write(writer.batch([(first + int(at[0]), values[:, at]) for at in stretches]))
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(run.folder / SAMPLES)
+
+
+def _write_pulses(folder: Path, taken: Sequence[Taken]) -> None:
+    lines = []
+    for one in (pulse for each in taken for pulse in each.pulses):
+        angle = None if np.isnan(one.shaft_angle_rad) else one.shaft_angle_rad
+        lines.append(as_line([one.number, one.time_s, angle]).decode())
+    write_whole(folder / PULSES, "".join(lines))
