@@ -20,6 +20,7 @@ from hardware.description.flags import Flag, Severity
 
 FloatArray = NDArray[np.float64]
 
+_WRAP_IN_DEGREES = 50.0  # no shaft turns as far between two samples: radians wrap by 2 pi
 KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep
 
 
@@ -118,10 +119,16 @@ def from_encoder(
     Raises
     ------
     DataError
-        If an angle is missing or the shaft makes less than one turn.
+        If an angle is missing, the shaft makes less than one turn, or degrees were not said.
     """
     if not np.all(np.isfinite(angle_rad)):
         raise NoReferenceError("the shaft angle has missing samples; give another reference")
+    jump = float(np.abs(np.diff(angle_rad)).max(initial=0.0))
+    if jump > _WRAP_IN_DEGREES:
+        raise NoReferenceError(
+            f"units look wrong: the shaft angle jumps by {jump:.4g} rad from one sample to the "
+            "next, which is a turn in degrees; say its unit, as in 'Angle:deg'"
+        )
     turns = np.unwrap(angle_rad) / (2.0 * np.pi)
     flags: tuple[Flag, ...] = ()
     if turns[-1] < turns[0]:

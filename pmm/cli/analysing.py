@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,11 +23,21 @@ from pmm.cli.screen import error_line, messages, output, print_flags, show_progr
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
+    from analysis.plausibility import Seen
     from analysis.readers import ColumnMap
     from analysis.recording import Recording
     from hardware.description.flags import Flag
 
 JSON_SCHEMA = "pmm-analysis-1"
+
+
+@dataclass(frozen=True)
+class Analysed:
+    """A recording's rows, and what the checks across its campaign need of it."""
+
+    source: Source
+    rows: RunRows
+    seen: "Seen | None"
 
 
 @dataclass(frozen=True)
@@ -51,7 +61,7 @@ def run(request: Request) -> None:
     found = find_sources(request.files)
     _check(request, found)
     columns = chosen_columns(request.column_map, request.columns)
-    done: list[RunRows] = []
+    done: list[Analysed] = []
     failed: list[Failure] = []
     # The tables of one run after the other tell how far it is; a document comes at the end.
     sources = show_progress(found.sources, "analysing") if request.as_json else found.sources
@@ -60,13 +70,16 @@ def run(request: Request) -> None:
         if isinstance(one, Failure):
             failed.append(one)
             _report(one)
-        elif request.as_json:
-            done.append(one)
-        else:
-            print_run(output(), one, request.level)
+            continue
+        done.append(one)
+        if not request.as_json:
+            print_run(output(), one.rows, request.level)
+    doubts = list(_doubts(done))
     if request.as_json:
-        text = document(done, failed, found, request.level)
+        text = document([one.rows for one in done], failed, found, request.level, doubts)
         click.echo(json.dumps(text, indent=1, allow_nan=False))
+    else:
+        _print_doubts(doubts)
     for path in found.not_recorded:
         messages().print(f"not recorded yet: {path}")
     if failed:
@@ -115,7 +128,32 @@ def _check_not_there(folder: Path, found: Found) -> None:
         raise ConfigurationError(f"{names}: exists already; --save to another folder")
 
 
-def _try_source(source: Source, request: Request, columns: "ColumnMap | None") -> RunRows | Failure:
+def _doubts(done: "Sequence[Analysed]") -> "Iterator[tuple[Path, tuple[Flag, ...]]]":
+    """Say of each campaign which units and signs look wrong in all its runs."""
+    from analysis.plausibility import plausibility_flags
+
+    sources = {one.source.campaign_path: one.source for one in done}
+    for path, source in sources.items():
+        campaign = source.campaign
+        if path is None or campaign is None:
+            continue
+        seen = [one.seen for one in done if one.source.campaign_path == path and one.seen]
+        oscillator = campaign.oscillator
+        half_spacing_m = oscillator.half_spacing_m if oscillator is not None else None
+        flags = plausibility_flags(seen, campaign.model, half_spacing_m)
+        if flags:
+            yield path, flags
+
+
+def _print_doubts(doubts: "Sequence[tuple[Path, tuple[Flag, ...]]]") -> None:
+    for path, flags in doubts:
+        output().print(f"all runs of {path}", soft_wrap=True)
+        print_flags(output(), flags)
+
+
+def _try_source(
+    source: Source, request: Request, columns: "ColumnMap | None"
+) -> Analysed | Failure:
     """Read and analyse one recording; what the reader noticed is kept whatever happens then."""
     flags: tuple[Flag, ...] = ()
     try:
@@ -131,7 +169,9 @@ def _try_source(source: Source, request: Request, columns: "ColumnMap | None") -
 
 def _analyse_recording(
     recording: "Recording", source: Source, request: Request, columns: "ColumnMap | None"
-) -> RunRows:
+) -> Analysed:
+    from analysis.first_harmonics import seen_in
+
     campaign = source.campaign
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else Settings())
@@ -147,13 +187,14 @@ def _analyse_recording(
         from pmm.report.plots import save_figures
 
         save_figures(analysis, Path(request.plot), source.stem)
-    return run_rows(
+    rows = run_rows(
         analysis,
         file=str(source.path),
         level=request.level,
         vibrations_hz=request.let_through,
         classic=request.classic,
     )
+    return Analysed(source, rows, seen_in(recording, analysis) if campaign else None)
 
 
 def _check_channels(
@@ -195,7 +236,11 @@ def _with_file(failure: Failure) -> str:
 
 
 def document(
-    done: list[RunRows], failed: list[Failure], found: Found, level: float
+    done: list[RunRows],
+    failed: list[Failure],
+    found: Found,
+    level: float,
+    doubts: "Sequence[tuple[Path, tuple[Flag, ...]]]" = (),
 ) -> dict[str, Any]:
     """Return what ``--json`` prints; ``docs/campaigns.md`` describes it."""
     text: dict[str, Any] = _without_nan(
@@ -203,6 +248,9 @@ def document(
             "schema": JSON_SCHEMA,
             "level": level,
             "runs": [asdict(rows) for rows in done],
+            "campaigns": [
+                {"file": str(path), "flags": list(map(asdict, flags))} for path, flags in doubts
+            ],
             "not_recorded": [str(path) for path in found.not_recorded],
             "failed": [
                 {"file": one.file, "message": one.message, "flags": list(map(asdict, one.flags))}

@@ -21,8 +21,8 @@ class Source:
 
     Attributes
     ----------
-    campaign
-        ``None`` for a file of its own.
+    campaign, campaign_path
+        What its campaign file says, and where that lies; ``None`` for a file of its own.
     set_point
         Of the campaign's run; a recording that knows its own keeps that.
     """
@@ -30,6 +30,7 @@ class Source:
     path: Path
     campaign: Campaign | None = None
     set_point: SetPoint | None = None
+    campaign_path: Path | None = None
 
     @property
     def stem(self) -> str:
@@ -93,7 +94,7 @@ def _find_in_campaign(path: Path) -> Found:
         if run.file is None and not recording.exists():
             not_recorded.append(recording)
         else:
-            sources.append(Source(recording, campaign, run.set_point))
+            sources.append(Source(recording, campaign, run.set_point, path))
     if not sources:
         raise DataError(
             f"{path}: none of its {len(campaign.runs)} runs is recorded yet; the first would be "

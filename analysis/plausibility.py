@@ -1,0 +1,226 @@
+"""Whether the recordings of a campaign can be what they say: units and signs, without a simulator.
+
+What is known beforehand is little and sure: the set-points, that a model's force is of the order of
+its inertia's, that both struts move one rigid body, and that the struts put work into the water.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from hardware.description.body import Body
+from hardware.description.channels import (
+    DISPLACEMENT_AFT,
+    DISPLACEMENT_FORE,
+    FORCE_AFT,
+    FORCE_FORE,
+)
+from hardware.description.flags import Flag, Severity
+from hardware.description.setpoint import SetPoint
+
+DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
+FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
+CHECKED: Final = (*DISPLACEMENTS, *FORCES)
+UNITS: Final[Mapping[float, str]] = {
+    1000.0: "values in mm (or mN) that were read as m (or N)",
+    100.0: "values in cm that were read as m",
+    0.001: "values in kN (or m) that were read as N (or mm)",
+    1.0 / 9.80665: "values in kgf that were read as N",
+    9.80665: "values in N that were read as kgf",
+}
+_NEAR: Final = 0.1  # of a unit's factor, in the logarithm
+_STEADY: Final = 0.2  # spread of the logarithm from run to run that a wrong unit leaves
+_PLAUSIBLE: Final = (0.02, 200.0)  # force over that of the model's own inertia
+_TYPICAL: Final = (0.1, 50.0)
+_OPPOSITE_RAD: Final = 2.6
+_MOST: Final = 0.8  # of the runs
+_FEW: Final = 2
+_SIGN: Final = (
+    "if the instrument is mounted so, write sign = -1 (or '-' before its column) for it in "
+    "[columns.channels]"
+)
+_UNIT: Final = "say its unit in [columns.channels], as in 'F1:kN'"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What was found in one run.
+
+    Attributes
+    ----------
+    frequency_hz
+        Mean frequency over the first gate.
+    first
+        First harmonic ``S_1 + i C_1`` of each of :data:`CHECKED` that is there, in SI.
+    """
+
+    run: str
+    set_point: SetPoint
+    frequency_hz: float
+    first: Mapping[str, complex]
+
+
+def plausibility_flags(
+    runs: Sequence[Seen], body: Body | None = None, half_spacing_m: float | None = None
+) -> tuple[Flag, ...]:
+    """Return ``units_implausible`` and ``sign_opposite`` for channels that stand out in all runs.
+
+    Parameters
+    ----------
+    runs
+        Those that oscillate; with fewer than two nothing is said.
+    body, half_spacing_m
+        The model and the struts' distance from its midpoint; without them the forces' unit is
+        judged from one gauge against the other only.
+    """
+    if len(runs) < _FEW:
+        return ()
+    units = (*_of_displacements(runs), *_of_forces(runs, body, half_spacing_m))
+    return (*units, *_of_phase_unit(runs), *_of_strut_signs(runs), *_of_force_signs(runs))
+
+
+def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
+    for name in DISPLACEMENTS:
+        told = [(abs(one.first[name]), one.set_point.eccentricity_m) for one in _with(runs, name)]
+        ratio = _usual([seen / wanted for seen, wanted in told if wanted > 0.0])
+        factor = _unit(ratio)
+        if factor is not None:
+            yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", UNITS[factor])
+
+
+def _of_forces(
+    runs: Sequence[Seen], body: Body | None, half_spacing_m: float | None
+) -> Iterator[Flag]:
+    found: set[str] = set()
+    for name in FORCES if body is not None else ():
+        inertial = [_inertia_n(one.set_point, body, half_spacing_m) for one in _with(runs, name)]
+        seen = [abs(one.first[name]) for one in _with(runs, name)]
+        ratio = _median([a / b for a, b in zip(seen, inertial, strict=True) if b > 0.0])
+        if math.isfinite(ratio) and not _PLAUSIBLE[0] < ratio < _PLAUSIBLE[1]:
+            found.add(name)
+            yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
+    both = [one for one in runs if set(FORCES) <= set(one.first)]
+    ratio = _usual([abs(one.first[FORCES[0]]) / abs(one.first[FORCES[1]]) for one in both])
+    factor = _unit(ratio)
+    if factor is not None and not found:
+        said = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
+        yield _units(FORCES[0], said, f"{UNITS[factor]}, or the reverse in {FORCES[1]}")
+
+
+def _inertia_n(told: SetPoint, body: Body | None, half_spacing_m: float | None) -> float:
+    """Return the amplitude of force on one strut that the body's inertia alone takes."""
+    if body is None:
+        return 0.0
+    translation = abs(math.cos(0.5 * told.strut_phase_rad))
+    rotation = abs(math.sin(0.5 * told.strut_phase_rad))
+    turning = body.inertia_kg_m2 / half_spacing_m**2 if half_spacing_m else body.mass_kg / 4.0
+    effective_kg = 0.5 * math.hypot(body.mass_kg * translation, turning * rotation)
+    return effective_kg * (2.0 * math.pi * told.frequency_hz) ** 2 * told.eccentricity_m
+
+
+def _meant(ratio: float) -> str:
+    for factor, words in UNITS.items():
+        if _TYPICAL[0] < ratio / factor < _TYPICAL[1]:
+            return words
+    return "no unit that is known"
+
+
+def _of_phase_unit(runs: Sequence[Seen]) -> Iterator[Flag]:
+    far = [one for one in runs if abs(one.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
+    if far:
+        told = far[0].set_point.strut_phase_rad
+        message = (
+            f"units look wrong: run {far[0].run} is told a strut phase of {told:g} rad, more than "
+            "a turn; if it is in degrees, write strut_phase_deg"
+        )
+        yield Flag("units_implausible", Severity.WARNING, message)
+
+
+def _of_strut_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
+    """Aft and fore displacement against the strut phase that was set."""
+    aft, fore = DISPLACEMENTS
+    both = [one for one in runs if {aft, fore} <= set(one.first)]
+    turns = [
+        _angle(one.first[fore], one.first[aft] * _turned(one.set_point.strut_phase_rad))
+        for one in both
+    ]
+    if _in_most([abs(turn) > _OPPOSITE_RAD for turn in turns]):
+        yield _opposite(fore, f"it moves against {aft} turned by the set-points' strut phase")
+
+
+def _of_force_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
+    """Each gauge's force per displacement of its strut, which one rigid body makes alike."""
+    aft, fore = FORCES
+    both = [one for one in runs if {aft, fore} <= set(one.first)]
+    apart = [abs(_angle(_stiffness(one, aft), _stiffness(one, fore))) for one in both]
+    if _in_most([turn > _OPPOSITE_RAD for turn in apart]):
+        work = {name: _median([_stiffness(one, name).imag for one in both]) for name in FORCES}
+        wrong = min(work, key=lambda name: work[name])
+        other = fore if wrong == aft else aft
+        yield _opposite(wrong, f"it pushes against {other} in all runs and takes work out")
+        return
+    for name in FORCES:
+        told = [_stiffness(one, name) for one in _with(runs, name)]
+        if _in_most([one.imag < -0.1 * abs(one) for one in told]) and _alone(runs, name):
+            yield _opposite(name, "the water would drive the model")
+
+
+def _alone(runs: Sequence[Seen], name: str) -> bool:
+    """Whether the work of all gauges together is negative: a single one's may well be."""
+    total = [sum(_stiffness(one, each).imag for each in FORCES if each in one.first)
+             for one in _with(runs, name)]  # fmt: skip
+    return _in_most([each < 0.0 for each in total])
+
+
+def _stiffness(one: Seen, force: str) -> complex:
+    """Return force over displacement of its strut, as the set-point has it; N/m."""
+    phase = one.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
+    return one.first[force] / (one.set_point.eccentricity_m * _turned(phase))
+
+
+def _turned(phase_rad: float) -> complex:
+    return complex(math.cos(phase_rad), math.sin(phase_rad))
+
+
+def _angle(one: complex, other: complex) -> float:
+    return float(np.angle(one * other.conjugate()))
+
+
+def _with(runs: Sequence[Seen], name: str) -> list[Seen]:
+    return [one for one in runs if name in one.first]
+
+
+def _in_most(said: Sequence[bool]) -> bool:
+    return len(said) >= _FEW and sum(said) >= _MOST * len(said)
+
+
+def _median(values: Sequence[float]) -> float:
+    return float(np.median(values)) if values else math.nan
+
+
+def _usual(ratios: Sequence[float]) -> float:
+    """Return the middle of ratios that are alike in all runs; NaN where they are not."""
+    positive = [ratio for ratio in ratios if ratio > 0.0 and math.isfinite(ratio)]
+    if len(positive) < _FEW or float(np.ptp(np.log(positive))) > _STEADY:
+        return math.nan
+    return _median(positive)
+
+
+def _unit(ratio: float) -> float | None:
+    if not math.isfinite(ratio):
+        return None
+    near = min(UNITS, key=lambda one: abs(math.log(one / ratio)))
+    return near if abs(math.log(near / ratio)) < _NEAR else None
+
+
+def _units(channel: str, found: str, meant: str) -> Flag:
+    message = f"units look wrong: its first harmonic is {found}: {meant}? Then {_UNIT}"
+    return Flag("units_implausible", Severity.WARNING, message, channel)
+
+
+def _opposite(channel: str, why: str) -> Flag:
+    message = f"its sign is opposite to expectation: {why}; {_SIGN}"
+    return Flag("sign_opposite", Severity.WARNING, message, channel)
