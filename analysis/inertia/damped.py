@@ -12,8 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.inertia.covariance import covariance
 from analysis.inertia.numeric import FloatArray
-from analysis.inertia.projection import Problem, Solution, columns, derivative, iterate, project
+from analysis.inertia.projection import (
+    NEAR_START,
+    Problem,
+    Solution,
+    columns,
+    iterate,
+    project,
+)
 from analysis.inertia.residuals import ResidualDiagnostics, diagnose
 from analysis.inertia.starts import starting_points, thinned
 from hardware.description.errors import DataError
@@ -146,9 +154,10 @@ def fit_damped(
     starts = starting_points(coarse, modes, start_periods_s)
     rough = [iterate(coarse, omega, decay, _ROUGH_ITERATIONS) for omega, decay in starts]
     best = min(rough, key=lambda solution: solution.cost)
+    solution = iterate(coarse, best.omega_rad_s, best.decay_1_s)
     if coarse is not problem:
-        best = iterate(coarse, best.omega_rad_s, best.decay_1_s)
-    solution = iterate(problem, best.omega_rad_s, best.decay_1_s)
+        near = solution.omega_rad_s, solution.decay_1_s
+        solution = iterate(problem, *near, damping=NEAR_START)
     return _finish(problem, solution, start_s, where)
 
 
@@ -202,7 +211,7 @@ def _finish(problem: Problem, solution: Solution, start_s: float, where: str) ->
         modes=modes,
         offset=float(base[0]) if base.size else 0.0,
         trend=float(base[1]) if base.size > 1 else 0.0,
-        covariance=_covariance(problem, omega, decay, matrix, linear, residual, diagnostics),
+        covariance=covariance(problem, omega, decay, matrix, linear, residual, diagnostics),
         diagnostics=diagnostics,
         converged=solution.converged,
         iterations=solution.iterations,
@@ -217,63 +226,6 @@ def _mode(omega: float, decay: float, pair: FloatArray, first_s: float) -> Mode:
     """Turn amplitudes at mid-record into amplitude and phase at the first sample."""
     start = complex(pair[0], -pair[1]) * np.exp((-decay + 1j * omega) * first_s)
     return Mode(2.0 * math.pi / omega, decay, float(abs(start)), float(np.angle(start)))
-
-
-def _covariance(
-    problem: Problem,
-    omega: FloatArray,
-    decay: FloatArray,
-    matrix: FloatArray,
-    linear: FloatArray,
-    residual: FloatArray,
-    diagnostics: ResidualDiagnostics,
-) -> FloatArray:
-    """Covariance of (T, lambda, A, phi) per mode and the base, the residual's colour included."""
-    count, extra = omega.size, problem.base.shape[1]
-    free = Problem(problem.time_s, problem.values, problem.base, damped=True)
-    slope = derivative(free, matrix, linear)
-    parts, inflation = [], []
-    for k in range(count):
-        parts += [slope[:, k], slope[:, count + k], matrix[:, 2 * k], matrix[:, 2 * k + 1]]
-        inflation += [float(diagnostics.mode_inflation[k])] * 4
-    jacobian = np.column_stack([*parts, problem.base])
-    inflation += [diagnostics.offset_inflation] * extra
-    used = np.ones(jacobian.shape[1], dtype=bool)
-    if not problem.damped:
-        used[1 : 4 * count : 4] = False
-    freedom = max(residual.size - int(used.sum()), 1)
-    scale = np.sqrt(np.einsum("ij,ij->j", jacobian, jacobian))
-    scale[scale == 0.0] = 1.0
-    scaled = (jacobian / scale)[:, used]
-    inverse = np.linalg.pinv(scaled.T @ scaled, hermitian=True)
-    widen = np.sqrt(np.array(inflation))[used] / scale[used]
-    small = inverse * np.outer(widen, widen) * float(residual @ residual) / freedom
-    raw = np.zeros((used.size, used.size))
-    raw[np.ix_(used, used)] = small
-    turn = _to_modes(omega, decay, linear, problem.time_s[0], extra)
-    return np.asarray(turn @ raw @ turn.T)
-
-
-def _to_modes(
-    omega: FloatArray, decay: FloatArray, linear: FloatArray, first_s: float, extra: int
-) -> FloatArray:
-    """Derivative of (T, lambda, A, phi, base) by (omega, lambda, a, b, base)."""
-    count = omega.size
-    turn = np.eye(4 * count + extra)
-    for k in range(count):
-        pair = complex(linear[2 * k], -linear[2 * k + 1])
-        growth = np.exp((-decay[k] + 1j * omega[k]) * first_s)
-        start = pair * growth
-        size = max(abs(start), 1e-300)
-        # logarithmic derivatives of the complex amplitude at the first sample
-        by = np.array([1j * first_s, -first_s, growth / start, -1j * growth / start])
-        block = turn[4 * k : 4 * k + 4, 4 * k : 4 * k + 4]
-        block[...] = 0.0
-        block[0, 0] = -2.0 * np.pi / omega[k] ** 2
-        block[1, 1] = 1.0
-        block[2] = size * by.real
-        block[3] = by.imag
-    return turn
 
 
 def _flags(

@@ -5,13 +5,17 @@ linear solve. Only the angular frequencies and the decay rates are iterated, by 
 Marquardt's method with Kaufman's derivative of the projected residual.
 """
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
-from analysis.inertia.numeric import FloatArray
+from analysis.inertia.numeric import FloatArray, inner
 
 MOST_ITERATIONS = 60
+DAMPED_START, NEAR_START = 1e-3, 1e-9  # of the method's own damping: from far off, from close by
 CONVERGED = 1e-13  # relative change of the sum of squares, with a step below 1e-9 of a bin
 
 
@@ -40,6 +44,20 @@ class Problem:
     def span_s(self) -> float:
         """Time from the first to the last sample."""
         return float(self.time_s[-1] - self.time_s[0])
+
+    @cached_property
+    def places(self) -> "NDArray[np.int64] | None":
+        """Each sample's place on the even grid that all lie on; None where there is no such grid.
+
+        Gaps may be in it. A billionth of an interval is allowed: that turns no phase.
+        """
+        t = self.time_s
+        step = float(np.diff(t).min())
+        places = np.rint((t - t[0]) / step).astype(np.int64)
+        if places[-1] > 4 * t.size:
+            return None
+        off = places * (self.span_s / float(places[-1])) + t[0] - t
+        return places if max(off.max(), -off.min()) < 1e-9 * step else None
 
 
 @dataclass(frozen=True)
@@ -70,32 +88,55 @@ def columns(problem: Problem, omega: FloatArray, decay: FloatArray) -> FloatArra
     count = omega.size
     matrix = np.empty((problem.time_s.size, 2 * count + problem.base.shape[1]), order="F")
     for k, (w, rate) in enumerate(zip(omega, decay, strict=True)):
-        wave = np.exp((-rate + 1j * w) * problem.time_s)
+        wave = _wave(problem, complex(-rate, w))
         matrix[:, 2 * k], matrix[:, 2 * k + 1] = wave.real, wave.imag
     matrix[:, 2 * count :] = problem.base
     return matrix
 
 
+def _wave(problem: Problem, exponent: complex) -> NDArray[np.complex128]:
+    """Return ``exp(exponent t)``: on a grid, as products of a coarse one's and a fine one's."""
+    places = problem.places
+    if places is None:
+        return np.asarray(np.exp(exponent * problem.time_s))
+    size = int(places[-1]) + 1
+    step_s = problem.span_s / max(size - 1, 1)
+    fine = math.isqrt(size) + 1
+    within = np.exp(exponent * step_s * np.arange(fine))
+    blocks = step_s * fine * np.arange(-(-size // fine)) + problem.time_s[0]
+    whole = np.multiply.outer(np.exp(exponent * blocks), within).ravel()
+    return np.asarray(whole[:size] if size == places.size else whole[places])
+
+
 def project(problem: Problem, matrix: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the linear parameters, the residual, and the inverse of the columns' Gram matrix."""
-    scale = np.sqrt(np.einsum("ij,ij->j", matrix, matrix))
-    scale[scale == 0.0] = 1.0
-    gram = (matrix.T @ matrix) / np.outer(scale, scale)
-    inverse = np.linalg.pinv(gram, hermitian=True) / np.outer(scale, scale)
+    inverse = inverse_gram(matrix)
     linear = inverse @ (matrix.T @ problem.values)
     return linear, problem.values - matrix @ linear, inverse
+
+
+def inverse_gram(matrix: FloatArray) -> FloatArray:
+    """Return the (pseudo-)inverse of ``matrix^T matrix``, whatever the columns' sizes are."""
+    gram = matrix.T @ matrix
+    scale = np.sqrt(np.diag(gram))
+    scale[scale == 0.0] = 1.0
+    values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
+    kept = values > 1e-15 * values[-1]
+    turned = vectors[:, kept] / scale[:, np.newaxis]
+    return np.asarray((turned / values[kept]) @ turned.T)
 
 
 def derivative(problem: Problem, matrix: FloatArray, linear: FloatArray) -> FloatArray:
     """Return the model's slope in each frequency, then in each decay rate."""
     count = (matrix.shape[1] - problem.base.shape[1]) // 2
-    by_omega, by_decay = [], []
+    slope = np.empty((matrix.shape[0], 2 * count if problem.damped else count), order="F")
     for k in range(count):
         cosine, sine = matrix[:, 2 * k], matrix[:, 2 * k + 1]
         a, b = linear[2 * k], linear[2 * k + 1]
-        by_omega.append(problem.time_s * (b * cosine - a * sine))
-        by_decay.append(-problem.time_s * (a * cosine + b * sine))
-    return np.column_stack(by_omega + (by_decay if problem.damped else []))
+        slope[:, k] = problem.time_s * (b * cosine - a * sine)
+        if problem.damped:
+            slope[:, count + k] = problem.time_s * (-a * cosine - b * sine)
+    return slope
 
 
 def iterate(
@@ -103,26 +144,29 @@ def iterate(
     omega: FloatArray,
     decay: FloatArray,
     most_iterations: int = MOST_ITERATIONS,
+    *,
+    damping: float = DAMPED_START,
 ) -> Solution:
     """Improve periods and decays until the sum of squares stands still.
 
     Frequencies stay above a quarter cycle per record and decay rates within 40 per record, so that
     no column vanishes or overflows.
     """
-    count, damping = omega.size, 1e-3
+    count = omega.size
     place = np.concatenate([omega, decay])
     matrix = columns(problem, place[:count], place[count:])
     linear, residual, inverse = project(problem, matrix)
-    cost, converged, turn = float(residual @ residual), False, 0
+    cost, converged, turn = inner(residual, residual), False, 0
     while turn < most_iterations and not converged and damping < 1e12:
         turn += 1
         slope = derivative(problem, matrix, linear)
-        slope -= matrix @ (inverse @ (matrix.T @ slope))
+        for column in slope.T:  # one by one: see inner
+            column -= matrix @ (inverse @ (matrix.T @ column))
         step = _step(slope, residual, damping)
         trial = _bounded(place, step, count, problem.span_s)
         trial_matrix = columns(problem, trial[:count], trial[count:])
         trial_linear, trial_residual, trial_inverse = project(problem, trial_matrix)
-        trial_cost = float(trial_residual @ trial_residual)
+        trial_cost = inner(trial_residual, trial_residual)
         small = np.abs(trial - place).max() * problem.span_s < 1e-9
         converged = bool(small or abs(cost - trial_cost) <= CONVERGED * cost)
         if trial_cost <= cost:

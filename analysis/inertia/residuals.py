@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
+from analysis.inertia.numeric import FloatArray, inner
 
 _NEAR_BINS = 12  # bins of one cycle per record on either side
 _STRUCTURE_BINS = 3
@@ -59,7 +59,7 @@ def diagnose(
     """
     grid = _on_grid(residual, time_s)
     density = np.abs(np.fft.rfft(grid)) ** 2 / residual.size
-    variance = float(residual @ residual) / residual.size
+    variance = inner(residual, residual) / residual.size
     white = variance if variance > 0.0 else 1.0
     step = float(time_s[-1] - time_s[0]) / max(grid.size - 1, 1)
     bins = np.rint(np.abs(frequency_hz) * step * grid.size).astype(int)
@@ -68,7 +68,7 @@ def diagnose(
     beside = min(
         (_density(density, k, _STRUCTURE_BINS + 1, 4 * _NEAR_BINS) for k in bins), default=1.0
     )
-    neighbours = float(residual[1:] @ residual[:-1]) / (residual.size * white)
+    neighbours = inner(residual[1:], residual[:-1]) / (residual.size * white)
     return ResidualDiagnostics(
         rms=float(np.sqrt(variance)),
         lag1_correlation=neighbours,
@@ -91,6 +91,7 @@ def _on_grid(residual: FloatArray, time_s: FloatArray) -> FloatArray:
 
 def _density(density: FloatArray, centre: int, nearest: int, farthest: int) -> float:
     """Mean density of the bins at these distances on either side."""
-    distance = np.abs(np.arange(density.size) - centre)
-    chosen = density[(distance >= nearest) & (distance <= farthest)]
-    return float(chosen.mean()) if chosen.size else 0.0
+    left = density[max(centre - farthest, 0) : max(centre - nearest + 1, 0)]
+    right = density[max(centre + max(nearest, 1), 0) : centre + farthest + 1]
+    count = left.size + right.size
+    return float(left.sum() + right.sum()) / count if count else 0.0
