@@ -1,4 +1,4 @@
-"""Pages that campaigns' folders hold (report, gap, inertia), shown apart from the console."""
+"""Pages and figures in campaigns' folders (report, gap, inertia), shown apart from the console."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,10 +12,11 @@ _POLICY: Final = (
     "sandbox allow-scripts allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline'; img-src data:; font-src data:"
 )
+_KINDS: Final = (".html", ".svg")
 
 
 class Pages:
-    """Lists and serves the pages.
+    """Lists and serves pages: those of the folders, and of the folders directly in them.
 
     Parameters
     ----------
@@ -27,31 +28,44 @@ class Pages:
 
     def __init__(self, campaigns: Callable[[], list[Path]], beside: Path) -> None:
         self._campaigns, self._beside = campaigns, beside
+        self._numbers: dict[Path, int] = {}
 
     def listed(self) -> list[dict[str, Any]]:
         """Return the pages there are, with their addresses."""
         return [
             {"name": path.name, "folder": folder.name, "address": f"/pages/{number}/{path.name}"}
-            for number, folder in enumerate(self._folders())
+            for folder, number in self._folders().items()
             for path in _pages(folder)
         ]
 
     async def page(self, request: Request) -> Response:
         """Serve one of the pages that are listed; no other file."""
         number, name = request.path_params["folder"], request.path_params["name"]
-        folders = self._folders()
-        found = _pages(folders[number]) if number < len(folders) else []
+        folder = next((one for one, n in self._folders().items() if n == number), None)
+        found = [] if folder is None else _pages(folder)
         path = next((one for one in found if one.name == name), None)
         if path is None:
             return PlainTextResponse("no such page", 404)
         return FileResponse(path, headers={"content-security-policy": _POLICY})
 
-    def _folders(self) -> list[Path]:
-        return list(dict.fromkeys((self._beside, *self._campaigns())))
+    def _folders(self) -> dict[Path, int]:
+        """Return the folders; each keeps its number, so that an address stays good."""
+        for one in (self._beside, *self._campaigns()):
+            for folder in (one, *_within(one)):
+                self._numbers.setdefault(folder, len(self._numbers))
+        return self._numbers
+
+
+def _within(folder: Path) -> list[Path]:
+    return [one for one in _entries(folder) if one.is_dir() and not one.name.startswith(".")]
 
 
 def _pages(folder: Path) -> list[Path]:
+    return [one for one in _entries(folder) if one.suffix in _KINDS and one.is_file()]
+
+
+def _entries(folder: Path) -> list[Path]:
     try:
-        return sorted(one for one in folder.glob("*.html") if one.is_file())
+        return sorted(folder.iterdir())
     except OSError:
         return []

@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +93,7 @@ class Plans:
             name = f"console-{_digest(text)}.toml"
             (self._folder / name).write_text(text, encoding="utf-8")
         found = self._read(self._known(name))
-        require_possible(found.waiting.plan, found.rig)
+        require_possible(found.waiting.plan, found.rig, _today())
         found.waiting.folder.mkdir(parents=True, exist_ok=True)
         keep_sources(found.waiting.plan, found.waiting.folder)
         return found
@@ -128,7 +129,7 @@ class Plans:
         runs = chosen_runs(plan, folder, (), resume=True)
         self._count += 1
         waiting = QueuedPlan(self._count, plan, folder, runs)
-        return CheckedPlan(waiting, rig, check_plan(plan, rig), duration_rows(runs, rig))
+        return CheckedPlan(waiting, rig, check_plan(plan, rig, _today()), duration_rows(runs, rig))
 
 
 def plan_picture(found: CheckedPlan) -> dict[str, Any]:
@@ -173,3 +174,7 @@ def _is_plan(path: Path) -> bool:
 
 def _digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def _today() -> date:
+    return datetime.now(UTC).date()

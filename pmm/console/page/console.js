@@ -10,7 +10,7 @@ import { Traces } from "./traces.js";
 const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
 const finished = new Finished(), coefficients = new Coefficients();
 const FIGURES = 4; // figures change in every fourth frame: nobody reads 25 numbers a second
-let holder = "nobody", latest = null, due = false, shown = false;
+let holder = "nobody", priority = "", latest = null, due = false, shown = false;
 
 function draw() {
   due = false;
@@ -24,7 +24,7 @@ function draw() {
   showButtons(frame);
   if (frame.n % FIGURES === 0 || !shown) {
     shown = true;
-    facts.show(frame);
+    facts.show({ ...frame, priority });
     showProgress(frame, plans.known);
     plans.show(frame);
   }
@@ -91,6 +91,7 @@ function missed({ frames, seconds, happened }) {
 function begin(snapshot) {
   byId("lost").hidden = snapshot.connected;
   if (!snapshot.hello) return;
+  priority = snapshot.hello.priority;
   text(byId("rig"), snapshot.hello.rig + (snapshot.hello.speed === 1 ? "" : `, ${snapshot.hello.speed} times as fast`));
   document.title = `${snapshot.hello.rig}: console`;
   readings.begin(snapshot.hello);
@@ -140,6 +141,12 @@ byId("question").addEventListener("submit", async (event) => {
   const answer = await post(stream, "/api/answer", { question: latest.question, answer: byId("answer").value });
   if (answer.ok) byId("answer").value = "";
   else say(answer.error, true);
+});
+byId("far").addEventListener("click", () => {
+  const far = document.body.dataset.view !== "far";
+  document.body.dataset.view = far ? "far" : "";
+  byId("far").setAttribute("aria-pressed", String(far));
+  scrollTo(0, 0);
 });
 byId("missed-close").addEventListener("click", () => { byId("missed").hidden = true; });
 addEventListener("pmm-theme", () => { if (traces.channels) traces.build(); });

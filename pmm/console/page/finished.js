@@ -1,33 +1,58 @@
 // Finished runs with their harmonics, and coefficients over frequency beside earlier ones.
+import { FORCES } from "./readings.js";
 import { byId, digits, html, nice, plusMinus, svg, text } from "./svg.js";
 
-const FORCES = ["N", "N m"];
 const SIGNS = { complete: "✓", stopped: "■", fault: "▲" };
+const FEW = 4; // gauges that are listed together
+const cell = (value, column) => html("td", column > 1 ? { class: "n" } : {}, value);
+const number = (value, width) => `${digits(value, width)} ${plusMinus(width)}`.trim();
 
 export class Finished {
+  constructor() {
+    this.entries = [];
+    byId("finished-gauge").addEventListener("change", () => this.draw());
+  }
+
   begin(hello, entries) {
     this.channels = hello.channels;
-    byId("finished-table").tBodies[0].replaceChildren();
-    this.count = 0;
-    entries.forEach((one) => this.add(one));
+    this.entries = entries;
+    const gauges = hello.channels.filter((one) => FORCES.includes(one.unit)).map((one) => one.name);
+    const box = byId("finished-gauge"), all = html("option", { value: "" }, "all");
+    const chosen = box.value || (gauges.length > FEW ? gauges[0] : "");
+    box.replaceChildren(all, ...gauges.map((one) => html("option", one === chosen ? { selected: "" } : {}, one)));
+    this.draw();
   }
 
   add(entry) {
-    this.count += 1;
-    text(byId("finished-count"), `${this.count} so far`);
-    const rows = entry.rows.filter((one) => FORCES.includes(one.unit));
-    const needles = entry.needles;
-    const made = (rows.length ? rows : [null]).map((row, k) => {
-      const at = row ? this.channels.findIndex((one) => one.name === row.channel) : -1;
-      const width = row ? Math.max(needles?.widths[at]?.[1] ?? 0, needles?.widths[at]?.[2] ?? 0) || row.half_width : null;
-      const first = k ? ["", ""] : [`${SIGNS[entry.outcome] ?? ""} ${entry.run}`, String(entry.periods)];
-      const still = row && row.in_phase === 0 && row.quadrature === 0;
-      const numbers = !row ? ["", "", "", ""] : [row.channel,
-        still ? `mean ${digits(row.mean, width)}` : digits(row.in_phase, width), still ? "" : digits(row.quadrature, width), plusMinus(width)];
-      return html("tr", { ...(k ? { class: "more" } : {}), "data-run": entry.run, title: `${entry.outcome} ${entry.reason}` },
-        ...[...first, ...numbers].map((one, n) => html("td", n === 1 || n > 2 ? { class: "n" } : {}, one)));
+    this.entries = [...this.entries, entry];
+    this.draw();
+  }
+
+  draw() {
+    text(byId("finished-count"), this.entries.length ? `${this.entries.length} so far` : "none");
+    byId("finished-table").tBodies[0].replaceChildren(...this.entries.toReversed().flatMap((one) => this.rows(one)));
+  }
+
+  // A row for each gauge and harmonic; the run's name stands in the first.
+  rows(entry) {
+    const gauge = byId("finished-gauge").value;
+    const shown = entry.rows.filter((one) => FORCES.includes(one.unit) && (!gauge || one.channel === gauge));
+    const cells = shown.length ? shown.flatMap((one) => this.harmonics(entry, one)) : [["", "", "", ""]];
+    return cells.map((one, k) => {
+      const first = [`${SIGNS[entry.outcome] ?? ""} ${entry.run}`, `${entry.periods} periods`][k] ?? "";
+      const kind = [k ? "more" : "", one[1] > "1" ? "higher" : ""].join(" ").trim();
+      return html("tr", { class: kind, "data-run": entry.run, title: `${entry.outcome} ${entry.reason}` }, ...[first, ...one].map(cell));
     });
-    byId("finished-table").tBodies[0].prepend(...made);
+  }
+
+  harmonics(entry, row) {
+    const at = this.channels.findIndex((one) => one.name === row.channel);
+    const [values, widths] = [entry.needles?.values[at], entry.needles?.widths[at]];
+    if (row.in_phase === 0 && row.quadrature === 0) return [[row.channel, "mean", number(row.mean, row.half_width), ""]];
+    if (!values) return [[row.channel, "1", number(row.in_phase, row.half_width), number(row.quadrature, row.half_width)]];
+    const orders = Array.from({ length: (values.length - 1) / 2 }, (_, k) => k + 1);
+    return orders.filter((n) => n === 1 || values[2 * n] !== null).map((n) =>
+      [n > 1 ? "" : row.channel, String(n), number(values[2 * n - 1], widths[2 * n - 1]), number(values[2 * n], widths[2 * n])]);
   }
 }
 

@@ -17,8 +17,10 @@ export class Plans {
     const [plans, pages] = await Promise.all(["/api/plans", "/api/pages"].map(async (path) => (await fetch(path)).json()));
     const chosen = byId("plan-name").value;
     byId("plan-name").replaceChildren(...plans.names.map((one) => html("option", one === chosen ? { selected: "" } : {}, one)));
-    byId("pages").replaceChildren(...pages.pages.map((one) =>
-      html("a", { href: one.address, target: "_blank", rel: "noopener" }, `${one.folder}: ${one.name.replace(/\.html$/, "")}`)));
+    const links = pages.pages.map((one) =>
+      html("a", { href: one.address, target: "_blank", rel: "noopener" }, `${one.folder}: ${one.name.replace(/\.(html|svg)$/, "")}`));
+    byId("pages-list").replaceChildren(...(links.length ? links : [html("p", { class: "quiet" },
+      "None yet. pmm report, pmm gap --page and pmm inertia --plot write them into a campaign's folder.")]));
   }
 
   async send(what) {

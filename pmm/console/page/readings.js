@@ -1,21 +1,43 @@
-// Cards with needles for the dynamometers, and a table of all channels.
+// Cards with needles for the dynamometers, tiles for those that find no room, a table of all.
 import { Card } from "./needles.js";
 import { attribute, byId, digits, html, plusMinus, text } from "./svg.js";
+import { Tile } from "./tiles.js";
 
-const LARGE = 4;
+const MANY = 8;
+// One screen holds four cards, or two and six tiles, or one and fifteen tiles.
+const room = (gauges) => (gauges <= 4 ? 4 : gauges <= MANY ? 2 : 1);
+export const FORCES = ["N", "N m"];
 
 export class Readings {
   begin(hello) {
     this.order = this.order ?? 1;
     this.channels = hello.channels;
     this.orders = hello.harmonics;
-    const forces = hello.channels.map((one, k) => [one, k]).filter(([one]) => ["N", "N m"].includes(one.unit));
-    this.cards = (forces.length ? forces : hello.channels.map((one, k) => [one, k])).slice(0, LARGE)
-      .map(([one, k]) => ({ k, card: new Card(one, hello.harmonics) }));
-    byId("cards").replaceChildren(...this.cards.map((one) => one.card.root));
+    const all = hello.channels.map((_, k) => k);
+    const forces = all.filter((k) => FORCES.includes(hello.channels[k].unit));
+    this.gauges = forces.length ? forces : all;
+    this.large = (this.large ?? []).filter((k) => this.gauges.includes(k));
+    if (!this.large.length) this.large = this.gauges.slice(0, room(this.gauges.length));
+    this.build();
     this.choices();
     this.table();
     this.clear();
+  }
+
+  build() {
+    this.cards = this.large.map((k) => ({ k, card: new Card(this.channels[k], this.orders) }));
+    this.tiles = this.gauges.filter((k) => !this.large.includes(k))
+      .map((k) => ({ k, tile: new Tile(this.channels[k], () => this.enlarge(k)) }));
+    byId("cards").replaceChildren(...this.cards.map((one) => one.card.root));
+    byId("tiles").replaceChildren(...this.tiles.map((one) => one.tile.root));
+  }
+
+  // A gauge that is chosen comes first; the last of the large ones makes room.
+  enlarge(k) {
+    this.large = [k, ...this.large.slice(0, -1)];
+    this.build();
+    if (this.last) this.show(this.last);
+    else this.clear();
   }
 
   choices() {
@@ -41,14 +63,17 @@ export class Readings {
   clear() {
     this.last = null;
     this.cards.forEach((one) => one.card.clear());
+    this.tiles.forEach((one) => one.tile.clear());
     text(byId("finality"), "no reading");
   }
 
-  // Needles move in every frame; figures only where asked for, and always at the end.
+  // Needles move in every frame; figures and tiles only where asked for, and always at the end.
   show(needles, figures = true) {
     if (!needles) return text(byId("finality"), this.last ? "last reading" : "no reading");
     this.last = needles;
-    for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final, figures || needles.final);
+    const told = figures || needles.final;
+    for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final, told);
+    if (told) for (const { k, tile } of this.tiles) tile.show(needles.values[k], needles.widths[k], this.order, needles.final);
     text(byId("finality"), needles.final ? "final" : "provisional");
     attribute(byId("finality"), "data-final", needles.final ? "yes" : "no");
     if (!byId("all-channels").open || !figures) return;

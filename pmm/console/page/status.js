@@ -42,6 +42,7 @@ function facts(frame) {
   const late = loop.cycles ? `${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)}` : "–";
   found.push(["loop late, 99 %", late]);
   found.push(["late cycles", loop.cycles ? `${loop.late} of the last ${loop.cycles}` : "–"]);
+  if (frame.priority) found.push(["loop priority", frame.priority]);
   found.push(["rig time", `${frame.time_s.toFixed(1)} s`]);
   return found;
 }

@@ -101,7 +101,8 @@ export class Traces {
       const members = this.channels.map((one, k) => (one.unit === unit ? k : -1)).filter((k) => k >= 0);
       for (let k = 0; k < members.length; k += PER_CHART) groups.push(members.slice(k, k + PER_CHART));
     }
-    const height = Math.max(110, Math.min(240, Math.floor((470 - 22 * groups.length) / groups.length)));
+    const [room, most] = innerWidth <= 700 ? [470, 240] : [this.channels.length > PER_CHART ? 640 : 470, 400];
+    const height = Math.max(110, Math.min(most, Math.floor((room - 22 * groups.length) / groups.length)));
     this.charts.forEach((one) => one.plot.destroy());
     this.charts = groups.map((members) => new Chart(this, members, this.channels, height));
     this.width = 0;
