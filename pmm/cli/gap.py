@@ -38,6 +38,18 @@ class Jobs(NamingGroup):
                 args = ["diagnose", *args]
         return super().parse_args(ctx, args)
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the job that is meant; what is none may be a campaign that is not there."""
+        if args[0] not in _JOBS and not args[0].startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(args[0], _JOBS, n=1, cutoff=0.7)
+            hint = f"did you mean the job {near[0]!r}?" if near else f"jobs: {', '.join(_JOBS)}"
+            ctx.fail(f"{args[0]}: no such folder or campaign file; {hint}")
+        return super().resolve_command(ctx, args)
+
 
 @click.group(cls=Jobs)
 def gap() -> None:

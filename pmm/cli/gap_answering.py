@@ -128,21 +128,12 @@ def answer_one(case: Path, target: Path, left_out: tuple[str, ...] = ()) -> str:
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return the answer to a case's folder, with some effects taken out of the catalogue."""
-    from analysis.gap.diagnose import Settings, diagnose
-    from analysis.gap.free import free_numbers
+    from analysis.gap.diagnose import diagnose
     from pmm.gap.answer import answer
-    from pmm.gap.case import read_case
-    from pmm.gap.load import load_campaign
+    from pmm.gap.prepare import prepare
     from sim.effects.catalogue import catalogue
 
-    loaded, case = load_campaign(folder), read_case(folder)
     known = {name: kind for name, kind in catalogue().items() if name not in left_out}
-    settings = Settings(
-        known,
-        case.priors,
-        choices=case.choices(loaded.campaign),
-        reference_channel=loaded.reference_channel,
-    )
-    found = diagnose(loaded.rig, loaded.runs, settings)
-    free = free_numbers(loaded.rig, case.priors)
-    return answer(folder.name, found, case.held_out, free, case.priors)
+    ready = prepare(folder, known)
+    found = diagnose(ready.there.rig, ready.fitted, ready.settings)
+    return answer(folder.name, found, ready.there, ready.case.held_out, ready.case.priors)

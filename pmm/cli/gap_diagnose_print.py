@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from pmm.gap.describing import described
-from pmm.gap.report import GapReport, Ranked
+from pmm.gap.report import GapReport, Ranked, joined
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -66,7 +66,7 @@ def _print_which(console: "Console", report: GapReport) -> None:
     console.print("\nwhich", style="bold")
     table = _table("answer", "stage", "parameters (95 %)", "probability", text=3)
     for one in report.ranking:
-        table.add_row(one.answer, one.stage, _parameters(one), f"{one.probability:.4f}")
+        table.add_row(joined(one.answer), one.stage, _parameters(one), f"{one.probability:.4f}")
     console.print(table)
     for one in report.ranking:
         if one.alike:
@@ -106,9 +106,9 @@ def _print_how_far(console: "Console", report: GapReport) -> None:
         share = f"{100.0 * one.share:.0f} %" if one.before_u > 0.0 else "-"
         table.add_row(one.what, f"{one.before_u:.2f}", f"{one.after_u:.2f}", share, interval)
     console.print(table)
-    table = _table("withheld", "before", "after", "wrong effect", "polynomial")
+    table = _table("withheld", "before", "after", "second best", "polynomial")
     for row in report.regimes[:_SHOWN_REGIMES]:
-        values = (row.before, row.after, row.wrong_effect, row.polynomial)
+        values = (row.before, row.after, row.second_best, row.polynomial)
         table.add_row(row.regime, *(_number(one) for one in values))
     console.print(table)
 

@@ -13,10 +13,12 @@ from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import forecast, further, planned
-from analysis.gap.free import Free
+from analysis.gap.free import Free, free_numbers
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
+from analysis.gap.recentre import Recentred
 from pmm.gap.case import HeldOut
+from pmm.gap.prepare import shares_of
 
 FloatArray = NDArray[np.float64]
 
@@ -29,8 +31,8 @@ _SEED = 20260
 def answer(
     name: str,
     diagnosis: Diagnosis,
+    there: Recentred,
     held_out: Sequence[HeldOut],
-    free: Sequence[Free],
     priors: Priors,
 ) -> dict[str, Any]:
     """Return a diagnosis as a dictionary of numbers and texts.
@@ -39,12 +41,15 @@ def answer(
     ----------
     name
         Of the case.
+    there
+        The rig that the diagnosis began with.
     held_out
         Runs whose outcome is to be foretold.
     """
+    free = free_numbers(there.rig, priors)
     best = None if diagnosis.best is None else diagnosis.best.fit
     foretold = _Foretold(diagnosis.problem, best, held_out, free, priors)
-    shares = diagnosis.probabilities.by_answer
+    shares = shares_of(diagnosis, there)
     found: dict[str, Any] = {
         "schema": SCHEMA,
         "case": name,

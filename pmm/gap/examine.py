@@ -1,6 +1,6 @@
 """A campaign's folder examined: what can be used, the diagnosis, and its controls."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
+from analysis.gap.diagnose import Diagnosis, diagnose
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
@@ -17,22 +17,14 @@ from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
 from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
-from analysis.gap.quality import doubts, judged
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
 from analysis.gap.withheld import Predicted, predict_withheld
-from hardware.description.errors import ConfigurationError, DataError
-from pmm.campaign import CAMPAIGN_FILE, Campaign
-from pmm.campaign_file import read_campaign
-from pmm.gap.case import Case, read_case
-from pmm.gap.hold_out import held_out_runs
-from pmm.gap.load import Loaded, load_campaign
+from hardware.description.errors import ConfigurationError
+from pmm.campaign import Campaign
+from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
 from sim.effects.catalogue import catalogue, find, user_effects
 from sim.effects.effect import Effect
-
-_FEWEST = 3  # runs
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -79,26 +71,40 @@ class Judged:
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """Everything about a campaign.
+    """Everything about a campaign."""
 
-    Attributes
-    ----------
-    left_out
-        Runs that were not used, by name, with the reason.
-    held_out
-        Names of the runs that the user withheld.
-    """
-
-    folder: Path
-    campaign: Campaign
-    left_out: Mapping[str, str]
-    held_out: tuple[str, ...]
-    recentred: Recentred
+    ready: Prepared
     free: tuple[Free, ...]
     diagnosis: Diagnosis
     judged: Judged
     description: Description | None
     catalogue: Mapping[str, type[Effect]]
+
+    @property
+    def campaign(self) -> Campaign:
+        """The campaign as its file describes it."""
+        return self.ready.campaign
+
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """Runs that were not used, by name, with the reason."""
+        return self.ready.left_out
+
+    @property
+    def held_out(self) -> tuple[str, ...]:
+        """Names of the runs that the user withheld, and that could be used."""
+        return tuple(run.name for run in self.ready.withheld)
+
+    @property
+    def recentred(self) -> Recentred:
+        """The rig about which the diagnosis went on."""
+        return self.ready.there
+
+    @property
+    def shares(self) -> Mapping[str, float]:
+        """Probabilities of the answers, most probable first."""
+        found = shares_of(self.diagnosis, self.recentred)
+        return dict(sorted(found.items(), key=lambda pair: -pair[1]))
 
 
 def examine(
@@ -116,36 +122,18 @@ def examine(
     DataError
         If fewer than three runs can be used, or a channel is in other units in all of them.
     """
-    file = folder / CAMPAIGN_FILE if folder.is_dir() else folder
-    folder = file.parent
     known, more = chosen_effects(options)
-    campaign, case = read_campaign(file), read_case(folder)
-    held_out = held_out_runs(campaign, options.hold_out)
-    on = campaign.effects_on(more)
-    progress("reading")
-    loaded = load_campaign(file, (), lambda name: progress(f"reading {name}"), options.sensors)
-    there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
-    if len(fitted) < _FEWEST:
-        why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
-        raise DataError(f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}{why}")
-    settings = Settings(
-        known,
-        case.priors,
-        on=on,
-        choices=case.choices(campaign),
-        reference_channel=loaded.reference_channel,
-    )
-    found = diagnose(there.rig, fitted, settings, executor, progress)
+    ready = prepare(folder, known, more, options.sensors, options.hold_out, progress)
+    there, priors = ready.there, ready.case.priors
+    found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
-    free = free_numbers(there.rig, case.priors)
-    judgement = _judged(found, fitted, withheld, free, case.priors)
+    free = free_numbers(there.rig, priors)
+    judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
     residual = found.problem.residual
     if found.best is not None:
         residual = residual - found.best.fit.signature
     described = describe(found.problem, residual)
-    return Examined(
-        folder, campaign, left_out, held_out, there, free, found, judgement, described, known
-    )
+    return Examined(ready, free, found, judgement, described, known)
 
 
 def chosen_effects(options: Options) -> tuple[dict[str, type[Effect]], dict[str, type[Effect]]]:
@@ -169,30 +157,6 @@ def chosen_effects(options: Options) -> tuple[dict[str, type[Effect]], dict[str,
     if not left:
         raise ConfigurationError("--effects and --without leave no effect to consider")
     return left, more
-
-
-def _sorted(
-    loaded: Loaded, case: Case, on: Sequence[Effect], held_out: Sequence[str], file: Path
-) -> tuple[Recentred, list[GapRun], list[GapRun], dict[str, str]]:
-    """Return the rig to begin with, the runs to fit and those withheld, and what is left out."""
-    fitted = [run for run in loaded.runs if run.name not in held_out]
-    withheld = [run for run in loaded.runs if run.name in held_out]
-    reference = loaded.reference_channel
-    there, found = judged(loaded.rig, fitted, case.priors, on, reference)
-    if withheld:
-        names = {run.name for run in withheld}
-        every = doubts(there.rig, loaded.runs, on, reference)
-        found = (*found, *(one for one in every if one.run in names))
-    for one in found:
-        if not one.run:
-            raise DataError(f"{file}: {one.channel}: {one.reason}")
-    bad = {one.run: f"{one.channel}: {one.reason}".removeprefix(": ") for one in found}
-    return (
-        there,
-        [run for run in fitted if run.name not in bad],
-        [run for run in withheld if run.name not in bad],
-        {**loaded.left_out, **bad},
-    )
 
 
 def _judged(

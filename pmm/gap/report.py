@@ -65,7 +65,7 @@ class RegimeRow:
     regime: str
     before: float
     after: float
-    wrong_effect: float
+    second_best: float
     polynomial: float
 
 
@@ -150,15 +150,12 @@ def gap_report(examined: Examined) -> GapReport:
 
 
 def _verdict(examined: Examined) -> str:
-    best = examined.diagnosis.probabilities.best
-    if best == NONE and examined.recentred.units:
-        return COEFFICIENTS
+    best = next(iter(examined.shares))
     return best if best in (NONE, COEFFICIENTS, UNKNOWN) else "effect"
 
 
 def _sentence(examined: Examined, verdict: str) -> str:
-    found = examined.diagnosis
-    shares = found.probabilities.by_answer
+    found, shares = examined.diagnosis, examined.shares
     if verdict == NONE:
         return f"no gap beyond u, probability {shares[NONE]:.2f}"
     if verdict == COEFFICIENTS:
@@ -167,16 +164,17 @@ def _sentence(examined: Examined, verdict: str) -> str:
         stage = max(found.stages, key=lambda name: found.stages[name], default="")
         said = f"something that the catalogue does not have, probability {shares[UNKNOWN]:.2f}"
         near = found.best
-        like = "" if near is None else f"; nearest, but not it: {_joined(answer_of(near.fit))}"
+        like = "" if near is None else f"; nearest, but not it: {joined(answer_of(near.fit))}"
         return f"{said}; most likely in {stage}{like}"
-    best = found.probabilities.best
+    best = next(iter(shares))
     alike = sorted({name for members in found.classes.values() for name, _ in members})
     others = f" or {', '.join(alike)}, which these runs cannot tell from it;" if alike else ";"
     share = shares[best] + sum(shares.get(name, 0.0) for name in alike)
-    return f"{_joined(best)}{others} probability {share:.2f}; or whatever has its signature"
+    return f"{joined(best)}{others} probability {share:.2f}; or whatever has its signature"
 
 
-def _joined(answer: str) -> str:
+def joined(answer: str) -> str:
+    """Return an answer as people read it: the effects of a pair with "and" between them."""
     return " and ".join(answer.split("+"))
 
 
@@ -189,7 +187,7 @@ def _notes(examined: Examined) -> Iterator[str]:
     best = examined.diagnosis.best
     if best is not None and best.remainder > 0.2:
         yield (
-            f"{_joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
+            f"{joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
             "unexplained: its form is not quite that of the catalogue"
         )
 
@@ -199,14 +197,14 @@ def _ranking(examined: Examined) -> Iterator[Ranked]:
     fits: dict[str, Fit] = {}
     for one in (*found.weighed.singles, *found.weighed.pairs):
         fits.setdefault(answer_of(one.fit), one.fit)
-    shares = found.probabilities.by_answer
-    ranked = sorted(shares, key=lambda name: -shares[name])
+    shares = examined.shares
+    ranked = list(shares)
     kept = [
         name for number, name in enumerate(ranked[:_SHOWN]) if number < 3 or shares[name] > _LEAST
     ]
     for name in kept:
         fit = fits.get(name)
-        alike = dict(found.classes.get(name, ())) if name == found.probabilities.best else {}
+        alike = dict(found.classes.get(name, ())) if name == ranked[0] else {}
         stage = "" if fit is None else " and ".join(
             dict.fromkeys(one.kind.stage.value for one in fit.candidates)
         )  # fmt: skip
@@ -219,9 +217,9 @@ def _controls(examined: Examined) -> Iterator[ControlRow]:
     found, judged = examined.diagnosis, examined.judged
     rows: list[tuple[str, Sequence[Predicted]]] = []
     if found.best is not None:
-        rows.append((_joined(answer_of(found.best.fit)), judged.cured))
+        rows.append((joined(answer_of(found.best.fit)), judged.cured))
     if found.rival is not None:
-        rows.append((f"wrong effect: {_joined(answer_of(found.rival.fit))}", judged.rival))
+        rows.append((f"second best: {joined(answer_of(found.rival.fit))}", judged.rival))
     rows.append(("free polynomial", judged.free_form))
     for what, after in rows:
         if judged.plain and after:

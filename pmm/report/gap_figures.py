@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from analysis.gap.description import ForceMap
 from analysis.gap.where import FORCE, MOTION, SHAFT, TIMING
 from pmm.gap.cells import Cell
-from pmm.gap.report import GapReport
+from pmm.gap.report import GapReport, joined
 from pmm.report.labels import plain
 from pmm.report.style import PALETTE, TRACE, drawing
 
@@ -143,7 +143,7 @@ def ranking_figure(report: GapReport) -> "Figure":
             colour = _AFTER if one.answer in alike else "#B8BEC4"
             axes.barh(at, one.probability, color=colour, height=0.7)
             axes.text(one.probability + 0.01, at, f"{one.probability:.3f}", va="center")
-        axes.set_yticks(range(len(shown)), [plain(one.answer) for one in shown])
+        axes.set_yticks(range(len(shown)), [plain(joined(one.answer)) for one in shown])
         axes.invert_yaxis()
         axes.set_xlim(0.0, 1.12)
         axes.set_xlabel("probability; in blue what these runs cannot tell from the first")
@@ -157,7 +157,7 @@ def withheld_figure(report: GapReport) -> "Figure":
     marks = {
         "as it is": ("before", "o", _BEFORE),
         "best answer": ("after", "s", _AFTER),
-        "wrong effect": ("wrong_effect", "^", PALETTE[3]),
+        "second best": ("second_best", "^", PALETTE[3]),
         "free polynomial": ("polynomial", "D", PALETTE[4]),
     }
     with drawing():

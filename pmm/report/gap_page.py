@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from pmm.gap.describing import described
-from pmm.gap.report import GapReport, Ranked
+from pmm.gap.report import GapReport, Ranked, joined
 from pmm.report import gap_figures as figures
 from pmm.report.inline import inline_svg
 from pmm.report.page import write_template
@@ -108,7 +108,13 @@ def _where(report: GapReport) -> _Part:
 
 def _which(report: GapReport) -> _Part:
     rows = tuple(
-        (one.answer, one.stage, _parameters(one), ", ".join(one.alike), f"{one.probability:.4f}")
+        (
+            joined(one.answer),
+            one.stage,
+            _parameters(one),
+            ", ".join(one.alike),
+            f"{one.probability:.4f}",
+        )
         for one in report.ranking
     )
     headings = ("answer", "stage", "parameters (95 %)", "cannot be told from", "probability")

@@ -127,6 +127,19 @@ def test_misspelt_names_get_the_nearest() -> None:
     assert "heave-0.50-20" in found.stderr
 
 
+def test_a_folder_that_is_not_there_is_said() -> None:
+    found = run("gap", "nowhere")
+    assert found.exit_code == 2
+    assert "nowhere: no such folder or campaign file; jobs: add, answer" in found.stderr
+    found = run("gap", "pendulm")
+    assert "pendulm: no such folder or campaign file; did you mean the job 'pendulum'?" in (
+        found.stderr
+    )
+    found = run("gap", "diagnose", "nowhere")
+    assert found.exit_code == 2
+    assert "nowhere: no such folder or campaign file" in found.stderr
+
+
 def test_a_campaign_without_recordings_says_so() -> None:
     found = run("gap", str(HOUSE / "examples" / "gap"), "--effects", "coulomb-friction")
     assert found.exit_code == 1

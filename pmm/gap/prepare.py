@@ -1,0 +1,154 @@
+"""From a campaign's folder to what is diagnosed: the same for one campaign and for a board."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Final
+
+from analysis.gap.components import GapRun
+from analysis.gap.diagnose import Diagnosis, Settings
+from analysis.gap.observe import COMPARED
+from analysis.gap.quality import doubts, judged
+from analysis.gap.recentre import Recentred
+from analysis.gap.verdict import COEFFICIENTS, NONE
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign_file import read_campaign
+from pmm.gap.case import Case, read_case
+from pmm.gap.hold_out import held_out_runs
+from pmm.gap.load import Loaded, load_campaign
+from sim.effects.effect import Effect
+
+PHOTOCELL: Final = "photocell"
+SENSORS: Final = (PHOTOCELL, *COMPARED)  # what the diagnosis looks at
+_FEWEST: Final = 3  # runs
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A campaign, read, observed and judged.
+
+    Attributes
+    ----------
+    left_out
+        Runs that are not used, by name, with the reason.
+    there
+        The rig to begin with: moved to the coefficients that fit where the stated ones are far off.
+    fitted, withheld
+        The runs to fit, and those that nobody looks at until the end.
+    """
+
+    campaign: Campaign
+    case: Case
+    left_out: Mapping[str, str]
+    there: Recentred
+    fitted: tuple[GapRun, ...]
+    withheld: tuple[GapRun, ...]
+    settings: Settings
+
+
+def prepare(
+    folder: Path,
+    known: Mapping[str, type[Effect]],
+    more: Mapping[str, type[Effect]] | None = None,
+    sensors: Sequence[str] = (),
+    hold_out: Sequence[str] = (),
+    progress: Progress = lambda _: None,
+) -> Prepared:
+    """Read a campaign and say what of it can be used, and where the diagnosis begins.
+
+    Parameters
+    ----------
+    known
+        Effects to consider, by name.
+    more
+        Effects of the user's own, which the campaign may have switched on.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign, the case or a name is wrong.
+    DataError
+        If fewer than three runs can be used, or a channel is in other units in all of them.
+    """
+    file = campaign_file(folder)
+    _check_sensors(sensors)
+    campaign, case = read_campaign(file), read_case(file.parent)
+    held_out = held_out_runs(campaign, hold_out)
+    on = campaign.effects_on(more or {})
+    progress("reading")
+    loaded = load_campaign(file, (), lambda name: progress(f"reading {name}"), sensors)
+    progress("looking for recordings that cannot be right")
+    there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
+    if len(fitted) < _FEWEST:
+        why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
+        raise DataError(f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}{why}")
+    settings = Settings(
+        known,
+        case.priors,
+        on=tuple(on),
+        choices=case.choices(campaign),
+        reference_channel=loaded.reference_channel,
+    )
+    return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings)
+
+
+def campaign_file(folder: Path) -> Path:
+    """Return the campaign file of a folder, or the file itself.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is nothing of that name.
+    """
+    if not folder.exists():
+        raise ConfigurationError(f"{folder}: no such folder or campaign file")
+    return folder / CAMPAIGN_FILE if folder.is_dir() else folder
+
+
+def _check_sensors(sensors: Sequence[str]) -> None:
+    for name in sensors:
+        if name not in SENSORS:
+            near = get_close_matches(name, SENSORS, n=1, cutoff=0.4)
+            hint = f"did you mean {near[0]!r}?" if near else f"channels: {', '.join(SENSORS)}"
+            raise ConfigurationError(f"--sensors: no channel {name!r}; {hint}")
+
+
+def shares_of(found: Diagnosis, there: Recentred) -> Mapping[str, float]:
+    """Return the answers' probabilities; about a rig that was moved, "none" is "coefficients".
+
+    Where nothing differs from the moved rig, the coefficients by which it was moved are what
+    differs from the stated one.
+    """
+    shares = dict(found.probabilities.by_answer)
+    if there.units:
+        shares[COEFFICIENTS] = shares.get(COEFFICIENTS, 0.0) + shares[NONE]
+        shares[NONE] = 0.0
+    return shares
+
+
+def _sorted(
+    loaded: Loaded, case: Case, on: Sequence[Effect], held_out: Sequence[str], file: Path
+) -> tuple[Recentred, list[GapRun], list[GapRun], dict[str, str]]:
+    """Return the rig to begin with, the runs to fit and those withheld, and what is left out."""
+    fitted = [run for run in loaded.runs if run.name not in held_out]
+    withheld = [run for run in loaded.runs if run.name in held_out]
+    reference = loaded.reference_channel
+    there, found = judged(loaded.rig, fitted, case.priors, on, reference)
+    if withheld:
+        names = {run.name for run in withheld}
+        every = doubts(there.rig, loaded.runs, on, reference)
+        found = (*found, *(one for one in every if one.run in names))
+    for one in found:
+        if not one.run:
+            raise DataError(f"{file}: {one.channel}: {one.reason}")
+    bad = {one.run: f"{one.channel}: {one.reason}".removeprefix(": ") for one in found}
+    return (
+        there,
+        [run for run in fitted if run.name not in bad],
+        [run for run in withheld if run.name not in bad],
+        {**loaded.left_out, **bad},
+    )

@@ -1,0 +1,132 @@
+"""Campaigns as labs hand them over: what is missing or wrong is said, and the cause still named."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+from tests.pmm.gap.rigs import FEW, FRICTION_N, RUNS, changed, made, rewritten, run, with_friction
+
+ADDING = Path(__file__).parents[3] / "docs" / "adding-an-effect.md"
+STRUTS = "displacement_aft,displacement_fore"
+FORCES = "force_aft,force_fore"
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return with_friction(tmp_path_factory.mktemp("poor"))
+
+
+def found(campaign: Path, *options: str | Path) -> dict[str, Any]:
+    """Return what the command finds, as a document."""
+    done = run("gap", campaign, *FEW, "--json", *options)
+    assert done.exit_code == 0, done.output
+    document: dict[str, Any] = json.loads(done.stdout)
+    return document
+
+
+def friction(document: dict[str, Any]) -> float:
+    """Return the friction that the most probable answer names, and only it."""
+    assert document["verdict"] == "effect"
+    (effect,) = document["ranking"][0]["effects"]
+    assert effect["name"] == "coulomb-friction"
+    return float(effect["parameters"]["friction_n"]["value"])
+
+
+@pytest.mark.parametrize(
+    "sensors",
+    [
+        f"photocell,{STRUTS},{FORCES}",
+        f"photocell,shaft_angle,{FORCES}",
+        f"{STRUTS},{FORCES}",
+        "photocell,force_fore",
+    ],
+    ids=["no encoder", "no strut sensors", "no photocell", "one force"],
+)
+def test_fewer_sensors(rig: Path, sensors: str) -> None:
+    document = found(rig, "--sensors", sensors)
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+    seen = {one["channel"] for one in document["cells"]} - {""}
+    assert seen <= set(sensors.split(","))
+
+
+def test_a_sensor_that_nobody_has_is_refused(rig: Path) -> None:
+    done = run("gap", rig, *FEW, "--sensors", "force_aft,force_for")
+    assert done.exit_code == 2
+    assert "--sensors: no channel 'force_for'; did you mean 'force_fore'?" in done.stderr
+
+
+def test_one_amplitude(rig: Path, tmp_path: Path) -> None:
+    """The law in amplitude is hidden; friction is named by its harmonics."""
+    _, *runs = (rig / "campaign.toml").read_text().split("[[runs]]")
+    (small,) = [one for one in runs if "heave-0.80-10" in one]
+    campaign = rewritten(rig, tmp_path, "[[runs]]" + small, "")
+    assert friction(found(campaign)) == pytest.approx(FRICTION_N, rel=0.05)
+
+
+def test_runs_without_recording(rig: Path, tmp_path: Path) -> None:
+    campaign = rewritten(rig, tmp_path, "", "")
+    (campaign / "heave-1.10-20.nc").unlink()
+    document = found(campaign)
+    assert list(document["left_out"]) == ["heave-1.10-20"]
+    assert "heave-1.10-20.nc" in document["left_out"]["heave-1.10-20"]
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+    for name in RUNS[:2]:
+        (campaign / f"{name}.nc").unlink()
+    done = run("gap", campaign, *FEW)
+    assert done.exit_code == 1
+    assert "2 runs to fit, a diagnosis needs 3" in done.stderr
+
+
+def in_kilonewtons(record: xr.Dataset) -> xr.Dataset:
+    return record.assign(force_aft=record["force_aft"].copy(data=record["force_aft"].values / 1e3))
+
+
+def with_the_wrong_sign(record: xr.Dataset) -> xr.Dataset:
+    return record.assign(force_fore=record["force_fore"].copy(data=-record["force_fore"].values))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (in_kilonewtons, r"force_aft: 0\.001 times as large as the other runs let expect: .*kN"),
+        (with_the_wrong_sign, "force_fore: its sign is the opposite of the other runs'"),
+    ],
+)
+def test_one_bad_run(rig: Path, tmp_path: Path, change: Any, said: str) -> None:
+    document = found(changed(rig, tmp_path, RUNS[1], change))
+    assert list(document["left_out"]) == [RUNS[1]]
+    assert re.search(said, document["left_out"][RUNS[1]])
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+
+
+def test_nominal_model_far_off(rig: Path, tmp_path: Path) -> None:
+    """45 kg of added mass stated where there are 75, in a tolerance of 20 %."""
+    campaign = rewritten(rig, tmp_path, "[[75.0, 3.0]", "[[45.0, 3.0]")
+    document = found(campaign)
+    assert "the stated model is far off (a11 +30" in document["notes"][0]
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+    (added,) = [one for one in document["coefficients"] if one["name"] == "a11"]
+    assert added["stated"] == pytest.approx(45.0)
+    assert added["with_effect"] == pytest.approx(75.0, rel=0.01)
+
+
+def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
+    (example,) = re.findall(
+        r"^```python\n(.*?)^```", ADDING.read_text(), flags=re.MULTILINE | re.DOTALL
+    )
+    own = tmp_path / "rubber_boot.py"
+    own.write_text(example)
+    effect = ("--effect", "rubber-boot:stiffening_n_m2=6000", "--effects-file", own)
+    rig = made(tmp_path, *effect)
+    document = found(rig, "--effects", own)
+    assert document["ranking"][0]["answer"] == "rubber-boot"
+    size = document["ranking"][0]["effects"][0]["parameters"]["stiffening_n_m2"]
+    assert size["low"] < 6000.0 < size["high"]
+    added = run("gap", "add", rig, "--effect", "rubber-boot", "--effects-file", own)
+    assert added.exit_code == 0, added.output
+    again = run("gap", rig, *FEW, "--effects", own)
+    assert again.stdout.startswith("gap: no gap beyond u")
