@@ -63,10 +63,23 @@ class Finished:
 
 
 def _yield_to_the_loop() -> None:
-    """Let the control loop and the server go first, and Ctrl-C be theirs."""
+    """Let the control loop and the server go first, and Ctrl-C be theirs; end with the server."""
     import os
     import signal
+    import threading
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_server, name="server's end", daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(10)
+
+
+def _end_with_the_server() -> None:
+    """Leave nothing behind a server that was killed: nobody else would end this process."""
+    import os
+    from multiprocessing import parent_process
+
+    server = parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)

@@ -50,7 +50,9 @@ class Link:
         self._wake.set()
 
     def tell(self, message: Told) -> None:
-        """Hand on what must not be dropped."""
+        """Hand on what must not be dropped; without a server there is nobody to hand it to."""
+        if self.lost:
+            return
         self._others.append(message)
         self._wake.set()
 
