@@ -129,6 +129,12 @@ def _all_finite(
     help="In place of a time column.",
 )
 @click.option(
+    "--calibration",
+    metavar="FILE",
+    help="Make forces of the gauges' readings with this file of `pmm evaluate`; none: leave the "
+    "readings as they are.  [default: the one that the recording carries]",
+)
+@click.option(
     "--level",
     type=float,
     callback=_probability,

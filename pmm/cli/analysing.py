@@ -158,7 +158,11 @@ def _try_source(
     flags: tuple[Flag, ...] = ()
     try:
         recording = read_source(
-            source, columns, sample_rate_hz=request.sample_rate, edges=request.edges
+            source,
+            columns,
+            sample_rate_hz=request.sample_rate,
+            edges=request.edges,
+            calibration=request.calibration,
         )
         flags = recording.flags
         return _analyse_recording(recording, source, request, columns)

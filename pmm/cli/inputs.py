@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from analysis.recording import Recording
 
 
+RAW = "none"  # no calibration is applied: readings stay as the gauges gave them
+
+
 @dataclass(frozen=True)
 class Source:
     """One recording to be read, with what its campaign says of it.
@@ -126,6 +129,7 @@ def read_source(
     *,
     sample_rate_hz: float | None = None,
     edges: str | None = None,
+    calibration: str | None = None,
 ) -> "Recording":
     """Read one recording.
 
@@ -135,6 +139,8 @@ def read_source(
         In place of the campaign's own column map.
     edges
         File of the photocell's edge times; ``{stem}`` in it stands for the recording's name.
+    calibration
+        File of the gauges' calibration; :data:`RAW` for none; by default the recording's own.
 
     Raises
     ------
@@ -150,6 +156,7 @@ def read_source(
     if columns is None and source.campaign and source.path.suffix != ".nc":
         columns = source.campaign.columns
     recording = read_recording(source.path, columns, sample_rate_hz=sample_rate_hz)
+    recording = _in_newtons(recording, calibration)
     if recording.set_point is None and source.set_point is not None:
         recording = replace(recording, set_point=source.set_point)
     if edges is None:
@@ -157,6 +164,16 @@ def read_source(
     edges_file = Path(edges.replace("{stem}", source.stem))
     _check_there(edges_file)
     return replace(recording, photocell_edges_s=read_edges(edges_file))
+
+
+def _in_newtons(recording: "Recording", calibration: str | None) -> "Recording":
+    """Make forces of the gauges' readings, as asked or by what the recording carries."""
+    from pmm.calibrated import calibrated
+    from pmm.calibration import read_calibration
+
+    if calibration == RAW:
+        return recording
+    return calibrated(recording, read_calibration(Path(calibration)) if calibration else None)
 
 
 def _check_there(path: Path) -> None:

@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from datetime import UTC, datetime
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -48,7 +49,7 @@ def check(file: str, *, every: bool, as_json: bool) -> None:
         If the plan or its rig's file is wrong.
     """
     plan, rig = read_plan_and_rig(file)
-    found = check_plan(plan, rig)
+    found = check_plan(plan, rig, datetime.now(UTC).date())
     refused = any(one.verdict is Verdict.REFUSE for one in found)
     if as_json:
         click.echo(json.dumps(_check_document(plan, rig, found, refused), indent=1))

@@ -33,6 +33,7 @@ class Request:
     column_map: str | None
     columns: tuple[str, ...]
     sample_rate: float | None
+    calibration: str | None
     level: float
     plot: str | None
     save: str | None

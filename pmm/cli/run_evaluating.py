@@ -11,16 +11,11 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from hardware.description.errors import ConfigurationError
+from pmm.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
 from pmm.campaign import CAMPAIGN_FILE
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import output
-from pmm.run.calibration import (
-    CALIBRATION_FILE,
-    Calibration,
-    calibrate,
-    modes_text,
-    write_calibration,
-)
+from pmm.run.calibration import calibrate, modes_text
 from pmm.run.chart import LEAST, Chart, control_charts
 from pmm.run.results import RunResult, of_kind, read_results
 from pmm.run.rig_tests import (
@@ -148,17 +143,7 @@ def _document(found: Evaluation) -> dict[str, Any]:
     return {
         "schema": JSON_SCHEMA,
         "zeros": [asdict(each) for each in found.zeros],
-        "calibration": None
-        if one is None
-        else {
-            "channels": one.channels,
-            "matrix": one.matrix.tolist(),
-            "standard_uncertainty": one.standard_uncertainty.tolist(),
-            "hysteresis": one.hysteresis.tolist(),
-            "nonlinearity": one.nonlinearity.tolist(),
-            "made": one.made.isoformat(),
-            "expires": one.expires.isoformat(),
-        },
+        "calibration": None if one is None else as_table(one),
         "modes": [asdict(each) for each in found.modes],
         "known_mass": [asdict(each) for each in found.responses],
         "control": [{**asdict(each), "values": each.values.tolist()} for each in found.charts],

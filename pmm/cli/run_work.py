@@ -100,7 +100,7 @@ def work(request: Request) -> None:
 
 def _job(request: Request) -> Job:
     plan, rig_file = read_plan_and_rig(request.plan)
-    findings = require_possible(plan, rig_file)
+    findings = require_possible(plan, rig_file, datetime.now(UTC).date())
     folder = folder_of(plan, rig_file.recorder.folder, request.output)
     check_folder(folder, "--output")
     runs = chosen_runs(plan, folder, request.only, resume=request.resume)

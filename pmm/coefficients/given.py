@@ -12,12 +12,12 @@ from analysis.coefficients.stated import Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
+from pmm.calibration import read_calibration
 from pmm.campaign import CAMPAIGN_FILE, Campaign
 from pmm.coefficients.settings import DRY, MODEL, Settings
 from pmm.coefficients.tasks import Chain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.model_uncertainty import ModelUncertainty, take_uncertainty
-from pmm.run.calibration import read_calibration
 
 _BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
 

@@ -24,6 +24,7 @@ from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.calibrated import calibrated
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.recorder.files import EVENTS
@@ -62,7 +63,9 @@ def read_cycle(task: Task) -> Done | Failed:
 
 
 def _recording(task: Task) -> Recording:
-    return replace(read_recording(task.path, task.columns), name=task.name)
+    """Read a recording, in newtons by its own calibration unless the settings give one."""
+    recording = replace(read_recording(task.path, task.columns), name=task.name)
+    return recording if task.chain.calibration is not None else calibrated(recording)
 
 
 def _turning(task: Task, recording: Recording) -> Done:

@@ -11,6 +11,7 @@ from analysis.readers import read_recording
 from analysis.recording import Recording
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
+from pmm.calibrated import calibrated
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
 from sim.rig import SimulatedRig
@@ -101,7 +102,7 @@ def _usual_reference(found: Sequence[tuple[Run, Observed]]) -> str | None:
 
 
 def _observed(campaign: Campaign, run: Run, folder: Path, sensors: Sequence[str]) -> Observed:
-    recording = read_recording(run.recording_path(folder), campaign.columns)
+    recording = calibrated(read_recording(run.recording_path(folder), campaign.columns))
     recording = _only(recording, sensors)
     latency_s = campaign.reference.latency_s
     return observe(replace(recording, name=run.name, set_point=run.set_point), latency_s)

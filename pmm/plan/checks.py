@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from datetime import date
 
+from pmm.calibrated import expiry_text
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import Finding, PlanRefusedError, Verdict
 from pmm.plan.limits import bus_finding, limit_findings
@@ -12,32 +14,45 @@ from pmm.plan.rig_file import RigFile
 __all__ = ["Finding", "PlanRefusedError", "Verdict", "check_plan", "require_possible"]
 
 
-def check_plan(plan: Plan, rig: RigFile) -> tuple[Finding, ...]:
+def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Finding, ...]:
     """Return what the rig cannot do, and what the field advises against.
 
     In the order of the runs, the whole plan first; a refusal stands before advice.
+
+    Parameters
+    ----------
+    today
+        On which the plan is to be run: whether the gauges' calibration is still good then.
     """
-    found = [*bus_finding(rig), *_not_checked(plan, rig)]
+    found = [*bus_finding(rig), *_expired(rig, today), *_not_checked(plan, rig)]
     for run in plan.runs:
         found += [*limit_findings(run, rig), *field_findings(run, rig)]
     ranks = list(Verdict)
     return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
 
 
-def require_possible(plan: Plan, rig: RigFile) -> tuple[Finding, ...]:
-    """Return the findings of a plan that the rig can run.
+def require_possible(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Finding, ...]:
+    """Return the findings of a plan that the rig can run; ``today`` as in :func:`check_plan`.
 
     Raises
     ------
     PlanRefusedError
         If it cannot; the message gives every run with its value and its limit.
     """
-    found = check_plan(plan, rig)
+    found = check_plan(plan, rig, today)
     refused = [one for one in found if one.verdict is Verdict.REFUSE]
     if refused:
         lines = "\n  ".join(f"{one.run or 'plan'}: {one.message}" for one in refused)
         raise PlanRefusedError(f"{plan.path}: the rig cannot run this plan\n  {lines}")
     return found
+
+
+def _expired(rig: RigFile, today: date | None) -> Iterator[Finding]:
+    one = rig.calibration
+    if one is not None and today is not None and one.is_expired(today):
+        late = float((today - one.expires).days)
+        text = expiry_text(one, today)
+        yield Finding(Verdict.WARN, "calibration [days past expiry]", late, 0.0, "", text)
 
 
 def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:

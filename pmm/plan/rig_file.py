@@ -11,6 +11,7 @@ from typing import Any
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
+from pmm.calibration import Calibration, read_calibration
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.oscillator_table import expand_preset
 from pmm.plan.rig_checks import (
@@ -51,6 +52,8 @@ class RigFile:
         Ranges of the force channels: the file's, else those of the amplifiers.
     modes
         Structural modes from a pluck test.
+    calibration
+        Of the gauges, from check weights; kept with every recording and applied in the analysis.
     realtime
         Whether cycles keep to the clock; a simulated rig runs free unless it is asked for.
     campaign
@@ -69,6 +72,7 @@ class RigFile:
     limits: Limits = field(default_factory=Limits)
     gauges: tuple[Gauge, ...] = ()
     modes: tuple[StructuralMode, ...] = ()
+    calibration: Calibration | None = None
     photocell_offset: PhotocellOffset = field(default_factory=PhotocellOffset)
     recorder: RecorderSettings = field(default_factory=RecorderSettings)
     realtime: bool = True
@@ -133,13 +137,15 @@ def examine_rig(path: Path) -> Examined:
     if own is not None and hardware is not None:
         faults += gauge_faults(own, hardware)
     modes = _more_modes(own, path, faults)
+    calibration = _calibration(own, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return Examined(None, oscillator, channels, as_error(path, faults, original))
     rig = _built(path, replace(own, modes=own.modes + modes), hardware, devices)
     # As written: a table that is read again elsewhere is handed on untouched.
-    rig = replace(rig, campaign=MappingProxyType(dict(original.get("campaign", {}))))
+    kept = MappingProxyType(dict(original.get("campaign", {})))
+    rig = replace(rig, campaign=kept, calibration=calibration)
     return Examined(rig, oscillator, channels)
 
 
@@ -164,6 +170,30 @@ def _more_modes(
         )
         return ()
     return found.modes
+
+
+def _calibration(
+    own: RigTables | None, hardware: RigConfiguration | None, path: Path, faults: list[Fault]
+) -> Calibration | None:
+    """Read the check weights' file, if one is named; its channels have to be the rig's gauges."""
+    if own is None or own.calibration_file is None:
+        return None
+    try:
+        found = read_calibration(path.parent / own.calibration_file)
+    except ConfigurationError as error:
+        faults.append(Fault(("calibration_file",), f"= {own.calibration_file!r}: {error}"))
+        return None
+    known = found.channels if hardware is None else channels_of(hardware)
+    faults += [
+        Fault(
+            ("calibration_file",),
+            f"= {own.calibration_file!r}: of {name!r}, which is no gauge of this rig "
+            f"(channels: {', '.join(known)})",
+        )
+        for name in found.channels
+        if name not in known
+    ]
+    return found
 
 
 def _built(

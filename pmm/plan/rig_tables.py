@@ -137,6 +137,8 @@ class RigTables:
         Whether cycles keep to the clock; by default all rigs do but simulated ones.
     modes_file
         A file with more ``[[modes]]``, as the pluck test writes it; its path from this one.
+    calibration_file
+        What ``pmm evaluate`` made of check weights; its path from this one.
     reference
         The photocell's calibration.
     campaign
@@ -153,6 +155,7 @@ class RigTables:
     gauges: tuple[Gauge, ...] = ()
     modes: tuple[StructuralMode, ...] = ()
     modes_file: str | None = None
+    calibration_file: str | None = None
     reference: PhotocellOffset = field(default_factory=PhotocellOffset)
     recorder: RecorderSettings = field(default_factory=RecorderSettings)
     campaign: Mapping[str, Any] = field(default_factory=dict)

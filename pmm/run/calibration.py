@@ -1,59 +1,19 @@
 """Check weights up and down: the matrix from loads to readings, with cross-talk and hysteresis."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import date, timedelta
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.errors import ConfigurationError, DataError
-from pmm.plan.toml_text import toml_table, toml_value
+from hardware.description.errors import DataError
+from pmm.calibration import Calibration
+from pmm.plan.toml_text import toml_table
 from pmm.run.results import RunResult
 
 FloatArray = NDArray[np.float64]
-CALIBRATION_FILE: Final = "calibration.toml"
 _LEAST_STEPS: Final = 3
-
-
-@dataclass(frozen=True, eq=False)
-class Calibration:
-    """How the gauges answer to known loads.
-
-    Attributes
-    ----------
-    channels
-        The gauges that were loaded, in the order of rows and columns.
-    matrix
-        Reading of channel i for a newton on gauge j, shape ``(channels, channels)``: the identity
-        for a perfect dynamometer; off the diagonal is the cross-talk.
-    standard_uncertainty
-        Of the matrix, from the scatter about the lines.
-    hysteresis
-        Largest difference between the ways up and down at one load, over the range, each gauge.
-    nonlinearity
-        Largest distance of a step from its line, over the range, each gauge.
-    made, expires
-        Dates.
-    """
-
-    channels: tuple[str, ...]
-    matrix: FloatArray
-    standard_uncertainty: FloatArray
-    hysteresis: FloatArray
-    nonlinearity: FloatArray
-    made: date
-    expires: date
-
-    def loads(self, readings: FloatArray) -> FloatArray:
-        """Return the loads behind readings, shape ``(channels, n)`` both."""
-        return np.asarray(np.linalg.solve(self.matrix, readings))
-
-    def is_expired(self, today: date) -> bool:
-        """Whether it may no longer be relied on."""
-        return today > self.expires
 
 
 def calibrate(runs: Sequence[RunResult], made: date, valid_days: int) -> Calibration:
@@ -81,54 +41,6 @@ def calibrate(runs: Sequence[RunResult], made: date, valid_days: int) -> Calibra
         hysteresis[j] = _hysteresis(forces, readings[:, j], ways) / span
     expires = made + timedelta(days=valid_days)
     return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)
-
-
-def write_calibration(one: Calibration, path: Path) -> Path:
-    """Write a calibration for people and programs; an older one of another date is kept beside."""
-    if path.exists():
-        before = read_calibration(path)
-        if before.made != one.made:
-            path.rename(path.with_name(f"{path.stem}-{before.made.isoformat()}{path.suffix}"))
-    table: dict[str, object] = {
-        "made": one.made.isoformat(),
-        "expires": one.expires.isoformat(),
-        "channels": list(one.channels),
-        "matrix": one.matrix.tolist(),
-        "standard_uncertainty": one.standard_uncertainty.tolist(),
-        "hysteresis": one.hysteresis.tolist(),
-        "nonlinearity": one.nonlinearity.tolist(),
-    }
-    head = "# Reading of a channel (row) for a newton on a gauge (column): docs/run-control.md\n"
-    lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in table.items())
-    path.write_text(head + lines, encoding="utf-8")
-    return path
-
-
-def read_calibration(path: Path) -> Calibration:
-    """Read a calibration file.
-
-    Raises
-    ------
-    ConfigurationError
-        If it cannot be read, or a key is missing or of the wrong shape.
-    """
-    import tomllib
-
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-        channels = tuple(table["channels"])
-        arrays = [np.array(table[key], dtype=np.float64) for key in _ARRAYS]
-        made, expires = (date.fromisoformat(table[key]) for key in ("made", "expires"))
-    except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
-        raise ConfigurationError(f"{path}: no calibration: {error!r}") from error
-    size = len(channels)
-    if [one.shape for one in arrays] != [(size, size), (size, size), (size,), (size,)]:
-        raise ConfigurationError(f"{path}: the matrix does not fit the {size} channels")
-    matrix, spread, hysteresis, nonlinearity = arrays
-    return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)
-
-
-_ARRAYS: Final = ("matrix", "standard_uncertainty", "hysteresis", "nonlinearity")
 
 
 def modes_text(modes: Sequence[Mapping[str, object]]) -> str:

@@ -9,6 +9,7 @@ from typing import Final
 from hardware.opening import opening_of
 from hardware.rig import Rig
 from hardware.roles import Reading
+from pmm.calibrated import provenance_of
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -111,8 +112,8 @@ class Recording:
             kind=str(run.kind),
             set_point=run.set_point,
             plan_json=run.to_json(),
-            configuration_sha256={"plan": self.plan.sha256, "rig": self.rig_file.sha256},
-            provenance=dict(self.provenance),
+            configuration_sha256=self._hashes(),
+            provenance=dict(self.provenance) | provenance_of(self.rig_file.calibration),
             readings=self._readings(),
             sources={c.name: one.name for one in sampled_devices(rig) for c in one.channels},
             photocell=rig.photocell is not None,
@@ -125,6 +126,11 @@ class Recording:
                 angle_offset_rad=offset.angle_offset_rad,
             ),
         )
+
+    def _hashes(self) -> dict[str, str]:
+        found = {"plan": self.plan.sha256, "rig": self.rig_file.sha256}
+        one = self.rig_file.calibration
+        return found if one is None else found | {"calibration": one.sha256}
 
     def _readings(self) -> dict[str, Reading]:
         axes = {"eccentricity": self.rig.eccentricity, "phase": self.rig.phase}

@@ -12,6 +12,7 @@ from hardware.description.setpoint import SetPoint
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
+from pmm.calibration import Calibration
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import Gauge, RecorderSettings, RigFile
@@ -123,6 +124,7 @@ def bench(
     scene: dict[str, float] | None = None,
     view: Any = None,
     reserve_mb: float = 1.0,
+    calibration: Calibration | None = None,
 ) -> Iterator[Bench]:
     """A rig with the runs to do; ``serial`` parts are on ``sim://``."""
     whole = dict(tables or TABLES)
@@ -144,6 +146,7 @@ def bench(
         oscillator=VERTICAL_1963,
         hardware=configuration,
         gauges=gauges,
+        calibration=calibration,
         recorder=RecorderSettings(reserve_mb=reserve_mb),
         realtime=False,
         hardware_tables=MappingProxyType(whole),

@@ -1,0 +1,136 @@
+"""The calibration of the gauges: what they read for known loads, its dates and its file.
+
+:func:`pmm.run.calibration.calibrate` makes one of check weights; :mod:`pmm.calibrated` applies it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import date
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.errors import ConfigurationError
+from pmm.plan.toml_text import toml_value
+
+FloatArray = NDArray[np.float64]
+CALIBRATION_FILE: Final = "calibration.toml"
+_WORST_CONDITION: Final = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """How the gauges answer to known loads.
+
+    Attributes
+    ----------
+    channels
+        The gauges that were loaded, in the order of rows and columns.
+    matrix
+        Reading of channel i for a newton on gauge j, shape ``(channels, channels)``: the identity
+        for a perfect dynamometer; off the diagonal is the cross-talk.
+    standard_uncertainty
+        Of the matrix, from the scatter about the lines.
+    hysteresis
+        Largest difference between the ways up and down at one load, over the range, each gauge.
+    nonlinearity
+        Largest distance of a step from its line, over the range, each gauge.
+    made, expires
+        Dates.
+    file, sha256
+        Where it was read from; empty where it was not.
+    """
+
+    channels: tuple[str, ...]
+    matrix: FloatArray
+    standard_uncertainty: FloatArray
+    hysteresis: FloatArray
+    nonlinearity: FloatArray
+    made: date
+    expires: date
+    file: str = ""
+    sha256: str = ""
+
+    def loads(self, readings: FloatArray) -> FloatArray:
+        """Return the loads behind readings, shape ``(channels, n)`` both."""
+        return np.asarray(np.linalg.solve(self.matrix, readings))
+
+    def is_expired(self, today: date) -> bool:
+        """Whether it may no longer be relied on."""
+        return today > self.expires
+
+
+def write_calibration(one: Calibration, path: Path) -> Path:
+    """Write a calibration for people and programs; an older one of another date is kept beside."""
+    if path.exists():
+        before = read_calibration(path)
+        if before.made != one.made:
+            path.rename(path.with_name(f"{path.stem}-{before.made.isoformat()}{path.suffix}"))
+    head = "# Reading of a channel (row) for a newton on a gauge (column): docs/run-control.md\n"
+    lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in as_table(one).items())
+    path.write_text(head + lines, encoding="utf-8")
+    return path
+
+
+def read_calibration(path: Path) -> Calibration:
+    """Read a calibration file.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot be read, a key is missing or of the wrong shape, or two gauges tell the same.
+    """
+    import hashlib
+    import tomllib
+
+    try:
+        data = path.read_bytes()
+        table = tomllib.loads(data.decode("utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ConfigurationError(f"{path}: no calibration: {error}") from error
+    found = from_table(table, str(path))
+    return replace(found, file=path.name, sha256=hashlib.sha256(data).hexdigest())
+
+
+def as_table(one: Calibration) -> dict[str, Any]:
+    """Return a calibration with the keys of its file."""
+    return {
+        "made": one.made.isoformat(),
+        "expires": one.expires.isoformat(),
+        "channels": list(one.channels),
+        **{key: getattr(one, key).tolist() for key in _ARRAYS},
+    }
+
+
+def from_table(table: Mapping[str, Any], where: str) -> Calibration:
+    """Return the calibration that a table holds; ``where`` names it in errors.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`read_calibration`.
+    """
+    missing = [key for key in _KEYS if key not in table]
+    if missing:
+        raise ConfigurationError(f"{where}: no calibration: {', '.join(missing)} missing")
+    try:
+        channels = tuple(str(one) for one in table["channels"])
+        arrays = [np.array(table[key], dtype=np.float64) for key in _ARRAYS]
+        made, expires = (date.fromisoformat(table[key]) for key in ("made", "expires"))
+    except (TypeError, ValueError) as error:
+        raise ConfigurationError(f"{where}: no calibration: {error}") from error
+    size = len(channels)
+    if [one.shape for one in arrays] != [(size, size), (size, size), (size,), (size,)]:
+        raise ConfigurationError(f"{where}: the matrix does not fit the {size} channels")
+    if not np.all(np.isfinite(arrays[0])) or not np.linalg.cond(arrays[0]) < _WORST_CONDITION:
+        raise ConfigurationError(
+            f"{where}: matrix = {arrays[0].tolist()} is singular: two gauges would tell the same"
+        )
+    matrix, spread, hysteresis, nonlinearity = arrays
+    return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)
+
+
+_ARRAYS: Final = ("matrix", "standard_uncertainty", "hysteresis", "nonlinearity")
+_KEYS: Final = ("made", "expires", "channels", *_ARRAYS)
