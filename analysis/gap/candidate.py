@@ -26,6 +26,16 @@ _CHOICES: Final[Mapping[str, tuple[float, ...]]] = {
     "every": (5.0, 10.0, 20.0),
     "cycles": (10.0,),
 }
+# What hardly shows beside its siblings, or only as a product with one of them: held at its usual
+# value. Some are costly too: a loaded drive takes a hundred times as long as a set one.
+_HELD: Final[Mapping[str, frozenset[str]]] = {
+    "torque-cogging": frozenset({"inertia_kg_m2"}),
+    "gear-backlash": frozenset({"inertia_kg_m2", "stiffness_n_m_rad", "damping_n_m_s"}),
+    "free-play": frozenset({"stiffness_n_m", "damping_n_s_m"}),
+    "vortex-shedding": frozenset({"strouhal", "bandwidth", "run_index"}),
+    "temperature": frozenset({"rate_k_h", "hours"}),
+    "campaign-drift": frozenset({"since_zero_s"}),
+}
 _SPREAD = 0.35  # of the range's logarithm, but at most two
 
 
@@ -112,7 +122,9 @@ def _options(
     kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
 ) -> Iterator[Axis | tuple[str, float]]:
     magnitude = one.low <= 0.0 and not is_phase(one)
-    if one.name in _CHOICES:
+    if one.name in _HELD.get(kind.name, ()):
+        yield one.name, one.typical
+    elif one.name in _CHOICES:
         yield from ((one.name, value) for value in _CHOICES[one.name])
     elif magnitude:
         scale = _TYPICAL * _size(one, kind.parameters())

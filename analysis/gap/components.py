@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,48 @@ class Component:
 
 
 @dataclass(frozen=True, eq=False)
+class Layout:
+    """Where each component of a run is found among the harmonics of its channels.
+
+    Attributes
+    ----------
+    channels
+        Those that are asked for.
+    row, order
+        Channel and harmonic of each component, shape ``(components,)``; 0 for what has none.
+    real, imaginary
+        Weights of a harmonic's two parts, shape ``(components,)``.
+    frequency, steady
+        Which components are the frequency, and which repeat with the shaft.
+    """
+
+    channels: tuple[str, ...]
+    row: NDArray[np.intp]
+    order: NDArray[np.intp]
+    real: FloatArray
+    imaginary: FloatArray
+    frequency: NDArray[np.bool_]
+    steady: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, components: Sequence[Component]) -> "Layout":
+        """Find each component."""
+        names = tuple(dict.fromkeys(one.channel for one in components if one.channel))
+        parts = [one.part for one in components]
+        harmonic = [one in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE) for one in parts]
+        pairs = list(zip(components, harmonic, strict=True))
+        return cls(
+            names,
+            np.array([names.index(one.channel) if has else 0 for one, has in pairs]),
+            np.array([one.order if has else 0 for one, has in pairs]),
+            np.array([float(one in (Part.MEAN, Part.QUADRATURE)) for one in parts]),
+            np.array([-float(one is Part.IN_PHASE) for one in parts]),
+            np.array([one is Part.FREQUENCY for one in parts]),
+            np.array([one in STEADY_PARTS for one in parts]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Observation:
     """What one run shows.
 
@@ -63,6 +106,11 @@ class Observation:
     components: tuple[Component, ...]
     values: FloatArray
     uncertainty: FloatArray
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where each component is found among the harmonics."""
+        return Layout.of(self.components)
 
     def value(self, channel: str, part: Part, order: int = 0) -> float:
         """Return one component; NaN where the run does not have it."""
@@ -119,3 +167,8 @@ class Stack:
             np.concatenate([one.values for one in seen]),
             np.concatenate([one.uncertainty for one in seen]),
         )
+
+    @cached_property
+    def steady(self) -> NDArray[np.bool_]:
+        """Which observations repeat with the shaft, shape ``(observations,)``."""
+        return np.concatenate([one.observed.layout.steady for one in self.runs])

@@ -7,19 +7,21 @@ noise.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, Component, GapRun, Observation, Part, Stack
+from analysis.gap.components import Component, GapRun, Layout, Observation, Stack
 from analysis.gap.observe import observe
+from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
-from sim.periodic import SteadyState, steady_run
+from sim.period import Period
+from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]
@@ -42,6 +44,8 @@ class Simulator:
         The channel whose fundamental is phase 0; ``None`` for the photocell.
     frequency_ratio
         At which every run is made, over the frequency that was set.
+    solved
+        Stages that were solved already; shared by all that are made from this one.
     """
 
     rig: SimulatedRig
@@ -49,6 +53,7 @@ class Simulator:
     on: tuple[Effect, ...] = ()
     reference_channel: str | None = None
     frequency_ratio: float = 1.0
+    solved: Solved = field(default_factory=Solved, repr=False)
 
     @cached_property
     def nominal(self) -> FloatArray:
@@ -76,7 +81,8 @@ class Simulator:
 
     def _run(self, number: int, effects: Sequence[Effect]) -> FloatArray:
         run = self.stack.runs[number]
-        steady, repeats = self._steady(run, (*self.on, *effects)), self._is_steady(run)
+        steady = self._steady(run, (*self.on, *effects))
+        repeats = run.observed.layout.steady
         return steady if repeats.all() else np.where(repeats, steady, self._quiet(number))
 
     def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
@@ -85,7 +91,7 @@ class Simulator:
         changed = self._in_time(run, (*self.on, *effects))
         base = self._in_time(run, (*self.on, *quiet)) if quiet else self._quiet(number)
         steady = self._steady(run, (*self.on, *effects)) + changed - base
-        return np.where(self._is_steady(run), steady, changed)
+        return np.where(run.observed.layout.steady, steady, changed)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
@@ -102,16 +108,14 @@ class Simulator:
             self._records[number] = self._in_time(self.stack.runs[number], self.on)
         return self._records[number]
 
-    def _is_steady(self, run: GapRun) -> NDArray[np.bool_]:
-        return np.array([one.part in STEADY_PARTS for one in run.observed.components])
-
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         told = replace(
             run.set_point, frequency_hz=run.set_point.frequency_hz * self.frequency_ratio
         )
         rig, set_point = switch_on(effects, self.rig, told, run.place)
-        state = steady_run(rig, set_point, orders=_ORDERS, points=_POINTS)
-        return read_steady(state, run.observed.components, run.set_point, self.reference_channel)
+        period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
+        state = self.solved.steady_state(rig.chain(set_point), period)
+        return read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         from analysis.readers.dataset import from_dataset
@@ -141,7 +145,7 @@ def align(observation: Observation, components: Sequence[Component]) -> FloatArr
 
 def read_steady(
     state: SteadyState,
-    components: Sequence[Component],
+    layout: Layout,
     set_point: SetPoint,
     reference_channel: str | None,
 ) -> FloatArray:
@@ -152,13 +156,11 @@ def read_steady(
     set_point
         What the run was told to do: its frequency is what the measured one is held against.
     """
-    turn = _turn(state, reference_channel)
-    spectra = {
-        name: state.spectra[f"recorded_{name}"] * turn
-        for name in {one.channel for one in components if one.channel}
-    }
     ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
-    return np.array([_component(one, spectra, ratio) for one in components])
+    spectra = np.stack([state.spectra[f"recorded_{name}"] for name in layout.channels])
+    found = (spectra * _turn(state, reference_channel))[layout.row, layout.order]
+    values: FloatArray = layout.real * found.real + layout.imaginary * found.imag
+    return values + ratio * layout.frequency
 
 
 def _turn(state: SteadyState, reference_channel: str | None) -> NDArray[np.complex128]:
@@ -169,14 +171,3 @@ def _turn(state: SteadyState, reference_channel: str | None) -> NDArray[np.compl
     phase = float(np.angle(first * 1j))
     orders: NDArray[np.complex128] = np.exp(-1j * phase * np.arange(len(state.period.s)))
     return orders
-
-
-def _component(
-    one: Component, spectra: dict[str, NDArray[np.complex128]], frequency_ratio: float
-) -> float:
-    if one.part is Part.FREQUENCY:
-        return frequency_ratio
-    if one.part not in STEADY_PARTS:
-        return 0.0
-    harmonic = complex(spectra[one.channel][one.order])
-    return -harmonic.imag if one.part is Part.IN_PHASE else harmonic.real

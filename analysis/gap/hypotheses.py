@@ -1,33 +1,29 @@
 """Weigh what could explain a gap: nothing, each effect, pairs, or something unknown."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.candidate import candidates, turned
-from analysis.gap.fit import Fit, Problem, at, expected_evidence, joined, most_probable, refine
+from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
+from analysis.gap.screen import shown, worth_a_look
+from analysis.gap.search import Looked, fitted, looked_at, paired
 from analysis.gap.unknown import Deviation, find_deviation
-from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
 FloatArray = NDArray[np.float64]
 
 # What these change are the coefficients, and those are free in every hypothesis.
 COEFFICIENTS: Final = ("added-mass-error", "damping-error")
-T = TypeVar("T")
-R = TypeVar("R")
 
-LEADERS: Final = 8  # effects that are refined in full
 _NAMED = 4  # hypotheses of each kind that are given a remainder
 _HOPELESS = 50.0
 FORMS: Final = (0.0, 0.03, 0.1, 0.2, 0.3)  # by how much of itself a signature may be off
-PARTNERS: Final = 6  # second effects that are refined for each leader
 HIDDEN: Final = (
     2.0  # sigma of a typical signature below which an effect cannot be seen in these runs
 )
@@ -48,17 +44,6 @@ class Odds:
 
 
 _NOTHING = Deviation({}, np.zeros(0), 0.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Looked:
-    """What a first look at one effect gave: a linearised fit, or why there is none."""
-
-    name: str
-    fit: Fit | None
-    expected: float = -math.inf
-    visible: float = 0.0
-    reason: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +81,8 @@ class Weighed:
         after the free coefficients have taken their part.
     refused
         Effects that this rig cannot have, with the reason.
+    skipped
+        Effects of whose traces the recordings show nothing, so that they were not simulated.
     """
 
     problem: Problem
@@ -105,6 +92,7 @@ class Weighed:
     unknown: Deviation
     looked: tuple[Looked, ...]
     odds: Odds
+    skipped: tuple[str, ...] = ()
 
     @property
     def hidden(self) -> Mapping[str, float]:
@@ -134,19 +122,20 @@ def weigh(
         Told what is being done.
     """
     kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
-    progress(f"looking at {len(kinds)} effects")
-    looked = list(_each(executor, look, problem, kinds))
-    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
-    leaders = sorted(seen, key=lambda one: -one.expected)[:LEADERS]
-    progress(f"fitting the best {len(leaders)}")
-    fits = [one.fit for one in leaders if one.fit is not None]
-    singles = sorted(_each(executor, _refined, problem, fits), key=lambda one: -one.log_evidence)
-    progress("fitting pairs")
-    pairs = _pairs(problem, singles, [one.fit for one in seen if one.fit], executor)
-    unknown = find_deviation(problem.simulator.stack, problem.residual, problem.nuisances)
+    parts = shown(problem)
+    worth = [kind for kind in kinds if worth_a_look(kind, parts)]
+    progress(f"looking at {len(worth)} effects")
+    looked = looked_at(problem, worth, executor)
     none = null_evidence(problem.residual, problem.nuisances)
+    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
+    progress("fitting the best")
+    singles = fitted(problem, seen, none, executor)
+    progress("fitting pairs")
+    pairs = paired(problem, singles, seen, none, executor)
+    unknown = find_deviation(problem.simulator.stack, problem.residual, problem.nuisances)
     ones, twos = (_named_all(problem, fits, none) for fits in (singles, pairs))
-    return Weighed(problem, none, ones, twos, unknown, tuple(looked), odds)
+    skipped = tuple(kind.name for kind in kinds if kind not in worth)
+    return Weighed(problem, none, ones, twos, unknown, tuple(looked), odds, skipped)
 
 
 def _named_all(problem: Problem, fits: Sequence[Fit], none: float) -> tuple[Named, ...]:
@@ -193,71 +182,3 @@ def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
     log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
     log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
     return Named(fit, log_density, share, _NOTHING)
-
-
-def _each(
-    executor: Executor | None,
-    work: Callable[[Problem, T], R],
-    problem: Problem,
-    items: Sequence[T],
-) -> Iterable[R]:
-    if executor is None:
-        return [work(problem, one) for one in items]
-    return executor.map(work, [problem] * len(items), items)
-
-
-def look(problem: Problem, kind: type[Effect]) -> Looked:
-    """Linearise an effect at its typical values, from each of its starts, and keep the best."""
-    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.runs]
-    best, most, reason = None, -math.inf, ""
-    for one in candidates(kind, sorted(set(frequencies))):
-        try:
-            fit = at(problem, (one,), one.start)
-        except PmmError as error:
-            reason = str(error)
-            continue
-        expected = expected_evidence(problem, fit)
-        if best is None or expected > most:
-            best, most = fit, expected
-    if best is None:
-        return Looked(kind.name, None, reason=reason)
-    visible = left_over(best.signature, problem.nuisances)
-    return Looked(kind.name, best, most, visible)
-
-
-def _refined(problem: Problem, fit: Fit) -> Fit:
-    """Refine a single effect, from a third of a turn to either side too if it has a phase."""
-    found = [refine(problem, fit)]
-    for start in turned(fit.candidates[0]):
-        try:
-            found.append(refine(problem, at(problem, fit.candidates, start)))
-        except PmmError:
-            continue
-    return max(found, key=lambda one: one.log_evidence)
-
-
-def _pairs(
-    problem: Problem, singles: Sequence[Fit], looked: Sequence[Fit], executor: Executor | None
-) -> list[Fit]:
-    """Add to the leading effects whatever promises most beside them; greedy, by linear steps."""
-    chances: dict[frozenset[str], tuple[float, Fit]] = {}
-    for first in singles[:3]:
-        for second in looked:
-            if second.names != first.names:
-                key = frozenset((*first.names, *second.names))
-                both = joined(problem, first, second)
-                score = expected_evidence(problem, both)
-                if key not in chances or score > chances[key][0]:
-                    chances[key] = (score, both)
-    best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
-    found = _each(executor, _refined_pair, problem, [one for _, one in best])
-    return sorted(found, key=lambda one: -one.log_evidence)
-
-
-def _refined_pair(problem: Problem, fit: Fit) -> Fit:
-    for units in (most_probable(fit), fit.units):
-        try:
-            return refine(problem, at(problem, fit.candidates, units))
-        except PmmError:
-            continue
-    return fit

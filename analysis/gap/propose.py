@@ -27,6 +27,8 @@ from hardware.description.setpoint import Medium, SetPoint
 FloatArray = NDArray[np.float64]
 
 ENOUGH: Final = 40.0  # log odds beyond which more is worth no more
+_FREQUENCIES: Final = 3
+_RADII: Final = 2
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,7 @@ def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
     total = 0.0
     for side in (one, other):
         root = side.root[rows]
+        root = root[:, root.any(axis=0)]  # frequency and noise are each run's own
         left = difference - root @ np.linalg.solve(
             np.eye(root.shape[1]) + root.T @ root, root.T @ difference
         )
@@ -134,9 +137,9 @@ def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
 
 def _set_points(choices: Choices) -> Iterator[SetPoint]:
     low, high = choices.frequency_hz.low, choices.frequency_hz.high
-    frequencies = np.geomspace(max(low, high / 8.0), high, 4)
-    radii = np.geomspace(max(choices.eccentricity_m.low, choices.eccentricity_m.high / 8.0),
-                         choices.eccentricity_m.high, 3)  # fmt: skip
+    frequencies = np.geomspace(max(low, high / 8.0), high, _FREQUENCIES)
+    least, most = choices.eccentricity_m.low, choices.eccentricity_m.high
+    radii = np.geomspace(max(least, most / 5.0), most, _RADII)
     for frequency, radius, phase, speed, medium in product(
         frequencies, radii, choices.strut_phase_rad, choices.carriage_speed_m_s, choices.media
     ):

@@ -192,8 +192,7 @@ def _run_fed(simulator: Simulator, run: GapRun) -> FloatArray:
     turn = np.exp(-period.s * steady_state(chain, period).reference_s)
     given = _measured_motion(run, period, turn)
     state = steady_state(chain, period, given)
-    components = run.observed.components
-    return read_steady(state, components, run.set_point, simulator.reference_channel)
+    return read_steady(state, run.observed.layout, run.set_point, simulator.reference_channel)
 
 
 def _measured_motion(run: GapRun, period: Period, turn: ComplexArray) -> dict[str, ComplexArray]:

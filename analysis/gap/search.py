@@ -1,0 +1,150 @@
+"""Find what could explain a gap: a first look at each effect, then fits of those that promise most.
+
+The first look is linear. Only what could still win is fitted in full: it costs some ten times as
+much as a look, and a campaign without a gap has nothing that promises to beat "no gap".
+"""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+from analysis.gap.candidate import candidates, turned
+from analysis.gap.fit import Fit, Problem, at, expected_evidence, joined, most_probable, refine
+from analysis.gap.gaussian import left_over
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+LEADERS: Final = 8  # effects that are fitted in full, at most
+PARTNERS: Final = 6  # pairs that are, at most
+_LEAST: Final = 2  # effects that are fitted in any case: an answer and its rival
+_BELOW: Final = 1.0  # log evidence under "no gap" down to which an effect is fitted
+_WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
+_STARTS: Final = 3  # effects to which partners are sought
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """What a first look at one effect gave: a linearised fit, or why there is none.
+
+    Attributes
+    ----------
+    expected
+        Log evidence that the first step promises.
+    visible
+        Size of the typical signature in sigma, after the nuisances have taken their part.
+    """
+
+    name: str
+    fit: Fit | None
+    expected: float = -math.inf
+    visible: float = 0.0
+    reason: str = ""
+
+
+def looked_at(
+    problem: Problem, kinds: Sequence[type[Effect]], executor: Executor | None
+) -> list[Looked]:
+    """Look at each effect."""
+    return list(_each(executor, look, problem, kinds))
+
+
+def fitted(
+    problem: Problem, seen: Sequence[Looked], none: float, executor: Executor | None
+) -> list[Fit]:
+    """Fit the leading effects in full; the most probable comes first.
+
+    Parameters
+    ----------
+    none
+        Log evidence of "no gap".
+    """
+    ranked = sorted(seen, key=lambda one: -one.expected)[:LEADERS]
+    leaders = [
+        one.fit
+        for number, one in enumerate(ranked)
+        if one.fit is not None and (number < _LEAST or one.expected > none - _BELOW)
+    ]
+    found = _each(executor, _refined, problem, leaders)
+    return sorted(found, key=lambda one: -one.log_evidence)
+
+
+def paired(
+    problem: Problem,
+    singles: Sequence[Fit],
+    seen: Sequence[Looked],
+    none: float,
+    executor: Executor | None,
+) -> list[Fit]:
+    """Add to the leading effects whatever promises most beside them; greedy, by linear steps.
+
+    Fitted in full are those that promise to do better than one effect alone.
+    """
+    chances: dict[frozenset[str], tuple[float, Fit]] = {}
+    for first in singles[:_STARTS]:
+        for second in (one.fit for one in seen if one.fit is not None):
+            if second.names != first.names:
+                key = frozenset((*first.names, *second.names))
+                both = joined(problem, first, second)
+                score = expected_evidence(problem, both)
+                if key not in chances or score > chances[key][0]:
+                    chances[key] = (score, both)
+    best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
+    least = max([none, *(one.log_evidence for one in singles)]) - _WORSE
+    worth = [both for score, both in best if score > least]
+    found = _each(executor, _refined_pair, problem, worth)
+    return sorted(found, key=lambda one: -one.log_evidence)
+
+
+def _each(
+    executor: Executor | None,
+    work: Callable[[Problem, T], R],
+    problem: Problem,
+    items: Sequence[T],
+) -> Iterable[R]:
+    if executor is None:
+        return [work(problem, one) for one in items]
+    return executor.map(work, [problem] * len(items), items)
+
+
+def look(problem: Problem, kind: type[Effect]) -> Looked:
+    """Linearise an effect at its typical values, from each of its starts, and keep the best."""
+    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.runs]
+    best, most, reason = None, -math.inf, ""
+    for one in candidates(kind, sorted(set(frequencies))):
+        try:
+            fit = at(problem, (one,), one.start)
+        except PmmError as error:
+            reason = str(error)
+            continue
+        expected = expected_evidence(problem, fit)
+        if best is None or expected > most:
+            best, most = fit, expected
+    if best is None:
+        return Looked(kind.name, None, reason=reason)
+    visible = left_over(best.signature, problem.nuisances)
+    return Looked(kind.name, best, most, visible)
+
+
+def _refined(problem: Problem, fit: Fit) -> Fit:
+    """Refine a single effect, from a third of a turn to either side too if it has a phase."""
+    found = [refine(problem, fit)]
+    for start in turned(fit.candidates[0]):
+        try:
+            found.append(refine(problem, at(problem, fit.candidates, start)))
+        except PmmError:
+            continue
+    return max(found, key=lambda one: one.log_evidence)
+
+
+def _refined_pair(problem: Problem, fit: Fit) -> Fit:
+    for units in (most_probable(fit), fit.units):
+        try:
+            return refine(problem, at(problem, fit.candidates, units))
+        except PmmError:
+            continue
+    return fit
