@@ -133,7 +133,7 @@ def _print_budget(console: "Console", name: str, one: "Assessment") -> None:
     linear, trial = one.budget.result, one.monte_carlo
     low, high = linear.interval()
     console.print(
-        f"budget      {low:.6g} to {high:.6g}, u = {linear.uncertainty:.2g}, "
+        f"budget      {low:.6g} to {high:.6g}, u = {linear.uncertainty:#.2g}, "
         f"{_freedom(linear)} degrees of freedom",
         style="dim",
     )

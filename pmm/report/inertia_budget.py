@@ -1,16 +1,20 @@
 """Budget bars: which input's uncertainty each result's is made of."""
 
+from textwrap import shorten
 from typing import TYPE_CHECKING
 
 from analysis.inertia.monte_carlo import Assessment
 from pmm.inertia.outcome import Finding, Outcome
-from pmm.report.labels import plain, shown_name
+from pmm.report.labels import plain
 from pmm.report.rounding import rounded
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+_LONGEST = 60  # characters of a result's words over its bars
 
 
 def budget_figure(outcome: Outcome) -> "Figure":
@@ -45,7 +49,8 @@ def _draw_bars(axes: "Axes", one: Finding, assessment: Assessment) -> None:
     axes.set_xlim(1.15 * least, 112.0)
     axes.grid(visible=False, axis="y")
     value = rounded(one.estimate.value, one.estimate.uncertainty)
-    axes.set_title(f"{shown_name(one.what)}: {value} {one.estimate.unit}", loc="left")
+    what = shorten(plain(one.what), _LONGEST, placeholder=" …")
+    axes.set_title(f"{what}: {value} {one.estimate.unit}", loc="left")
 
 
 def _draw_intervals(axes: "Axes", one: Assessment) -> None:

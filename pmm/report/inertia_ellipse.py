@@ -63,13 +63,23 @@ def _draw_measured(axes: "Axes", found: PlaneAxes) -> None:
         axes.plot(reach * math.sin(angle), reach * math.cos(angle), "-", color=FIT, lw=2.0)
         place = (math.sin(angle) / gyradius.value, math.cos(angle) / gyradius.value)
         axes.plot(*place, "o", ms=5.0, color=FIT, label=label)
-        upright = abs(math.cos(angle)) > 0.5
-        axes.annotate(
-            f"{math.degrees(angle):.0f} deg, {1e3 * gyradius.value:.1f} mm",
-            place,
-            xytext=(0.0, -16.0 - 13.0 * (row % 3)) if upright else (-9.0, 6.0),
-            textcoords="offset points",
-            ha="center" if upright else "right",
-            fontsize=8.0,
-        )
+        _name(axes, place, angle, f"{1e3 * gyradius.value:.1f} mm", row)
         label = ""
+
+
+def _name(axes: "Axes", place: tuple[float, float], angle: float, what: str, row: int) -> None:
+    """Write a measured axis beside its point: outside above and below, inside at the ends."""
+    upright = abs(math.cos(angle)) > 0.5
+    away = -1.0 if math.cos(angle) > 0.0 else 1.0  # positive is up
+    inward = 12.0 if math.cos(angle) > 0.1 else -12.0
+    axes.annotate(
+        f"{math.degrees(angle):.0f} deg, {what}",
+        place,
+        xytext=(0.0, away * (18.0 + 13.0 * (row % 3))) if upright else (-16.0, inward),
+        textcoords="offset points",
+        ha="center" if upright else "right",
+        va="center",
+        fontsize=8.0,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+        arrowprops={"arrowstyle": "-", "color": FIT, "lw": 0.7, "shrinkB": 3.0},
+    )

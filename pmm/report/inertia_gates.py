@@ -33,5 +33,5 @@ def gates_figure(runs: PeriodRuns) -> "Figure":
         axes.ticklabel_format(axis="y", useOffset=False)
         rest.set_ylabel("residual of the\npassages (ms)")
         rest.set_xlabel("time (s)")
-        figure.legend(loc="outside lower left", ncols=4)
+        figure.legend(loc="outside lower left", ncols=4, markerscale=3.0)
     return figure
