@@ -16,9 +16,12 @@ _COMMANDS = {
     "coefficients": "pmm.cli.coefficients",
     "console": "pmm.cli.console",
     "demo": "pmm.cli.demo",
+    "completion": "pmm.cli.completion",
     "devices": "pmm.cli.devices",
+    "doctor": "pmm.cli.doctor",
     "gap": "pmm.cli.gap",
     "inertia": "pmm.cli.inertia",
+    "init": "pmm.cli.init",
     "evaluate": "pmm.cli.run_evaluate",
     "run": "pmm.cli.run",
     "effects": "pmm.cli.effects",
@@ -105,4 +108,4 @@ def main() -> None:
     """Run the command line of this process."""
     from pmm.cli.hints import pasted
 
-    cli.main(args=sys.argv[1:], prog_name=pasted())
+    cli.main(args=sys.argv[1:], prog_name=pasted(), complete_var="_PMM_COMPLETE")

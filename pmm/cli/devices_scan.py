@@ -73,37 +73,71 @@ class _Expected:
     profile: int
 
 
-def run(request: Request) -> None:
-    """Scan, print what was found, and end with status 1 if something is missing."""
-    tables = request.tables()
-    nodes: tuple[FoundNode, ...] = ()
-    expected: tuple[_Expected, ...] = ()
+@dataclass(frozen=True)
+class Survey:
+    """Who answers.
+
+    Attributes
+    ----------
+    names
+        Of the nodes that the rig's file names, by node id.
+    wrong
+        What is missing or does not fit, with what to do.
+    """
+
+    nodes: tuple[FoundNode, ...]
+    names: dict[int, str]
+    heard: dict[str, Heard]
+    wrong: list[str]
+
+
+def survey_rig(tables: RigTables, listen_s: float) -> Survey:
+    """Ask all devices that a rig's file names; nothing is changed.
+
+    Raises
+    ------
+    ConfigurationError, HardwareError
+        If the file is wrong, or its bus cannot be opened.
+    """
+    rig = tables.configuration()
+    expected = _expected(tables)
     heard: dict[str, Heard] = {}
     wrong: list[str] = []
-    with busy("scanning"):
-        if tables is not None:
-            rig = tables.configuration()
-            expected = _expected(tables)
-            nodes = _scan(rig.bus, request.listen_s) if rig.bus is not None else ()
-            for name, port in tables.ports().items():
-                _hear(name, PortSettings(**port), request.listen_s, heard, wrong)
-        elif request.interface:
-            nodes = _scan(request.bus(), request.listen_s)
-        else:
-            _hear(_PORT, request.port_settings(), request.listen_s, heard, wrong)
-    wrong += _missing(nodes, expected) if tables is not None else []
-    wrong += [f"{name}: {one.what}" for name, one in heard.items() if one.what == "silent"]
-    if tables is None and request.interface and not nodes:
+    nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
+    for name, port in tables.ports().items():
+        _hear(name, PortSettings(**port), listen_s, heard, wrong)
+    wrong += _missing(nodes, expected)
+    return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong)
+
+
+def _survey_alone(request: Request) -> Survey:
+    """Ask a bus or a port of which nothing is known."""
+    heard: dict[str, Heard] = {}
+    wrong: list[str] = []
+    if not request.interface:
+        _hear(_PORT, request.port_settings(), request.listen_s, heard, wrong)
+        return Survey((), {}, heard, wrong)
+    nodes = _scan(request.bus(), request.listen_s)
+    if not nodes:
         wrong.append(
             f"nobody answers on {request.interface}:{request.channel} at {request.bitrate} bit/s; "
             "check power, bit rate and termination"
         )
-    names = {one.node_id: one.name for one in expected}
+    return Survey(nodes, {}, heard, wrong)
+
+
+def run(request: Request) -> None:
+    """Scan, print what was found, and end with status 1 if something is missing."""
+    tables = request.tables()
+    with busy("scanning"):
+        found = survey_rig(tables, request.listen_s) if tables else _survey_alone(request)
+    silent = [f"{name}: {one.what}" for name, one in found.heard.items() if one.what == "silent"]
+    wrong = found.wrong + silent
     if request.as_json:
-        print_document(nodes, names, heard, wrong)
+        print_document(found.nodes, found.names, found.heard, wrong)
     else:
-        print_nodes(nodes, names)
-        print_heard(heard)
+        print_nodes(found.nodes, found.names)
+        print_heard(found.heard)
         for one in wrong:
             error_line(one)
     if wrong:

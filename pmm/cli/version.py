@@ -1,32 +1,38 @@
-"""Which version this is, and what it runs on."""
+"""Which version this is, what it was built from, and what it runs on."""
 
 import platform
 import shutil
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Final
+
+_BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 
 
 def version_line() -> str:
-    """Return version, git commit where it is known, Python and NumPy, on one line."""
+    """Return version, commit where it is known, Python, the system, and the libraries' versions."""
     commit = _commit()
     built = f"pmm {_version('pmm')}" + (f" ({commit})" if commit else "")
-    return f"{built}, Python {platform.python_version()}, NumPy {_version('numpy')}"
+    libraries = ", ".join(f"{name} {_version(name)}" for name in _BESIDE)
+    system = f"{platform.system()} {platform.machine()}"
+    return f"{built}, Python {platform.python_version()}, {system}, {libraries}"
 
 
 def _version(package: str) -> str:
     try:
         return version(package)
     except PackageNotFoundError:
-        return "from a source tree"
+        return "from a source tree" if package == "pmm" else "not installed"
 
 
 def _commit() -> str | None:
-    """Return the commit of the clone that this package lies in, if it lies in one."""
+    """Return the commit of the clone that this package lies in, and whether files were changed."""
     house = Path(__file__).resolve().parents[2]
     git = shutil.which("git")
     if git is None or not (house / ".git").exists():
         return None
-    command = [git, "-C", str(house), "rev-parse", "--short", "HEAD"]
+    where = [git, "--no-optional-locks", "-C", str(house)]
+    command = [*where, "describe", "--always", "--dirty", "--abbrev=8"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
     return done.stdout.strip() or None

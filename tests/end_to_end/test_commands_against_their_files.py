@@ -386,8 +386,9 @@ def test_the_version_says_what_it_runs_on() -> None:
     assert done.exit_code == 0
     python = ".".join(map(str, sys.version_info[:3]))
     assert re.fullmatch(
-        rf"pmm (\S+|from a source tree)( \([0-9a-f]+\))?, Python {python}\S*, "
-        rf"NumPy {re.escape(np.__version__)}\n",
+        rf"pmm (\S+|from a source tree)( \([0-9a-f]+(-dirty)?\))?, Python {python}\S*, \w+ \w+, "
+        rf"NumPy {re.escape(np.__version__)}, SciPy \S+, numba [^,]+, python-can \S+, "
+        r"canopen \S+\n",
         done.stdout,
     )
 

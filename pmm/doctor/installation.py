@@ -1,0 +1,76 @@
+"""The installation: Python, the libraries, compiled loops, the simulated rig's entry points."""
+
+import re
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Final
+
+from pmm.doctor.findings import Finding, Status
+from pmm.doctor.machine import Machine
+
+_OLDEST: Final = (3, 11)
+_AREA: Final = "installation"
+_NEEDED: Final = (("can.interface", "pmm-simulated"), ("pmm.serial_urls", "sim"),
+                  ("pmm.drivers", "cia402-shaft"))  # fmt: skip
+_REQUIREMENT: Final = re.compile(r"([\w.-]+)(?:\[[\w,]*\])?\s*(?:>=\s*([\d.]+))?")
+_INSTALL: Final = "python -m pip install --upgrade"
+
+
+def check_installation(machine: Machine) -> Iterator[Finding]:
+    """Look at Python, the libraries that are asked for, and what makes loops fast."""
+    yield _python(machine)
+    yield from _libraries(machine)
+    yield _compiled(machine)
+    for group, name in _NEEDED:
+        if not entry_points(group=group, name=name):
+            told = f"{name} is not registered"
+            cure = "install the package anew: python -m pip install --editable ."
+            yield Finding(_AREA, f"entry point {group}", Status.FAULT, told, cure)
+
+
+def _python(machine: Machine) -> Finding:
+    found = ".".join(map(str, machine.python))
+    if machine.python >= _OLDEST:
+        return Finding(_AREA, "Python", Status.OK, found)
+    oldest = ".".join(map(str, _OLDEST))
+    return Finding(_AREA, "Python", Status.FAULT, f"{found}, needed is {oldest}",
+                   f"install Python {oldest} or newer and make the environment anew")  # fmt: skip
+
+
+def _libraries(machine: Machine) -> Iterator[Finding]:
+    wanted = [one for one in machine.requirements() if "extra ==" not in one]
+    wrong = 0
+    for one in wanted:
+        match = _REQUIREMENT.match(one)
+        name, least = match.groups() if match else (one, None)
+        found = machine.installed(name)
+        if found is None:
+            wrong += 1
+            yield Finding(_AREA, name, Status.FAULT, "not installed", f"{_INSTALL} '{one}'")
+        elif least and _numbers(found) < _numbers(least):
+            wrong += 1
+            told = f"{found}, needed is {least} or newer"
+            yield Finding(_AREA, name, Status.FAULT, told, f"{_INSTALL} '{one}'")
+    if not wrong:
+        yield Finding(_AREA, "libraries", Status.OK, f"{len(wanted)} of {len(wanted)} are there")
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in re.findall(r"\d+", text.split("+")[0])[:3])
+
+
+def _compiled(machine: Machine) -> Finding:
+    what = "compiled loops (numba)"
+    found = machine.installed("numba")
+    if found is None:
+        told = "not installed: loops that go from sample to sample are interpreted, which is slow"
+        return Finding(_AREA, what, Status.WARNING, told, "python -m pip install 'pmm[fast]'")
+    folder = Path(machine.compiled_in) if machine.compiled_in else machine.home / "sim"
+    if not machine.may_write(folder):
+        told = f"{found}, but {folder} cannot be written to: compiled anew in every process"
+        return Finding(_AREA, what, Status.WARNING, told,
+                       "set NUMBA_CACHE_DIR to a folder of your own")  # fmt: skip
+    kept = sum(1 for _ in folder.rglob("*.nbi")) if folder.is_dir() else 0
+    later = "" if kept else "; the first use compiles for some 20 s"
+    return Finding(_AREA, what, Status.OK, f"{found}, {kept} loops kept{later}")

@@ -1,0 +1,123 @@
+"""The files of each job of ``pmm init``, and how they are tried before they are kept."""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from analysis.readers import read_recording
+from hardware.description.errors import ConfigurationError
+from pmm.campaign_file import read_campaign
+from pmm.oscillator_table import PRESETS
+from pmm.start.recordings import FoundRun, find_columns, find_runs
+from pmm.start.writing import check_free, render, write_tried
+
+SIMULATED: Final = "pmm-simulated"
+FILES: Final[Mapping[str, tuple[str, ...]]] = {
+    "rig": ("rig.toml", "plan.toml", "simulated.toml"),
+    "campaign": ("campaign.toml",),
+    "swing": ("swing.toml",),
+    "bifilar": ("bifilar.toml",),
+}
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a job is to write: its answers, for which folder, from which recordings."""
+
+    job: str
+    answers: Mapping[str, Any]
+    folder: Path
+    recordings: tuple[Path, ...] = ()
+
+    def values(self, **more: object) -> dict[str, Any]:
+        """Return what the templates are filled in with."""
+        vertical = self.answers.get("plane") == "vertical"
+        return {**self.answers, "folder": self.folder.as_posix(), "vertical": vertical, **more}
+
+
+@dataclass(frozen=True)
+class Draft:
+    """Texts by their files' names, and what reads them in a folder to see whether they hold."""
+
+    files: Mapping[str, str]
+    trial: Callable[[Path], object]
+
+
+def write(task: Task, *, force: bool = False) -> list[Path]:
+    """Write a job's files.
+
+    Raises
+    ------
+    ConfigurationError
+        If a file is there and ``force`` is not given, a recording is not there, or the answers make
+        no file that can be read; then nothing is written.
+    DataError
+        If a recording cannot be read.
+    """
+    check_free(task.folder, FILES[task.job], force=force)
+    missing = [str(path) for path in task.recordings if not path.is_file()]
+    if missing:
+        raise ConfigurationError(f"{', '.join(missing)}: no such recording")
+    draft = _DRAFTS[task.job](task)
+    return write_tried(task.folder, draft.files, draft.trial, force=force)
+
+
+def _rig(task: Task) -> Draft:
+    from pmm.plan.plan import read_plan_and_rig
+
+    simulated = task.answers["interface"] == SIMULATED
+    names = FILES["rig"] if simulated else FILES["rig"][:2]
+    files = {name: render(name, task.values(simulated=simulated)) for name in names}
+    return Draft(files, lambda tried: read_plan_and_rig(tried / "plan.toml"))
+
+
+def _campaign(task: Task) -> Draft:
+    found: dict[str, object] = {"runs": [], "widened": {}, "channels": [], "others": []}
+    if task.recordings:
+        columns, others = find_columns(read_recording(task.recordings[0]))
+        runs = list(find_runs(task.recordings, columns, task.folder))
+        widened = _widened(task.answers["plane"], runs)
+        found = {"runs": runs, "widened": widened, "channels": columns, "others": others}
+    text = render("campaign.toml", task.values(**found))
+    return Draft({"campaign.toml": text}, lambda tried: read_campaign(tried / "campaign.toml"))
+
+
+def _widened(plane: str, runs: Sequence[FoundRun]) -> dict[str, tuple[float, float]]:
+    """Return the preset's ranges made wide enough for what was recorded."""
+    preset = PRESETS[f"{plane}-1963"]
+    wanted = {
+        "frequency_hz": ([one.frequency_hz for one in runs], preset.frequency_hz),
+        "eccentricity_m": ([1e-3 * one.eccentricity_mm for one in runs], preset.eccentricity_m),
+    }
+    return {
+        key: (min(*values, limits.low), float(f"{1.1 * max(*values, limits.high):.2g}"))
+        for key, (values, limits) in wanted.items()
+        if any(value not in limits for value in values)
+    }
+
+
+def _inertia(task: Task) -> Draft:
+    """Do the test once with the records where they lie: a file that gives no number is no start."""
+    from pmm.inertia import bifilar, swing
+
+    name = FILES[task.job][0]
+    run = swing.run if task.job == "swing" else bifilar.run
+    near = [Path(os.path.relpath(path, task.folder)).as_posix() for path in task.recordings]
+    there = [path.resolve().as_posix() for path in task.recordings]
+
+    def trial(tried: Path) -> None:
+        path = tried / f"trial-{name}"
+        path.write_text(render(name, task.values(records=there)), encoding="utf-8")
+        run(str(path))
+
+    return Draft({name: render(name, task.values(records=near))}, trial)
+
+
+_DRAFTS: Final[Mapping[str, Callable[[Task], Draft]]] = {
+    "rig": _rig,
+    "campaign": _campaign,
+    "swing": _inertia,
+    "bifilar": _inertia,
+}

@@ -1,0 +1,115 @@
+"""What is asked before a first file is written, each with a default that works."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from hardware.description.errors import ConfigurationError
+
+PLANES: Final = ("vertical", "horizontal")
+AXES: Final = ("driven", "by-hand")
+
+
+@dataclass(frozen=True)
+class Question:
+    """One question, which an option of the same name answers beforehand.
+
+    Attributes
+    ----------
+    name
+        Of the option and in the template, with its unit.
+    default
+        The answer of whoever does not know yet; its type is the answer's.
+    choices
+        The answers that are possible, where they are few.
+    lowest
+        Numbers have to be above it.
+    """
+
+    name: str
+    text: str
+    default: str | float
+    choices: tuple[str, ...] = ()
+    lowest: float | None = None
+
+    def checked(self, answer: str | float) -> str | float:
+        """Return an answer that can be.
+
+        Raises
+        ------
+        ConfigurationError
+            For a number that is not above ``lowest``, or none of ``choices``.
+        """
+        if self.choices and answer not in self.choices:
+            known = ", ".join(self.choices)
+            raise ConfigurationError(f"{self.option} {answer}: should be one of {known}")
+        if isinstance(answer, float) and self.lowest is not None and not answer > self.lowest:
+            raise ConfigurationError(f"{self.option} {answer:g}: should be above {self.lowest:g}")
+        return answer
+
+    @property
+    def option(self) -> str:
+        """The command line's name of it."""
+        return f"--{self.name.replace('_', '-')}"
+
+
+Ask = Callable[[Question], str | float]
+NAME = Question("name", "What is it called", "first")
+MODEL: Final = (
+    Question("mass_kg", "Mass of the model with all below the gauges [kg]", 70.0, lowest=0.0),
+    Question("inertia_kg_m2", "Its inertia about the midpoint of the struts [kg m2]", 27.5,
+             lowest=0.0),
+)  # fmt: skip
+PLANE = Question("plane", "Plane of the oscillator: heave and pitch, or sway and yaw",
+                 "vertical", PLANES)  # fmt: skip
+SPACING = Question("half_spacing_m", "Half the distance between the struts [m]", 0.5, lowest=0.0)
+RIG: Final = (
+    NAME,
+    PLANE,
+    Question("interface", "CAN interface (pmm-simulated: no hardware needed)", "pmm-simulated"),
+    Question("channel", "Its channel", "simulated.toml"),
+    Question("axes", "Eccentricity and strut phase are set", "driven", AXES),
+    SPACING,
+    *MODEL,
+    Question("length_m", "Length of the model [m]", 2.5, lowest=0.0),
+    Question("tank_length_m", "Length that the carriage may use [m]", 120.0, lowest=0.0),
+    Question("full_scale_n", "Full scale of a force gauge [N]", 500.0, lowest=0.0),
+)
+CAMPAIGN: Final = (NAME, PLANE, SPACING, *MODEL)
+GRAVITY = Question("gravity_m_s2", "Gravity at the place [m/s2]", 9.81, lowest=0.0)
+SWING: Final = (
+    NAME,
+    GRAVITY,
+    Question("swing_mass_kg", "Mass of the empty swing [kg]", 42.28, lowest=0.0),
+    Question("lever_m", "Lever of the tilting weights [m]", 0.2, lowest=0.0),
+)
+BIFILAR: Final = (
+    NAME,
+    GRAVITY,
+    Question("half_spacing_m", "Half the distance between the lines [m]", 0.9, lowest=0.0),
+    Question("line_m", "Length of the lines [m]", 3.477, lowest=0.0),
+    Question("mass_kg", "Mass of what hangs on them [kg]", 603.2, lowest=0.0),
+)
+JOBS: Final[Mapping[str, Sequence[Question]]] = {
+    "rig": RIG,
+    "campaign": CAMPAIGN,
+    "swing": SWING,
+    "bifilar": BIFILAR,
+}
+
+
+def answers(job: str, given: Mapping[str, Any], ask: Ask) -> dict[str, str | float]:
+    """Return an answer to each question of a job: the one that was given, else that of ``ask``.
+
+    Raises
+    ------
+    ConfigurationError
+        If one cannot be.
+    """
+    found: dict[str, str | float] = {}
+    for question in JOBS[job]:
+        told = given.get(question.name)
+        if told is None and question.name == "channel" and found["interface"] != "pmm-simulated":
+            question = Question("channel", question.text, "can0")
+        found[question.name] = question.checked(ask(question) if told is None else told)
+    return found

@@ -1,0 +1,133 @@
+"""What ``pmm init`` writes passes the commands it is for, and nothing is written over."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from pmm.start.questions import JOBS
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def pmm(*words: object, typed: str | None = None) -> Result:
+    return CliRunner().invoke(cli, [str(one) for one in words], input=typed)
+
+
+@pytest.mark.parametrize("plane", ["vertical", "horizontal"])
+@pytest.mark.parametrize("axes", ["driven", "by-hand"])
+@pytest.mark.parametrize("interface", ["pmm-simulated", "socketcan"])
+def test_a_rig_passes_the_check_of_its_plan(
+    tmp_path: Path, plane: str, axes: str, interface: str
+) -> None:
+    options = ("--plane", plane, "--axes", axes, "--interface", interface)
+    made = pmm("init", "rig", "--yes", "--output", tmp_path, *options)
+    assert made.exit_code == 0, made.stderr
+    checked = pmm("plan", "check", tmp_path / "plan.toml")
+    assert checked.exit_code == 0, checked.stdout + checked.stderr
+    assert "the rig can run it" in checked.stdout
+    assert (tmp_path / "simulated.toml").exists() == (interface == "pmm-simulated")
+
+
+def test_a_simulated_rig_runs(tmp_path: Path) -> None:
+    pmm("init", "rig", "--yes", "--output", tmp_path)
+    done = pmm("run", tmp_path / "plan.toml", "--output", tmp_path / "runs",
+               "--only", "heave-f0.83-a20")  # fmt: skip
+    assert done.exit_code == 0, done.stderr
+    analysed = pmm("analyse", tmp_path / "runs", "--json")
+    (found,) = json.loads(analysed.stdout)["runs"]
+    assert found["reference_frequency_hz"] == pytest.approx(0.83, rel=1e-3)
+
+
+@pytest.mark.parametrize("plane", ["vertical", "horizontal"])
+def test_a_campaign_is_simulated_and_analysed(tmp_path: Path, plane: str) -> None:
+    pmm("init", "campaign", "--yes", "--output", tmp_path, "--plane", plane)
+    made = pmm("simulate", tmp_path / "campaign.toml", "--output", tmp_path / "out")
+    assert made.exit_code == 0, made.stderr
+    document = json.loads(pmm("analyse", tmp_path / "out", "--json").stdout)
+    assert len(document["runs"]) == 6
+    assert document["campaigns"] == []
+
+
+def test_recordings_become_a_campaign_with_their_set_points(tmp_path: Path) -> None:
+    recordings = sorted((EXAMPLES / "foreign").glob("*.csv.gz"))
+    made = pmm("init", "campaign", "--yes", "--output", tmp_path, *recordings)
+    assert made.exit_code == 0, made.stderr
+    document = json.loads(pmm("analyse", tmp_path, "--json").stdout)
+    assert document["failed"] == []
+    found = {Path(run["file"]).name.split(".")[0]: run["flags"] for run in document["runs"]}
+    assert set(found) == {f"{kind}_{f}" for kind in ("tauchen", "nicken")
+                          for f in ("060", "090", "120")}  # fmt: skip
+    differs = [flag for flags in found.values() for flag in flags
+               if flag["code"] == "set_point_differs"]  # fmt: skip
+    assert differs == []
+    (campaign,) = document["campaigns"]
+    assert {flag["channel"] for flag in campaign["flags"]} == {"force_aft", "force_fore"}
+
+
+def test_a_recording_with_units_in_its_headers_needs_no_question(tmp_path: Path) -> None:
+    pmm("init", "campaign", "--yes", "--output", tmp_path, EXAMPLES / "recordings/heave.csv.gz")
+    text = (tmp_path / "campaign.toml").read_text(encoding="utf-8")
+    assert 'displacement_aft = "Strut A"' in text
+    assert 'force_fore = "F2"' in text
+    assert "frequency_hz = 0.83" in text
+    assert pmm("analyse", tmp_path).exit_code == 0
+
+
+@pytest.mark.parametrize("job", ["swing", "bifilar"])
+def test_an_inertia_file_gives_a_number(tmp_path: Path, job: str) -> None:
+    assert pmm("init", job, "--yes", "--output", tmp_path).exit_code == 0
+    found = pmm("inertia", job, tmp_path / f"{job}.toml", "--json")
+    assert found.exit_code == 0, found.stderr
+    assert json.loads(found.stdout)["results"]
+
+
+def test_records_of_a_swing_are_named_from_the_file(tmp_path: Path) -> None:
+    records = sorted((EXAMPLES / "inertia").glob("swing-*.csv.gz"))
+    made = pmm("init", "swing", "--yes", "--output", tmp_path, *records)
+    assert made.exit_code == 0, made.stderr
+    found = json.loads(pmm("inertia", "swing", tmp_path / "swing.toml", "--json").stdout)
+    assert found["results"]["tare_period_s"]["value"] == pytest.approx(7.2869, abs=0.01)
+
+
+def test_questions_are_asked_and_answered(tmp_path: Path) -> None:
+    typed = "\n".join(["basin", "horizontal", *[""] * (len(JOBS["rig"]) - 2)]) + "\n"
+    made = pmm("init", "rig", "--output", tmp_path, typed=typed)
+    assert made.exit_code == 0, made.stderr
+    text = (tmp_path / "rig.toml").read_text(encoding="utf-8")
+    assert 'name = "basin"' in text
+    assert "horizontal-1963" in text
+    assert all(question.text in made.stderr for question in JOBS["rig"])
+
+
+@pytest.mark.parametrize("job", ["rig", "campaign", "swing", "bifilar"])
+def test_nothing_is_written_over_without_force(tmp_path: Path, job: str) -> None:
+    pmm("init", job, "--yes", "--output", tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    again = pmm("init", job, "--yes", "--output", tmp_path, "--name", "other")
+    assert again.exit_code == 2
+    assert "--force" in again.stderr
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert pmm("init", job, "--yes", "--output", tmp_path, "--name", "other",
+               "--force").exit_code == 0  # fmt: skip
+    assert any(path.read_bytes() != old for path, old in before.items())
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("rig", "--mass-kg", "-3"), "--mass-kg -3: should be above 0"),
+        (("rig", "--axes", "sideways"), "by-hand"),
+        (("campaign", "not-there.csv"), "not-there.csv: no such recording"),
+        (("rgi",), "did you mean 'rig'?"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_written(
+    tmp_path: Path, words: tuple[str, ...], said: str
+) -> None:
+    refused = pmm("init", words[0], "--yes", "--output", tmp_path, *words[1:])
+    assert refused.exit_code == 2
+    assert said in refused.stderr
+    assert list(tmp_path.iterdir()) == []
