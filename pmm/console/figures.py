@@ -33,7 +33,11 @@ def figures_of(
 
     points: list[dict[str, Any]] = []
     problems: list[str] = []
-    for folder, of in [*((one, "now") for one in folders), *((one, "earlier") for one in earlier)]:
+    with_runs = [one for one in folders if _has_runs(one)]
+    for folder, of in [
+        *((one, "now") for one in with_runs),
+        *((one, "earlier") for one in earlier),
+    ]:
         try:
             points += [{**one, "of": of, "campaign": folder.name} for one in _points(folder)]
         except (PmmError, OSError) as error:
@@ -47,6 +51,14 @@ def figures_of(
         for key in ("value", "half_width", "frequency_hz", "speed_m_s"):
             one[key] = number(one[key])
     return {"points": points, "problems": problems}
+
+
+def _has_runs(folder: Path) -> bool:
+    """Whether a campaign under way has a complete run yet: before that there is nothing to say."""
+    from pmm.campaign import CAMPAIGN_FILE
+    from pmm.configuration import read_toml
+
+    return bool(read_toml(folder / CAMPAIGN_FILE).get("runs"))
 
 
 def _points(folder: Path) -> Iterator[dict[str, Any]]:

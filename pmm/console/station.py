@@ -130,7 +130,7 @@ class Station:
             show_idle(self._rig, self._traces)
         self.control.step()
         if self.control.finished and self._waiting:
-            self._next_plan()
+            self._next_plan(goes_on=self.control.state is State.DONE)
 
     def close(self) -> list[str]:
         """Write what is still to be written; return what went wrong."""
@@ -178,7 +178,7 @@ class Station:
         self._waiting.append(plan)
         self._notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
         if self._idle and not self._left:
-            self._next_plan()
+            self._next_plan(goes_on=False)
         return f"{plan.plan.name} is queued"
 
     def _drop(self, number: int) -> str:
@@ -206,9 +206,9 @@ class Station:
         """How many runs of the present plan are still to be made."""
         return len(self.control.runs) - len(self.control.outcomes)
 
-    def _next_plan(self) -> None:
-        """Take the next plan; it begins by itself only behind one that ended by itself."""
-        goes_on = self.control.state is State.DONE and self._present is not None
+    def _next_plan(self, *, goes_on: bool) -> None:
+        """Take the next plan; queueing at rest moves nothing: that is what Start is for."""
+        goes_on = goes_on and self._present is not None
         if self._left and self._present is not None:
             return
         self._present = self._waiting.popleft()

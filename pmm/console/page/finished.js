@@ -56,12 +56,13 @@ export class Finished {
   }
 }
 
-const W = 620, H = 225, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
+const H = 190, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
 
 export class Coefficients {
   constructor() {
     this.points = [];
     byId("coefficient").addEventListener("change", () => this.draw());
+    new ResizeObserver(() => { if (byId("coefficient-chart").clientWidth !== this.width) this.draw(); }).observe(byId("coefficients"));
     this.draw();
   }
 
@@ -76,11 +77,13 @@ export class Coefficients {
 
   draw() {
     const name = byId("coefficient").value;
+    this.width = byId("coefficient-chart").clientWidth;
     const points = this.points.filter((one) => one.name === name && one.value !== null && one.frequency_hz !== null);
     if (!points.length) {
       byId("coefficient-chart").replaceChildren(html("p", { class: "quiet" }, "Coefficients come when runs in water have ended and their inertia is known."));
       return;
     }
+    const W = Math.max(280, this.width);
     const highs = points.map((one) => one.value + (one.half_width ?? 0)), lows = points.map((one) => one.value - (one.half_width ?? 0));
     const right = Math.max(...points.map((one) => one.frequency_hz)) * 1.1;
     const span = Math.max(Math.max(...highs) - Math.min(...lows), 0.05 * Math.abs(points[0].value), 1e-12);
@@ -98,17 +101,18 @@ export class Coefficients {
     for (let f = 0; f <= right; f += stepX) {
       parts.push(svg("text", { class: "note-text", x: x(f), y: H - 14, "text-anchor": "middle" }, [String(Number(f.toPrecision(3)))]));
     }
-    parts.push(svg("text", { class: "note-text", x: W - RIGHT, y: H - 1, "text-anchor": "end" }, ["frequency [Hz]"]),
+    parts.push(svg("text", { class: "note-text", x: W - RIGHT, y: H - 3, "text-anchor": "end" }, ["frequency [Hz]"]),
       svg("text", { class: "note-text", x: 2, y: 13 }, [`${name} [${points[0].unit}]   ● now   ◇ earlier   - - reference`]));
     const curve = points.filter((one) => one.of === "reference").sort((a, b) => a.frequency_hz - b.frequency_hz);
     if (curve.length) parts.push(svg("polyline", { class: "curve", points: curve.map((one) => `${x(one.frequency_hz)},${y(one.value)}`).join(" ") }));
-    for (const one of points.filter((each) => each.of !== "reference")) {
+    const measured = ["earlier", "now"].flatMap((of) => points.filter((each) => each.of === of)); // what is new on top
+    for (const one of measured) {
       const [px, py, half] = [x(one.frequency_hz), y(one.value), one.half_width ?? 0];
       parts.push(svg("line", { class: `bar ${one.of}`, x1: px, x2: px, y1: y(one.value - half), y2: y(one.value + half) }));
       const title = svg("title", {}, [`${one.campaign}: ${one.runs.join(", ")}: ${digits(one.value, half)} ${plusMinus(half)}`]);
       parts.push(one.of === "now" ? svg("circle", { class: "dot now", cx: px, cy: py, r: 4.5 }, [title])
         : svg("path", { class: "dot earlier", d: `M ${px} ${py - 6} l 6 6 l -6 6 l -6 -6 z` }, [title]));
     }
-    byId("coefficient-chart").replaceChildren(svg("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": `${name} over frequency` }, parts));
+    byId("coefficient-chart").replaceChildren(svg("svg", { viewBox: `0 0 ${W} ${H}`, height: H, role: "img", "aria-label": `${name} over frequency` }, parts));
   }
 }

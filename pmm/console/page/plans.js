@@ -28,7 +28,15 @@ export class Plans {
     text(byId("plan-said"), what === "check" ? "checking" : "queueing");
     const answer = await post(this.stream, `/api/plans/${what}`, body);
     byId("plan-said").replaceChildren(...(answer.ok ? this.said(answer) : [html("p", { "data-verdict": "refuse" }, answer.error)]));
-    if (answer.ok) this.refresh();
+    if (!answer.ok) return;
+    if (what === "queue") this.forget();
+    this.refresh();
+  }
+
+  // A text that is queued must not be sent again in place of the plan that is chosen next.
+  forget() {
+    byId("plan-text").value = "";
+    byId("plan-form").querySelector("details").open = false;
   }
 
   said({ plan, said }) {

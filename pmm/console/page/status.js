@@ -31,9 +31,9 @@ function facts(frame) {
     const say = (one) => (one === null || one === undefined ? "–" : (one * factor).toFixed(places));
     found.push([name, `${say(value)} ${shown}, set ${say(set[name])}`]);
   }
-  if (frame.set) found.push(["carriage, set", `${digits(frame.set.carriage_speed_m_s)} m/s in ${frame.set.medium}`]);
+  found.push(["carriage, set", frame.set ? `${digits(frame.set.carriage_speed_m_s)} m/s in ${frame.set.medium}` : "–"]);
   const bus = frame.bus;
-  const busText = bus.nodes ? `${bus.ok ? "in order" : "NOT IN ORDER"}, ${bus.nodes} nodes` : "none";
+  const busText = bus.nodes ? `${bus.ok ? "in order" : bus.faults.length ? "a fault is latched" : "NOT IN ORDER"}, ${bus.nodes} nodes` : "none";
   found.push(["bus", busText, bus.ok ? "" : "bad"]);
   if (bus.nodes) found.push(["error frames", String(bus.error_frames)]);
   const free = frame.free_bytes;
@@ -67,11 +67,14 @@ export class Facts {
 export function showProgress(frame, plans) {
   const plan = plans[frame.plan];
   text(byId("campaign"), plan ? plan.name : "no plan");
-  const done = Math.max(frame.run_number - 1, 0) + (frame.wanted ? frame.periods / frame.wanted : 0);
+  const all = frame.state === "done" && !frame.next.length;
+  const done = all ? frame.run_count : Math.max(frame.run_number - 1, 0) + (frame.wanted ? frame.periods / frame.wanted : 0);
   byId("campaign-bar").value = frame.run_count ? done / frame.run_count : 0;
   const left = plan ? plan.runs.slice(Math.max(frame.run_number - 1, 0)).reduce((sum, one) => sum + one.duration_s, 0) : 0;
   const hours = left >= 3600 ? `${Math.floor(left / 3600)} h ` : "";
-  text(byId("campaign-line"), plan ? `run ${frame.run_number} of ${frame.run_count}, at most ${hours}${Math.ceil((left % 3600) / 60)} min left; recorded to ${plan.folder}` : "");
+  const where = all ? `all ${frame.run_count} runs are done`
+    : `run ${frame.run_number} of ${frame.run_count}, at most ${hours}${Math.ceil((left % 3600) / 60)} min left`;
+  text(byId("campaign-line"), plan ? `${where}; recorded to ${plan.folder}` : "");
   const next = frame.next.map((name) => {
     const run = plan?.runs.find((one) => one.name === name);
     return run && run.frequency_hz ? `${name}: ${run.frequency_hz} Hz, ${(run.eccentricity_m * 1000).toFixed(1)} mm` : name;
@@ -91,12 +94,20 @@ export class Alarms {
   begin(notices) { this.box.replaceChildren(); this.count = 0; notices.forEach((one) => this.add(one)); }
 
   add(notice) {
-    if (notice.kind === "alarm") this.count += 1;
+    if (notice.kind === "alarm") {
+      this.count += 1;
+      text(byId("alarm-now"), notice.text);
+    }
     const time = html("time", {}, `${notice.time_s.toFixed(1)} s`);
     this.box.prepend(html("li", { "data-kind": notice.kind }, time, `${WORDS[notice.kind] ?? ""}${notice.text}`));
     while (this.box.children.length > 60) this.box.lastChild.remove();
     text(byId("alarm-count"), this.count ? `${this.count} so far` : "none");
   }
 
-  show(frame) { attribute(byId("alarms-panel"), "data-alarm", frame.state === "fault" ? "yes" : "no"); }
+  // The reason of a fault stands on top until it is reset.
+  show(frame) {
+    const fault = frame.state === "fault";
+    attribute(byId("alarms-panel"), "data-alarm", fault ? "yes" : "no");
+    byId("alarm-now").hidden = !fault;
+  }
 }

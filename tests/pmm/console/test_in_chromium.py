@@ -92,11 +92,15 @@ def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path) -> None:
         page.until(lambda: page.text("#state-name").endswith("fault"), "fault")
         page.until(lambda: "beyond its safe load" in page.text("#alarms"), "alarm")
         assert page.find("#alarms-panel").get_attribute("data-alarm") == "yes"
+        assert "beyond its safe load" in page.find("#alarm-now").text
+        assert page.find("#alarms-panel").rect["y"] < page.find("#readings").rect["y"]
         assert not page.find("[data-command='start']").is_enabled()
         page.until(lambda: "run-f2-a20" in page.text("#finished-table tbody"), "faulty run")
         page.press("reset")
         page.until(lambda: page.text("#state-name").endswith("idle"), "idle")
         assert page.find("#alarms-panel").get_attribute("data-alarm") == "no"
+        assert not page.find("#alarm-now").is_displayed()
+        assert page.text("#coefficient-problems") == ""
         assert page.run("return document.documentElement.scrollWidth") <= 390
 
 

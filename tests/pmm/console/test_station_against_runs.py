@@ -128,6 +128,24 @@ def test_plans_follow_each_other_and_every_point_of_a_trace_is_shown_once(tmp_pa
         )  # first and last frame, a cycle each
 
 
+def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "first", _short("a"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.DONE)
+        for _ in range(100):
+            one.station.step()
+        assert one.queue(2, "second", _short("b")).done
+        for _ in range(300):
+            one.station.step()
+        assert one.station.at_rest
+        assert one.order(OrderKind.COMMAND, "start").done
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "b"
+        one.order(OrderKind.COMMAND, "quick stop")
+        one.until(State.STOPPED)
+
+
 def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> None:
     with _shown(tmp_path) as one:
         one.queue(1, "first", _short("a"))
