@@ -3,7 +3,7 @@
 import inspect
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ import click
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign_file import read_campaign
+from pmm.cli.effects_printing import print_signature
 from pmm.cli.screen import busy, messages, output
 from sim.effects.agreement import simulated_signature
 from sim.effects.catalogue import build, catalogue, user_effects
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 JSON_SCHEMA = "pmm-effects-1"
-_SMALL = 1e-4  # of a channel's largest change: not worth a row
-_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -240,40 +239,4 @@ def _print(console: "Console", shown: Shown) -> None:
         value, wide = f"{getattr(effect, one.name):g}", f"{one.low:g} to {one.high:g}"
         table.add_row(one.name, value, f"{one.typical:g}", wide, one.unit, one.meaning)
     console.print(table)
-    _print_signature(console, shown)
-
-
-def _print_signature(console: "Console", shown: Shown) -> None:
-    from rich.table import Table
-
-    at = shown.set_point
-    console.print(
-        f"\nchange of the harmonics at {at.frequency_hz:g} Hz, {1e3 * at.eccentricity_m:g} mm, "
-        f"{math.degrees(at.strut_phase_rad):g} deg, {at.carriage_speed_m_s:g} m/s, in {at.medium}"
-    )
-    if not shown.theory:
-        console.print("theory states none here")
-    if not shown.effect.repeats:
-        console.print(
-            "it does not repeat with the shaft: theory is what an analysis then finds, the exact "
-            "periodic steady state has no part of it"
-        )
-    table = Table(box=None, padding=(0, 1), pad_edge=False)
-    for heading in ("channel", "n"):
-        table.add_column(heading)
-    for heading in ("theory: in phase", "quadrature", "simulated: in phase", "quadrature"):
-        table.add_column(heading, justify="right")
-    for key, found in shown.simulated.items():
-        stated = shown.theory.get(key, 0.0)
-        peak = shown.peak(key[0])
-        if max(abs(found), abs(stated)) > _SMALL * peak:
-            table.add_row(key[0], str(key[1]), *_cells(stated, peak), *_cells(found, peak))
-    console.print(table)
-    console.print(f"parts below {_SMALL:g} of a channel's largest are left out", style="dim")
-    for (channel, frequency_hz), value in shown.lines.items():
-        console.print(f"beside the harmonics: {channel} {abs(value):.5g} at {frequency_hz:.5g} Hz")
-
-
-def _cells(value: complex, peak: float) -> Sequence[str]:
-    parts = (complex(value).real, complex(value).imag)
-    return [f"{part:.5g}" if abs(part) > _ROUNDING * peak else "0" for part in parts]
+    print_signature(console, shown)
