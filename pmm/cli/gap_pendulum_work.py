@@ -1,6 +1,7 @@
 """What ``pmm gap pendulum`` does: read, diagnose, print."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
+from analysis.gap.pendulum.said import said
+from analysis.gap.pendulum.verdict import NONE, UNKNOWN, told_apart
 from pmm.cli.screen import busy, output
 from pmm.gap.pendulum import load_problem
 from pmm.gap.pendulum_document import document, parameters
@@ -16,6 +19,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _SHOWN = 6
+_LEAST = 1e-4  # probability that is worth a row
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,8 @@ def run(request: Request) -> None:
 
 
 def _print(console: "Console", found: Diagnosis) -> None:
+    for line in said(found):
+        console.print(line, style="bold", soft_wrap=True)
     best = ", ".join(found.verdict.best) or "none: no gap beyond u"
     console.print(f"most probable  {best} ({_percent(next(iter(found.verdict.by_set.values())))})")
     for name, rows in parameters(found.best).items():
@@ -55,7 +61,7 @@ def _print(console: "Console", found: Diagnosis) -> None:
     _table(
         console,
         ["answer", "probability"],
-        [(name, _percent(share)) for name, share in found.verdict.by_class.items()],
+        [(name, _percent(share)) for name, share in _probable(found)],
     )
     _table(
         console,
@@ -64,8 +70,8 @@ def _print(console: "Console", found: Diagnosis) -> None:
     )
     _table(
         console,
-        ["law of damping", "ln evidence ratio", "told apart"],
-        [(law.name, f"{law.log_ratio:.1f}", "no" if law.possible else "yes") for law in found.laws],
+        ["law of damping", "ln evidence ratio", "withheld gap [u]", "told apart"],
+        list(_laws(found)),
     )
     _table(
         console,
@@ -91,6 +97,20 @@ def _print(console: "Console", found: Diagnosis) -> None:
         ["next run", "expected separation [sigma]"],
         [(one.what, f"{one.separation:.1f}") for one in found.proposals[:_SHOWN]],
     )
+
+
+def _probable(found: Diagnosis) -> Iterator[tuple[str, float]]:
+    """Yield classes and single causes that are not out of the question, and both verdicts."""
+    for name, share in {**found.verdict.by_class, **found.verdict.by_cause}.items():
+        if share > _LEAST or name in (NONE, UNKNOWN):
+            yield name, share
+
+
+def _laws(found: Diagnosis) -> Iterator[tuple[str, ...]]:
+    for at, law in enumerate(found.laws):
+        apart = "yes" if told_apart(found.laws[0], law) else "no"
+        left = ", ".join(f"{gap:.1f}" for gap in law.withheld)
+        yield law.name, f"{law.log_ratio:.1f}", left, apart if at else ""
 
 
 def _percent(share: float) -> str:

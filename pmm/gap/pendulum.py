@@ -27,8 +27,9 @@ from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
 from pmm.configuration import Fault, as_error, read_toml, validate
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.benches import bifilar_bench, decay_bench
+from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
 from sim.pendulum.floating import Floating
+from sim.pendulum.pivot import Pendulum
 from sim.pendulum.suspension import Suspension
 
 _KEEP: dict[str, Any] = {"extra": "forbid", "allow_inf_nan": False}
@@ -66,7 +67,8 @@ class PendulumCase:
     Attributes
     ----------
     measured, simulated
-        A decay pair; without ``simulated`` the simulation is ``floating``.
+        A decay pair; without ``simulated`` the simulation is of ``floating``, a body afloat, or of
+        ``pivot``, parts on a knife edge: a swing, or a compound pendulum.
     suspensions
         One body on several pairs of lines; ``gyradius_m`` is what it is thought to have.
     swings
@@ -79,6 +81,7 @@ class PendulumCase:
     measured: Record | None = None
     simulated: Record | None = None
     floating: Floating | None = None
+    pivot: Pendulum | None = None
     suspensions: tuple[GateTable, ...] = ()
     gyradius_m: float = 1.0
     gravity_m_s2: float = 9.80665
@@ -103,8 +106,10 @@ def read_case(path: Path) -> PendulumCase:
         given = (case.measured is not None, bool(case.suspensions))
         if sum(given) != 1:
             faults.append(Fault(("measured",), "or [[suspensions]]: give exactly one of them"))
-        if case.measured and (case.simulated is None) == (case.floating is None):
-            faults.append(Fault(("simulated",), "or [floating]: give exactly one of them"))
+        told = (case.simulated, case.floating, case.pivot)
+        if case.measured and sum(one is not None for one in told) != 1:
+            said = "or [floating], or [pivot]: give exactly one of them"
+            faults.append(Fault(("simulated",), said))
     if case is None or faults:
         raise as_error(path, faults, table)
     return case
@@ -136,10 +141,11 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
     if case.measured is None:
         raise ConfigurationError(f"{case.name}: no [measured] record")
     part = _part(case.measured, folder)
-    if case.floating is not None:
-        return Problem((_sampled(part, case.floating, part.period_s),), known)
+    body = case.floating or case.pivot
+    if body is not None:
+        return Problem((_sampled(part, body, part.period_s),), known)
     if case.simulated is None:
-        raise ConfigurationError(f"{case.name}: no [simulated] record and no [floating]")
+        raise ConfigurationError(f"{case.name}: no [simulated] record, [floating] or [pivot]")
     theirs = _part(case.simulated, folder)
     # only the ratio of restoring to inertia shows in a decay
     unit = Floating(1.0, 0.0, (2.0 * math.pi / theirs.period_s) ** 2)
@@ -154,13 +160,19 @@ def _part(one: Record, folder: Path) -> UsablePart:
     return usable_part(series_from_recording(read_recording(folder / one.record), one.channel))
 
 
-def _sampled(part: UsablePart, body: Floating, period_s: float) -> Trial:
+def _sampled(part: UsablePart, body: Floating | Pendulum, period_s: float) -> Trial:
     series = part.series
     windows = cut_into_windows(series.start_s, float(series.time_s[-1]), period_s)
     found = swings_of_samples(series.time_s, series.values, windows)
-    bench = decay_bench(body, release=part.first_amplitude)
-    name = body.coordinate.name
+    bench = _bench(body, part.first_amplitude)
+    name = body.coordinates[0].name
     return Trial(series.name, bench, name, windows, found, scatter(found)).released()
+
+
+def _bench(body: Floating | Pendulum, release: float) -> PendulumBench:
+    if isinstance(body, Floating):
+        return decay_bench(body, release=release)
+    return compound_bench(body, release_rad=release)
 
 
 def _suspended(case: PendulumCase, one: GateTable, folder: Path) -> Trial:

@@ -5,6 +5,8 @@ from typing import Any, Final
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.hypothesis import Hypothesis
+from analysis.gap.pendulum.said import said
+from analysis.gap.pendulum.verdict import told_apart
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
 
@@ -15,6 +17,7 @@ def document(name: str, found: Diagnosis) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "name": name,
+        "said": list(said(found)),
         "best": list(verdict.best),
         "inflation": verdict.inflation,
         "probabilities": {
@@ -27,7 +30,12 @@ def document(name: str, found: Diagnosis) -> dict[str, Any]:
         "parameters": parameters(found.best),
         "where": [asdict(one) for one in found.where],
         "laws": [
-            {"name": law.name, "log_ratio": law.log_ratio, "possible": law.possible}
+            {
+                "name": law.name,
+                "log_ratio": law.log_ratio,
+                "withheld_u": list(law.withheld),
+                "told_apart": told_apart(found.laws[0], law),
+            }
             for law in found.laws
         ],
         "alternatives": [asdict(one) for one in found.alternatives],

@@ -12,12 +12,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.pendulum.setup import ON_LINES, SETUP
 from analysis.gap.pendulum.trial import Tolerance, Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects import CATALOGUE
 from sim.pendulum.effects.base import PendulumEffect, Plausible, plausible
+from sim.pendulum.effects.setup import ON_LINES
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
 
@@ -134,7 +134,7 @@ def causes_for(trials: Sequence[Trial]) -> tuple[Cause, ...]:
         unfit += ["yaw_pitch_resonance"]
     if not getattr(first, "linear", False):
         unfit += ["finite_amplitude"]
-    return tuple(cause(one) for one in (*CATALOGUE, *SETUP) if one.name not in unfit)
+    return tuple(cause(one) for one in CATALOGUE if one.name not in unfit)
 
 
 def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
@@ -145,7 +145,7 @@ def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
     ConfigurationError
         If there is no such effect, or it has more numbers than one.
     """
-    known: dict[str, type[Any]] = {one.name: one for one in (*CATALOGUE, *SETUP)}
+    known: dict[str, type[Any]] = {one.name: one for one in CATALOGUE}
     fit = [key for key, kind in known.items() if len(cause(kind).axes) == 1]
     if name not in fit:
         near = get_close_matches(name, fit, n=1, cutoff=0.4)

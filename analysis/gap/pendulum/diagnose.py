@@ -1,7 +1,7 @@
 """The whole diagnosis of a pendulum test or a free decay."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from analysis.gap.pendulum.causes import DAMPING, Cause, causes_for
 from analysis.gap.pendulum.further import Proposal, propose
@@ -16,6 +16,7 @@ from analysis.gap.pendulum.verdict import (
     alternatives,
     damping_laws,
     judge,
+    told_apart,
     where,
 )
 from analysis.gap.pendulum.withheld import Regime, foretell
@@ -77,6 +78,7 @@ def diagnose_trials(
     others = alternatives(problem, best, tried, verdict.inflation)
     progress("withheld swings")
     regimes = foretell(problem, _rivals(searched, best, laws)) if best.causes else ()
+    laws = _with_withheld(laws, regimes)
     rival = _rival(laws)
     proposals = propose(problem, *rival, verdict.inflation) if rival else ()
     return Diagnosis(
@@ -85,19 +87,29 @@ def diagnose_trials(
 
 
 def _rival(laws: Sequence[Law]) -> tuple[Hypothesis, Hypothesis] | None:
-    """Return the best law and the best one of another kind, if neither can be ruled out."""
-    possible = [law for law in laws if law.possible]
-    return (possible[0].hypothesis, possible[1].hypothesis) if len(possible) > 1 else None
+    """Return the best law and the next one that cannot be told from it, if there is one."""
+    left = [law for law in laws[1:] if not told_apart(laws[0], law)]
+    return (laws[0].hypothesis, left[0].hypothesis) if left else None
 
 
-_ALWAYS = ("quadratic", "linear and quadratic", "linear and cubic")
+_ASKED = 20.0  # ln evidence behind the best law within which the withheld swings are asked too
+
+
+def _with_withheld(laws: Sequence[Law], regimes: Sequence[Regime]) -> tuple[Law, ...]:
+    """Return the laws with what each leaves of the withheld swings."""
+    found = []
+    for law in laws:
+        names = law.hypothesis.names
+        gaps = [one.gap for regime in regimes for one in regime.foretold if one.causes == names]
+        found.append(replace(law, withheld=tuple(gaps)))
+    return tuple(found)
 
 
 def _rivals(searched: Searched, best: Hypothesis, laws: Sequence[Law]) -> tuple[Hypothesis, ...]:
-    """Return what to foretell with: the best set, the usual laws, the best single wrong cause."""
+    """Return what to foretell with: the best set, laws not far behind, the best wrong cause."""
     sets = {best.names: best}
     for law in laws:
-        if law.name in _ALWAYS:
+        if law.log_ratio > -_ASKED:
             sets.setdefault(law.hypothesis.names, law.hypothesis)
     wrong = [
         one

@@ -12,13 +12,13 @@ import numpy as np
 
 from analysis.gap.pendulum.causes import Cause, cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, effects_at, fit, null
-from analysis.gap.pendulum.setup import RestoringError
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Problem, Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects import body as effects
+from sim.pendulum.effects.setup import RestoringError
 
 _STAGES = (
     (effects.ViscousDamping,),

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.pendulum.setup import ReleaseError
 from analysis.gap.pendulum.swings import KINDS, Windows, swings_of_samples
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import DataError
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import PendulumEffect
+from sim.pendulum.effects.setup import ReleaseError
 from sim.pendulum.suspension import Suspension
 from sim.signals import recorded
 
@@ -129,6 +129,11 @@ class Problem:
     tolerances: tuple[Tolerance, ...] = ()
     kinds: tuple[str, ...] = KINDS
     model_error: tuple[float, ...] = (0.0,) * len(KINDS)
+
+    @property
+    def suspensions(self) -> bool:
+        """Whether the records are of one body on several suspensions, watched by light gates."""
+        return len(self.trials) > 2 and all(one.scaled for one in self.trials)
 
     @cached_property
     def _seen(self) -> tuple[NDArray[np.bool_], ...]:

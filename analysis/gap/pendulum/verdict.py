@@ -130,16 +130,32 @@ class Law:
     ----------
     log_ratio
         Natural log of its evidence over the best law's, weakened by the inflation.
+    withheld
+        The gap that it leaves on withheld swings, in u, one for each regime; empty where it was
+        not asked.
     """
 
     name: str
     hypothesis: Hypothesis
     log_ratio: float
+    withheld: tuple[float, ...] = ()
 
     @property
     def possible(self) -> bool:
-        """Whether the best law cannot be told from it."""
+        """Whether the record as a whole does not tell the best law from it."""
         return self.log_ratio > -math.log(TOLD_APART)
+
+
+def told_apart(first: Law, other: Law) -> bool:
+    """Whether the law of the best evidence can be told from another one.
+
+    Both have to say so: the evidence of the whole record, by a factor of 20, and the swings that
+    were withheld, none of which the other one foretells better. A law far behind in evidence is not
+    asked to foretell.
+    """
+    if first.name == other.name or other.possible:
+        return False
+    return all(one <= two for one, two in zip(first.withheld, other.withheld, strict=False))
 
 
 def damping_laws(problem: Problem, best: Hypothesis, wide: float) -> tuple[Law, ...]:

@@ -1,7 +1,8 @@
-"""How far the gap shrinks on swings that the fit has not seen, by regime of amplitude.
+"""How far the gap shrinks on swings that the fit has not seen.
 
 Half of each record's range of amplitude (in its logarithm) is withheld, first the small swings,
-then the large ones. Everything is fitted to the rest: releases, tolerances, causes.
+then the large ones; of one body on several suspensions each suspension in its turn, for light gates
+do not tell an amplitude. Everything is fitted to the rest: releases, tolerances, causes.
 """
 
 import math
@@ -69,7 +70,12 @@ class Regime:
 
 
 def foretell(problem: Problem, sets: Sequence[Hypothesis]) -> tuple[Regime, ...]:
-    """Withhold small swings, then large ones, and foretell them with some sets of causes."""
+    """Withhold small swings, then large ones, and foretell them with some sets of causes.
+
+    Where the records are of several suspensions, each of them is withheld instead.
+    """
+    if problem.suspensions:
+        return (_left_out(problem, sets),)
     found = []
     for name, large in (("small swings", False), ("large swings", True)):
         hidden = [_hidden(trial, large=large) for trial in problem.trials]
@@ -97,13 +103,7 @@ def _regime(
     hidden: Sequence[NDArray[np.bool_]],
     sets: Sequence[Hypothesis],
 ) -> Regime:
-    seen = replace(
-        problem,
-        trials=tuple(
-            replace(trial, observed=np.where(rows, np.nan, trial.observed))
-            for trial, rows in zip(problem.trials, hidden, strict=True)
-        ),
-    )
+    seen = _without(problem, hidden)
     parts = [
         np.broadcast_to(rows, (len(t.observed), rows.size))
         for rows, t in zip(hidden, problem.trials, strict=True)
@@ -118,6 +118,45 @@ def _regime(
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
     return Regime(name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after))
+
+
+def _without(problem: Problem, hidden: Sequence[NDArray[np.bool_]]) -> Problem:
+    """Return the problem without some windows of each trial."""
+    trials = [
+        replace(trial, observed=np.where(rows, np.nan, trial.observed))
+        for trial, rows in zip(problem.trials, hidden, strict=True)
+    ]
+    return replace(problem, trials=tuple(trials))
+
+
+def _left_out(problem: Problem, sets: Sequence[Hypothesis]) -> Regime:
+    """Foretell each suspension from the others."""
+    every = np.ones(problem.residual.size, dtype=bool)
+    lefts: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
+    for at in range(len(problem.trials)):
+        hidden = [
+            np.full(trial.windows.count, number == at)
+            for number, trial in enumerate(problem.trials)
+        ]
+        seen, rows = _without(problem, hidden), problem.trial == at
+        lefts[0].append(_left(problem, null(seen), rows))
+        for kept, one in zip(lefts[1:], sets, strict=True):
+            kept.append(_left(problem, fit(seen, one.causes, one.units), rows))
+    plain, *after = [
+        (np.concatenate([one for one, _ in part]), np.hstack([drawn for _, drawn in part]))
+        for part in lefts
+    ]
+    sizes = problem.amplitude
+    return Regime(
+        "each suspension",
+        sum(trial.windows.count for trial in problem.trials),
+        (float(sizes.min()), float(sizes.max())),
+        _foretold(problem, every, (), plain, plain),
+        tuple(
+            _foretold(problem, every, one.names, plain, left)
+            for one, left in zip(sets, after, strict=True)
+        ),
+    )
 
 
 def _left(

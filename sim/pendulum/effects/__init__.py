@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
-from sim.pendulum.effects import body, instruments, lines
+from sim.pendulum.effects import body, instruments, lines, setup
 from sim.pendulum.effects.base import PendulumEffect, check_plausible, plausible
 
 CATALOGUE: Final[tuple[type[Any], ...]] = (
@@ -34,6 +34,9 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.MissedPassages,
     instruments.GateJitter,
     instruments.WrongClock,
+    setup.InertiaError,
+    setup.RestoringError,
+    *setup.ON_LINES,
 )
 
 

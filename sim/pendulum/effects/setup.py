@@ -1,12 +1,12 @@
-"""What may be other than stated in a test's set-up: the body, the lines, the release, the reading.
+"""What may be other than stated in a test's set-up: the body, its lines, the release.
 
-They are effects of the same form as the simulator's catalogue, but for one thing: whoever makes a
-test states these numbers with a tolerance. Within it they are nuisances, beyond it causes.
+Whoever makes a test states these numbers with a tolerance. :class:`ReleaseError` is no entry of the
+catalogue: it needs the frequency of the test that it acts on.
 """
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
@@ -183,12 +183,4 @@ class ReleaseError:
         return replace(bench, release=release)
 
 
-SETUP: tuple[type[Any], ...] = (
-    InertiaError,
-    RestoringError,
-    LineExcess,
-    SpacingError,
-    ClampMass,
-    LineTwist,
-)
-ON_LINES: tuple[type[Any], ...] = (LineExcess, SpacingError, ClampMass, LineTwist)
+ON_LINES: Final[tuple[type[Any], ...]] = (LineExcess, SpacingError, ClampMass, LineTwist)

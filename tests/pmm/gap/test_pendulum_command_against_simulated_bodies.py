@@ -1,0 +1,96 @@
+"""``pmm gap pendulum`` on records of simulated bodies: table, document, figures."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from pmm.gap.pendulum_document import SCHEMA
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.benches import compound_bench, decay_bench
+from sim.pendulum.effects import make_effect
+from sim.pendulum.floating import Floating
+from sim.pendulum.pivot import Pendulum, RigidPart
+from sim.pendulum.record import record
+
+LOSS = 0.3  # of the amplitude a cycle over its square, 1/rad
+AFLOAT = Floating(inertia=100.0, added_inertia=20.0, restoring=800.0)
+ON_EDGE = Pendulum((RigidPart(20.0, 0.6, 1.5), RigidPart(70.0, 0.9, 12.0)))
+FILE = """
+name = "decay"
+[measured]
+record = "decay.csv"
+channel = "{channel}"
+[tolerances]
+inertia = 1e-3
+restoring = 1e-3
+"""
+FLOATING = """
+[floating]
+inertia = 100.0
+added_inertia = 20.0
+restoring = 800.0
+"""
+PIVOT = """
+[[pivot.parts]]
+mass_kg = 20.0
+lever_m = 0.6
+inertia_kg_m2 = 1.5
+[[pivot.parts]]
+mass_kg = 70.0
+lever_m = 0.9
+inertia_kg_m2 = 12.0
+"""
+
+
+def recorded(folder: Path, bench: PendulumBench, channel: str, table: str) -> Path:
+    """Write a record with drag and a little noise, and the file that names it."""
+    damped = bench.with_effects([make_effect("quadratic_drag", loss=LOSS)])
+    run = record(damped, duration_s=36.0, sample_rate_hz=25.0, seed=1).dataset
+    noise = np.random.default_rng(7).normal(0.0, 1e-4, run.sizes["time"])
+    rows = np.column_stack((run["time"].values, run[channel].values + noise))
+    header = f"time_s,{channel}"
+    np.savetxt(folder / "decay.csv", rows, delimiter=",", header=header, comments="")
+    path = folder / "decay.toml"
+    path.write_text(FILE.format(channel=channel) + table)
+    return path
+
+
+def run(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(cli, ["gap", "pendulum", *map(str, arguments)])
+
+
+def test_drag_on_a_knife_edge_is_named_in_the_document(tmp_path: Path) -> None:
+    path = recorded(tmp_path, compound_bench(ON_EDGE, release_rad=0.2), "angle", PIVOT)
+    done = run(path, "--most", "1", "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["schema"] == SCHEMA
+    assert found["best"] == ["quadratic_drag"]
+    loss = found["parameters"]["quadratic_drag"]["loss"]
+    assert abs(loss["value"] - LOSS) < max(4.0 * loss["uncertainty"], 0.01 * LOSS)
+    assert found["laws"][0]["withheld_u"]
+    assert all(one["foretold"][0]["shrinkage"] > 0.9 for one in found["withheld"])
+
+
+def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> None:
+    path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
+    done = run(path, "--most", "1", "--plot", tmp_path / "figures")
+    assert done.exit_code == 0, done.output
+    first = done.stdout.splitlines()[0]
+    assert first.startswith("the cause: ")
+    assert "what it was not fitted to" in first
+    for heading in ("answer", "where", "law of damping", "withheld: small swings", "told apart"):
+        assert heading in done.stdout
+    (figure,) = (tmp_path / "figures").iterdir()
+    assert figure.read_text().count("<svg") == 1
+
+
+def test_one_simulation_is_to_be_given(tmp_path: Path) -> None:
+    path = tmp_path / "decay.toml"
+    path.write_text(FILE.format(channel="roll") + FLOATING + PIVOT)
+    done = run(path)
+    assert done.exit_code == 2
+    assert "or [floating], or [pivot]: give exactly one of them" in done.stderr
