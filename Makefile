@@ -4,12 +4,13 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench sealed clean
+.PHONY: help demo test lint docs bench sealed clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
 	@echo "make test   install and run the tests"
 	@echo "make lint   formatting, types, imports"
+	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
@@ -21,6 +22,10 @@ $(VENV)/.user: pyproject.toml constraints.txt
 
 $(VENV)/.dev: $(VENV)/.user
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev]"
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,docs]"
 	@touch $@
 
 $(VENV)/.bench: $(VENV)/.dev
@@ -44,6 +49,11 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# Errors and gallery are made from the code; tests hold them to it.
+docs: $(VENV)/.docs
+	$(BIN)/python docs/errors.py
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs site
+
 bench: $(VENV)/.bench
 	$(BIN)/python -m benchmarks
 
@@ -55,4 +65,4 @@ sealed: $(VENV)/.sealed
 	$(BIN)/python -m tests.sealed score board --docs docs/scoreboard.md --json board/score.json
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) demo site docs/api/*/

@@ -3,6 +3,8 @@
 ``swing-1.csv.gz`` to ``swing-3.csv.gz``: an inclinometer on the empty swing, three releases,
 degrees at 32 Hz. ``stern-1.csv.gz`` to ``stern-3.csv.gz``: an ultrasonic range finder at the stern
 of a hull on two lines, yaw with sway, millimetres at 20 Hz. Headers name quantity and unit.
+``gate-1.csv`` to ``gate-3.csv``: a light gate at the rest position of a rudder that swings freely,
+its edges in seconds.
 """
 
 import gzip
@@ -16,6 +18,7 @@ from numpy.typing import NDArray
 SEED = 2014
 SWING_PERIOD_S = 7.2923
 RELEASE_SCATTER = 1e-3  # of the period, from one release to the next
+GATE_PERIOD_S = 1.5252
 HALF_SPACING_M, LINE_M, GYRADIUS_M = 0.900, 3.477, 1.056
 GRAVITY_M_S2 = 9.81
 
@@ -48,6 +51,17 @@ def stern(generator: Generator) -> str:
     return "\n".join(["Time [s],Range [mm]", *rows]) + "\n"
 
 
+def gate(generator: Generator) -> str:
+    """One release of the rudder past a gate: dark for 20 mm at each passage, 60 swings."""
+    passage = (np.arange(120) + 0.5) * GATE_PERIOD_S / 2.0
+    passage += 2e-5 * generator.standard_normal(passage.size)
+    speed = 0.4 * np.exp(-passage / 300.0)  # m/s at the gate
+    half = 0.01 / speed
+    edges = np.column_stack([passage - half, passage + half]).ravel()
+    rows = [f"{at:.6f},{(k + 1) % 2}" for k, at in enumerate(edges)]
+    return "\n".join(["Time,State", *rows]) + "\n"
+
+
 def main(folder: Path = Path(__file__).parent) -> None:
     """Write all of them."""
     for number in (1, 2, 3):
@@ -55,6 +69,7 @@ def main(folder: Path = Path(__file__).parent) -> None:
         for name, text in (("swing", swing(generator)), ("stern", stern(generator))):
             packed = gzip.compress(text.encode(), mtime=0)
             (folder / f"{name}-{number}.csv.gz").write_bytes(packed)
+        (folder / f"gate-{number}.csv").write_text(gate(generator), encoding="utf-8")
 
 
 if __name__ == "__main__":

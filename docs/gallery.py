@@ -1,0 +1,168 @@
+"""Draw the gallery anew: ``python -m docs.gallery``, or with names of functions to draw only those.
+
+Every function of the program that returns a figure has to be in ``gallery.toml`` beside this file,
+with the command that draws it; the commands run here, and what the functions return is kept.
+"""
+
+import ast
+import os
+import shutil
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HERE = Path(__file__).parent
+HOUSE = HERE.parent
+PICTURES = HERE / "images" / "gallery"
+DPI = 64
+COLOURS = 64
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One plot: the function that draws it, what it shows, and the command.
+
+    Attributes
+    ----------
+    why_not
+        Why there is no picture, where there is none.
+    """
+
+    draws: str
+    title: str
+    shows: str
+    command: str
+    why_not: str = ""
+
+    @property
+    def picture(self) -> Path:
+        """Where the picture lies."""
+        return PICTURES / f"{self.draws.replace('pmm.', '', 1).replace('.', '-')}.png"
+
+
+def entries() -> list[Entry]:
+    """Return the list."""
+    told = tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))
+    return [Entry(**one) for one in told["plots"]]
+
+
+def drawing_functions() -> set[str]:
+    """Return all public functions of the program that return a figure, by their full names."""
+    found = set()
+    for path in sorted((HOUSE / "pmm").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if "from matplotlib.figure import Figure" not in text:
+            continue
+        module = ".".join(path.relative_to(HOUSE).with_suffix("").parts)
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+                returned = ast.unparse(node.returns) if node.returns else ""
+                if returned.strip("'\"") == "Figure":
+                    found.add(f"{module}.{node.name}")
+    return found
+
+
+def page() -> str:
+    """Return ``gallery.md``."""
+    told = tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))
+    lines = [told["head"]]
+    for one in entries():
+        lines += [f"## {one.title}\n", f"{one.shows}\n", f"```sh\n{one.command}\n```\n"]
+        if one.why_not:
+            lines.append(f"No picture here: {one.why_not}\n")
+        else:
+            lines.append(f"![{one.title}]({one.picture.relative_to(HERE).as_posix()})\n")
+    return "\n".join(lines)
+
+
+def draw(wanted: Callable[[Entry], bool]) -> Iterator[Entry]:
+    """Run the commands and keep the pictures; yield what was not drawn."""
+    chosen = [one for one in entries() if wanted(one) and not one.why_not]
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        shutil.copytree(HOUSE / "examples", folder / "examples")
+        before = Path.cwd()
+        os.chdir(folder)
+        try:
+            yield from _draw_all(chosen)
+        finally:
+            os.chdir(before)
+
+
+def _draw_all(chosen: list[Entry]) -> Iterator[Entry]:
+    kept: dict[str, bytes] = {}
+    for command in dict.fromkeys(line for one in chosen for line in one.command.splitlines()):
+        kept |= _figures_of(command)
+    for one in chosen:
+        if one.draws in kept:
+            one.picture.write_bytes(kept[one.draws])
+        else:
+            yield one
+
+
+def _figures_of(command: str) -> dict[str, bytes]:
+    """Run a command and return the first figure of each function that drew one."""
+    import shlex
+
+    from click.testing import CliRunner
+
+    from pmm.cli import cli
+
+    found: dict[str, bytes] = {}
+    names = {one.draws for one in entries()}
+
+    def watch(frame: FrameType, event: str, value: Any) -> None:
+        if event != "return" or type(value).__name__ != "Figure":
+            return
+        name = f"{frame.f_globals.get('__name__', '')}.{frame.f_code.co_name}"
+        if name in names and name not in found:
+            sys.setprofile(None)
+            found[name] = _small(value)
+            sys.setprofile(watch)
+
+    sys.setprofile(watch)
+    try:
+        done = CliRunner().invoke(cli, shlex.split(command)[1:])
+    finally:
+        sys.setprofile(None)
+    sys.stdout.write(f"{command}: {done.exit_code}, {len(found)} figures\n")
+    if done.exit_code:
+        sys.stdout.write(f"{done.stderr[-500:]}\n{done.exception!r}\n")
+    return found
+
+
+def _small(figure: "Figure") -> bytes:
+    """Return a figure as a small PNG of few colours."""
+    from PIL import Image
+
+    from pmm.report.style import drawing
+
+    drawn, small = BytesIO(), BytesIO()
+    with drawing():
+        figure.savefig(drawn, format="png", dpi=DPI)
+    image = Image.open(drawn).convert("RGB").quantize(COLOURS)
+    image.save(small, format="PNG", optimize=True)
+    return small.getvalue()
+
+
+def main() -> None:
+    """Draw what is named, or all, and write the page."""
+    names = sys.argv[1:]
+    missing = list(draw(lambda one: not names or any(name in one.draws for name in names)))
+    (HERE / "gallery.md").write_text(page(), encoding="utf-8")
+    if missing:
+        sys.exit("not drawn: " + ", ".join(one.draws for one in missing))
+
+
+if __name__ == "__main__":
+    main()
