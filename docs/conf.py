@@ -20,6 +20,7 @@ extensions = [
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "index"
+exclude_patterns = ["api/*/modules.rst"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4

@@ -1,12 +1,12 @@
 """Non-linear coefficients from cycles: single runs, several runs, quasi-steady or with all orders.
 
-===================  ============  ======================================================
-method               harmonics     tells cubic from linear by
-===================  ============  ======================================================
-:data:`HIGHER`       1, 2, 3       third harmonics and amplitudes, all runs together
-:data:`FIRST`        1             amplitudes alone (multiple runs)
-:data:`QUASI_STEADY` 0, 1          means and amplitudes; needs zero runs, or a constant term
-===================  ============  ======================================================
+====================  ============  ==========================================================
+method                harmonics     tells cubic from linear by
+====================  ============  ==========================================================
+:data:`HIGHER`        1, 2, 3       third harmonics and amplitudes, all runs together
+:data:`FIRST`         1             amplitudes alone (multiple runs)
+:data:`QUASI_STEADY`  0, 1          means and amplitudes; needs zero runs, or a constant term
+====================  ============  ==========================================================
 
 A single run is fitted by giving it alone.
 """
@@ -19,8 +19,8 @@ import numpy as np
 
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
-from analysis.coefficients.cycle_model import CycleProblem
-from analysis.coefficients.phasors import FloatArray, Source, real_form
+from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE, CycleProblem
+from analysis.coefficients.phasors import ComplexArray, FloatArray
 from analysis.coefficients.quality import residual_spread, trusted
 from analysis.coefficients.stated import STATED, Stated
 from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of
@@ -60,7 +60,7 @@ class CycleFit:
     @cached_property
     def uncertain(self) -> UncertainValues:
         """The values with what scatter and stated uncertainties add."""
-        return UncertainValues(self.values, tuple(_contributions(self.problem, self.stated)))
+        return UncertainValues(self.values, tuple(_contributions(self)))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""
@@ -104,18 +104,24 @@ def fit_cycles(
     first = CycleProblem(
         tuple(cycles), terms, orders, np.ones((len(cycles), len(orders), 3)), highest
     )
-    check_determined(first)
-    problem = replace(first, weights=_weights(first))
-    nominal = problem.solve(problem.parts()[None], np.zeros((1, len(STATED))))[0]
-    chi_square, data = _squares(problem, nominal)
+    design, loads = first.nominal_design()
+    check_determined(first, design[0])
+    problem = replace(first, weights=_weights(first, first.fit(design, loads)[0]))
+    nominal = problem.fit(design, loads)[0]
+    chi_square, data = _squares(problem, nominal, design[0], loads[0])
     own = tuple(name_of_term(term, cycles[0].plane) for term in terms)
     return CycleFit(own, terms, nominal, chi_square, data, problem, stated)
 
 
-def _weights(problem: CycleProblem) -> FloatArray:
-    """One over the scatter of each load and order, shrunk towards the mean of all cycles'."""
-    linear = problem.linear
-    spread = residual_spread(linear, _linear_part(problem))
+def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
+    """One over the scatter of each load and order, shrunk towards the mean of all cycles'.
+
+    Parameters
+    ----------
+    first
+        Coefficients of a fit without weights.
+    """
+    spread = residual_spread(problem.linear, _linear_part(problem, first))
     count = problem.highest + 1
     variance = spread.reshape(len(problem.cycles), count, 2) ** 2
     whole = np.concatenate((variance, _surge_variance(problem, count)), axis=2)
@@ -133,11 +139,10 @@ def _fewest(cycle: Cycle) -> float:
     return min((source.degrees_of_freedom for source in cycle.phasors.sources), default=np.inf)
 
 
-def _linear_part(problem: CycleProblem) -> FloatArray:
+def _linear_part(problem: CycleProblem, first: FloatArray) -> FloatArray:
     """A and B of the linear terms in a first fit, shape ``(2, 2, 2)``, for the residuals' size."""
-    nominal = problem.solve(problem.parts()[None], np.zeros((1, len(STATED))))[0]
     found = np.zeros((2, 2, 2))
-    for term, value in zip(problem.terms, nominal, strict=True):
+    for term, value in zip(problem.terms, first, strict=True):
         if term.degree == 1 and term.row != SURGE and "|" not in term.factors[0]:
             column = int("r" in term.factors[0].replace("dot", ""))
             found[term.row, column, int(term.rates == 0)] = -value
@@ -154,33 +159,32 @@ def _surge_variance(problem: CycleProblem, count: int) -> FloatArray:
     return found
 
 
-def _squares(problem: CycleProblem, nominal: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _squares(
+    problem: CycleProblem, nominal: FloatArray, design: ComplexArray, loads: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
     """Weighted squares and count of the numbers fitted, by load."""
-    design, loads = problem.design(problem.parts()[None], np.zeros((1, len(STATED))))
     squares, data = np.zeros(3), np.zeros(3)
     for row in range(3):
         columns = [k for k, term in enumerate(problem.terms) if term.row == row]
         if not columns:
             continue
-        left = loads[0, ..., row] - design[0][..., columns] @ nominal[columns]
+        left = loads[..., row] - design[..., columns] @ nominal[columns]
         squares[row] = float((np.abs(problem.weights[..., row] * left) ** 2).sum())
         per_order = [1 if order == 0 else 2 for order in problem.orders]
         data[row] = len(problem.cycles) * sum(per_order)
     return squares, data
 
 
-def _contributions(problem: CycleProblem, stated: Stated) -> list[Contribution]:
+def _contributions(fit: CycleFit) -> list[Contribution]:
     """Scatter by source of each cycle, then each stated uncertainty that is not zero."""
-    by_part, by_stated = _slopes(problem, stated)
+    problem, stated = fit.problem, fit.stated
+    by_part, by_stated = _slopes(problem, fit.values, stated)
     everywhere, found = np.arange(len(problem.terms)), []
-    size = problem.per_cycle
     for k, cycle in enumerate(problem.cycles):
-        slope = by_part[:, k * size : (k + 1) * size]
-        places = problem.places(cycle)
-        pick = real_form(np.eye(len(cycle.phasors.names))[[max(p, 0) for p in places]])
-        pick[np.repeat(np.array(places) < 0, 2)] = 0.0
+        of_fit, of_cycle = problem.measured(cycle)
+        slope = by_part[k][:, of_fit]
         for source in cycle.phasors.sources:
-            parts = slope @ pick @ root_of(source)
+            parts = slope @ source.root[of_cycle]
             found.append(Contribution(source.label, source.degrees_of_freedom, everywhere, parts))
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
@@ -189,50 +193,38 @@ def _contributions(problem: CycleProblem, stated: Stated) -> list[Contribution]:
     return found
 
 
-def root_of(source: Source) -> FloatArray:
-    """Return a square root of a source's covariance; NaN where it has none."""
-    if not np.isfinite(source.covariance).all():
-        return np.full_like(source.covariance, np.nan)
-    values, vectors = np.linalg.eigh(source.covariance)
-    return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
+def _slopes(
+    problem: CycleProblem, values: FloatArray, stated: Stated
+) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives by the cycles' numbers and by the stated quantities.
 
+    A cycle's numbers change that cycle's part of the design alone, so that all cycles are moved at
+    once; what a moved design does to the coefficients is exact.
 
-def _slopes(problem: CycleProblem, stated: Stated) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by the cycles' numbers and by the stated quantities: central differences.
-
-    A cycle's numbers change that cycle's part of the design alone.
+    Returns
+    -------
+    by_part
+        Shape ``(cycles, terms, per_cycle)``.
+    by_stated
+        Shape ``(terms, len(STATED))``.
     """
     parts = problem.parts()
-    none = np.zeros((1, len(STATED)))
-    design, loads = problem.design(parts[None], none)
     size = np.abs(parts).reshape(len(parts), problem.highest + 1, -1, 2)
-    largest = _STEP * np.broadcast_to(size.max(axis=(0, 1, 3))[:, None], size.shape[1:]).ravel()
-    moving = np.flatnonzero(largest)
-    shifts = np.zeros((len(moving), len(largest)))
-    shifts[np.arange(len(moving)), moving] = largest[moving]
-    both = np.concatenate((shifts, -shifts))
-    slopes = np.zeros((parts.size, len(problem.terms)))
-    for k in range(len(parts)):
-        own = problem.alone(k).design((parts[k] + both)[:, None], none.repeat(len(both), axis=0))
-        changed = [np.repeat(whole, len(both), axis=0) for whole in (design, loads)]
-        for whole, part in zip(changed, own, strict=True):
-            whole[:, k] = part[:, 0]
-        solved = problem.fit(*changed)
-        difference = solved[: len(moving)] - solved[len(moving) :]
-        slopes[k * len(largest) + moving] = difference / (2.0 * largest[moving, None])
-    return slopes.T, _stated_slopes(problem, stated)
-
-
-def _stated_slopes(problem: CycleProblem, stated: Stated) -> FloatArray:
-    steps = _STATED_STEP * stated.vector
-    moving = np.flatnonzero(steps)
-    shifts = np.zeros((len(moving), len(steps)))
-    shifts[np.arange(len(moving)), moving] = steps[moving]
-    both = np.concatenate((shifts, -shifts))
-    parts = np.broadcast_to(problem.parts(), (len(both), *problem.parts().shape))
-    found = np.zeros((len(problem.terms), len(steps)))
-    if len(moving):
-        solved = problem.solve(parts, both)
-        difference = solved[: len(moving)] - solved[len(moving) :]
-        found[:, moving] = (difference / (2.0 * steps[moving, None])).T
-    return found
+    steps = _STEP * np.broadcast_to(size.max(axis=(0, 1, 3))[:, None], size.shape[1:]).ravel()
+    spreads = _STATED_STEP * stated.vector
+    shifts = np.concatenate((np.diag(steps), np.zeros((len(spreads), len(steps)))))
+    off = np.concatenate((np.zeros((len(steps), len(spreads))), np.diag(spreads)))
+    every = np.concatenate((steps, spreads))
+    found = np.zeros((len(every), len(parts), len(values)))
+    moving = np.flatnonzero(every)
+    for some in np.array_split(moving, -(-len(moving) * len(parts) // DESIGNS_AT_ONCE)):
+        ahead, back = (
+            problem.design(parts + sign * shifts[some, None], sign * off[some])
+            for sign in (1.0, -1.0)
+        )
+        change = [
+            (more - less) / (2.0 * every[some]).reshape(-1, *(1,) * (more.ndim - 1))
+            for more, less in zip(ahead, back, strict=True)
+        ]
+        found[some] = problem.followed(values, *change)
+    return found[: len(steps)].transpose(1, 2, 0), found[len(steps) :].sum(axis=1).T

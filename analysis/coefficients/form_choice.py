@@ -1,4 +1,4 @@
-"""Which non-linear form the data support: cubic, |v|v, both or none; or that they cannot tell.
+"""Which non-linear form the data support: cubic, ``|v|v``, both or none; or that they cannot tell.
 
 All forms are fitted to the same harmonics. Squares of the residuals over their scatter give
 Akaike's criterion for few data, and ``exp(difference/2)`` is the evidence ratio. Where even the

@@ -63,7 +63,7 @@ def squared(situation: Situation) -> ComplexArray:
     """Return the harmonics of each strut's force squared, shape ``(orders + 1, 2)``.
 
     With F = sum H_n exp(i n th) in two-sided form the square is a convolution; for a force with one
-    harmonic it leaves |H|^2/2 as the mean and -i H^2/2 at the second order.
+    harmonic it leaves ``|H|^2/2`` as the mean and -i H^2/2 at the second order.
     """
     forces = np.array([situation.force(order) for order in range(MOST + 1)])
     columns = [_square(forces[:, strut]) for strut in range(2)]

@@ -119,7 +119,7 @@ class RadiationTable:
         return a, b
 
     def asymmetry(self) -> float:
-        """Return the largest |A_12 - A_21| or |B_12 - B_21|, relative to the diagonal.
+        """Return the largest ``|A_12 - A_21|`` or ``|B_12 - B_21|``, relative to the diagonal.
 
         The scale is sqrt(max X_11 max X_22) for each of both, so that the units cancel. Potential
         theory at zero speed has 0.
