@@ -58,6 +58,7 @@ def show_console() -> None:
             page.open(one.address)
             page.queue(PLAN)
             page.press("start")
+            page.until(lambda: "f0.65" in page.text("#finished-table tbody"), "first run")
             page.until(lambda: "Z_wdot" in page.text("#coefficient"), "coefficients")
             page.until(lambda: "3 of 3" in page.text("#state-run"), "last run")
             page.until(lambda: int(page.text("#periods")) >= 5, "five periods")

@@ -33,13 +33,10 @@ def figures_of(
 
     points: list[dict[str, Any]] = []
     problems: list[str] = []
-    with_runs = [one for one in folders if _has_runs(one)]
-    for folder, of in [
-        *((one, "now") for one in with_runs),
-        *((one, "earlier") for one in earlier),
-    ]:
+    for folder, of in [*((one, "now") for one in folders), *((one, "earlier") for one in earlier)]:
         try:
-            points += [{**one, "of": of, "campaign": folder.name} for one in _points(folder)]
+            if of == "earlier" or _has_runs(folder):
+                points += [{**one, "of": of, "campaign": folder.name} for one in _points(folder)]
         except (PmmError, OSError) as error:
             problems.append(f"{folder.name}: {error}")
     if reference is not None and points:
