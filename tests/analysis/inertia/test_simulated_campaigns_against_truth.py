@@ -12,6 +12,7 @@ from numpy.random import Generator
 
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing import SwingState, forecast_swing
+from benchmarks.inertia_bound import bound_ratio, bound_ratio_two
 from benchmarks.inertia_campaigns import (
     LEVER_RELATIVE,
     MODEL,
@@ -24,7 +25,7 @@ from benchmarks.inertia_campaigns import (
     swing_campaign,
     tilt_relative,
 )
-from benchmarks.inertia_simulated import bound_ratio, worst_errors
+from benchmarks.inertia_simulated import worst_errors
 from sim.pendulum.benches import SWING_2021, SWING_MODEL_2021
 from sim.pendulum.pivot import RigidPart
 
@@ -37,6 +38,10 @@ def test_gyradius_to_a_thousandth_and_centre_of_gravity_to_a_millimetre() -> Non
 
 def test_the_period_scatters_as_the_noise_allows() -> None:
     assert bound_ratio(500, 3) == pytest.approx(1.0, abs=0.1)
+
+
+def test_both_periods_of_one_record_scatter_as_the_noise_allows() -> None:
+    assert bound_ratio_two(300, 5) == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.slow
