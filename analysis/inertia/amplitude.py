@@ -18,6 +18,7 @@ from hardware.description.errors import DataError
 
 FEWEST_PARTS = 4
 MOST_PARTS = 16
+FEWEST_SWINGS = 1.5  # in a part
 STRAYED = 0.1  # relative difference from the whole record's period: another oscillation
 
 
@@ -99,6 +100,7 @@ def local_periods(
     *,
     mode: int = 0,
     parts: int | None = None,
+    where: str = "record",
 ) -> LocalPeriods:
     """Cut a record into parts and fit each; parts that show another oscillation are left out.
 
@@ -117,10 +119,11 @@ def local_periods(
     chosen = fit.modes[mode]
     swings = (time_s[-1] - time_s[0]) / chosen.period_s
     count = parts or int(np.clip(swings // 3, FEWEST_PARTS, MOST_PARTS))
-    if swings / count < 1.5:
+    if swings / count < FEWEST_SWINGS:
         raise DataError(
-            f"too few swings: {swings:.2g} in {count} parts; at least 1.5 are needed in each: "
-            "record longer"
+            f"{where}: too few swings: {swings:.3g} of {chosen.period_s:.3g} s are usable, at "
+            f"least {FEWEST_SWINGS * count:g} are needed to see how the period changes with the "
+            "amplitude; record longer or release from further out"
         )
     rest = values - _others(fit, mode, time_s)
     edges = np.linspace(time_s[0], time_s[-1], count + 1)
@@ -138,8 +141,9 @@ def local_periods(
         rows.append((middle, there, best.period_s, own.period_uncertainty_s()))
     if len(rows) < FEWEST_PARTS:
         raise DataError(
-            f"{len(rows)} of {count} parts show the oscillation of {chosen.period_s:.4g} s; at "
-            f"least {FEWEST_PARTS} are needed: a record with fewer gaps, or less of other motions"
+            f"{where}: {len(rows)} of {count} parts show the oscillation of {chosen.period_s:.4g} "
+            f"s; at least {FEWEST_PARTS} are needed: a record with fewer gaps, or less of other "
+            "motions"
         )
     return LocalPeriods(*np.array(rows).T)
 

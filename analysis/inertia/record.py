@@ -85,7 +85,7 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         raise DataError(void[0].message)
     found = []
     for mode in range(modes):
-        local = local_periods(time_s, values, fit, mode=mode)
+        local = local_periods(time_s, values, fit, mode=mode, where=series.where)
         decay = fit_power_decay(local.time_s, local.amplitude)
         if not decay.converged:
             message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"

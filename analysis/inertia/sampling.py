@@ -22,7 +22,7 @@ def rough_period(where: str, values: FloatArray, sample_rate_hz: float) -> float
     """
     lines = spectrum(values, sample_rate_hz)
     top, usual = float(lines.amplitude[1:].max()), float(np.median(lines.amplitude))
-    if top < LINE_OVER_MEDIAN * usual:
+    if not top > LINE_OVER_MEDIAN * usual:
         raise DataError(
             f"{where}: the strongest line is {top / max(usual, 1e-300):.2g} times the median one "
             f"(at least {LINE_OVER_MEDIAN:g}); nothing swings: choose another channel, or release "

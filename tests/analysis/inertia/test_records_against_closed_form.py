@@ -17,6 +17,7 @@ from analysis.inertia.checks import (
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import GateEvents, gate_events, passages, read_gate_events
 from analysis.inertia.passage_fit import fit_passages
+from analysis.inertia.record import analyse_record
 from analysis.inertia.repeats import combine_runs
 from analysis.inertia.series import Series, series_from_recording, usable_part
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
@@ -80,6 +81,11 @@ def test_too_few_swings() -> None:
     assert [flag.code for flag in check_record(usable_part(some))] == ["few_swings"]
 
 
+def test_swings_too_few_to_follow_the_amplitude_are_counted_out() -> None:
+    with pytest.raises(DataError, match=r"swing, angle: too few swings: 4\.\d+ of 3 s .* least 6"):
+        analyse_record(record(noisy(T[:260], 3.0, 0.0, 0.05)))
+
+
 def test_aliasing() -> None:
     slow = np.arange(0.0, 300.0, 0.8)
     with pytest.raises(DataError, match="aliasing"):
@@ -116,6 +122,8 @@ def test_wrong_axis() -> None:
 
 
 def test_nothing_swings() -> None:
+    with pytest.raises(DataError, match="nothing swings"):
+        usable_part(record(np.ones(2000)))
     still = np.random.default_rng(0).standard_normal(2000)
     with pytest.raises(DataError, match="nothing swings"):
         usable_part(record(still))
