@@ -176,16 +176,28 @@ def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -
 
 
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
-    """Combine parameters, shape ``(parts, 10)``, by the signs of the parts; complex ones too."""
-    mass = signs * rows[:, 0]
-    total = mass.sum()
-    centre = (mass @ rows[:, 1:4]) / total
-    own = signs @ rows[:, 4:]
-    return np.concatenate([[total], centre, own + mass @ _shifted(rows[:, 1:4] - centre)])
+    """Combine parameters by the signs of the parts; complex ones too.
+
+    Parameters
+    ----------
+    rows
+        Shape ``(parts, 10, ...)``: trials may follow.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(10, ...)``.
+    """
+    mass = np.einsum("p,p...->p...", signs, rows[:, 0])
+    total = mass.sum(axis=0)
+    centre = np.einsum("p...,pk...->k...", mass, rows[:, 1:4]) / total
+    own = np.einsum("p,pk...->k...", signs, rows[:, 4:])
+    moved = np.einsum("p...,pk...->k...", mass, _shifted(rows[:, 1:4] - centre))
+    return np.concatenate([total[np.newaxis], centre, own + moved])
 
 
 def _shifted(place: FloatArray) -> FloatArray:
-    """Inertia of unit masses at places, shape ``(parts, 6)``."""
+    """Inertia of unit masses at places, shape ``(parts, 6, ...)``."""
     x, y, z = place[:, 0], place[:, 1], place[:, 2]
     return np.stack([y * y + z * z, z * z + x * x, x * x + y * y, x * y, x * z, y * z], axis=1)
 

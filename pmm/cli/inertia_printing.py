@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from analysis.inertia.monte_carlo import Assessment
 
 _NOTHING = 1e-9  # metres, kilograms: what rounding leaves of zero
+_MOST_LINES = 8  # of a budget; the rest together
 _STYLES = {"pass": "green", "fail": "bold red", "undecided": "yellow"}
 
 
@@ -118,9 +119,8 @@ def _print_budgets(console: "Console", outcome: Outcome) -> None:
 
 def _print_budget(console: "Console", name: str, one: "Assessment") -> None:
     table = _table(f"budget of {name}", "value ± u", "unit", "dof", "contribution", "share")
-    for line in one.budget.shares:
-        if line.input.uncertainty == 0.0:
-            continue
+    lines = [line for line in one.budget.shares if line.input.uncertainty > 0.0]
+    for line in lines[:_MOST_LINES]:
         table.add_row(
             line.name,
             rounded(line.input.value, line.input.uncertainty),
@@ -129,6 +129,10 @@ def _print_budget(console: "Console", name: str, one: "Assessment") -> None:
             f"{line.contribution:.2g}",
             f"{100.0 * line.share:.1f} %",
         )
+    rest = lines[_MOST_LINES:]
+    if rest:
+        share = 100.0 * sum(line.share for line in rest)
+        table.add_row(f"{len(rest)} more", "", "", "", "", f"{share:.1f} %")
     console.print(table)
     linear, trial = one.budget.result, one.monte_carlo
     low, high = linear.interval()

@@ -75,11 +75,15 @@ def flags_of(table: Any) -> tuple[Flag, ...]:
 
 
 def without_uncertainty(table: Any, place: str = "") -> Iterator[str]:
-    """Yield the keys whose values have an uncertainty of 0, at any depth."""
-    names = {one.name for one in fields(table)}
-    for name in sorted(names):
+    """Yield the keys whose values have an uncertainty of 0, at any depth.
+
+    Not those that are 0 where they are left out: a part in the centre plane, no gyradius.
+    """
+    defaults = {one.name: one.default for one in fields(table)}
+    for name in sorted(defaults):
         value = getattr(table, name)
-        if isinstance(value, float) and f"u_{name}" in names and not getattr(table, f"u_{name}"):
+        left_out = value == 0.0 == defaults[name]
+        if isinstance(value, float) and getattr(table, f"u_{name}", None) == 0.0 and not left_out:
             yield f"{place}{name}"
         for number, one in enumerate(value if isinstance(value, tuple) else (value,), 1):
             if is_dataclass(one):

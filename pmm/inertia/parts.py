@@ -7,12 +7,14 @@ from typing import Any, ClassVar
 
 from analysis.inertia.ballast import Target, Weight, place_ballast
 from analysis.inertia.estimate import Estimate, exactly
+from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.parts import Part, combine
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.inertia.combine_budget import combined_budgets
 from pmm.inertia.given import without_uncertainty
-from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, TargetTable, compare
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, TargetTable, assessed, compare
 from pmm.inertia.properties import AXES, PartTable
 from pmm.inertia.reading import one_of, read_job
 
@@ -112,7 +114,7 @@ def run_combine(path: str) -> Outcome:
         [one.part() for one in table.parts],
         without=[one.part() for one in table.without],
     )
-    findings = _findings(whole)
+    findings = _budgeted(_findings(whole), combined_budgets(table.parts, table.without))
     bare = sorted(without_uncertainty(table))
     flags = _exact(bare)
     body = _body(table.name, whole, flags)
@@ -126,6 +128,15 @@ def run_combine(path: str) -> Outcome:
         plane=table.plane,
         comparisons=checks,
         axes=_axes(whole),
+    )
+
+
+def _budgeted(
+    findings: tuple[Finding, ...], budgets: Mapping[str, Assessment]
+) -> tuple[Finding, ...]:
+    return tuple(
+        assessed(one.name, one.what, budgets[one.name]) if one.name in budgets else one
+        for one in findings
     )
 
 

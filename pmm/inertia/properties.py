@@ -8,7 +8,7 @@ from typing import Any
 from analysis.inertia.budget import Budget, Correlations
 from analysis.inertia.corrections import square_frame
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.parts import Part, combine, part
+from analysis.inertia.parts import MADE_OF, Part, combine, part
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag
 from pmm.inertia.given import given, given_or_none
@@ -54,13 +54,23 @@ class PartTable:
         for axis in AXES:
             yield from one_of(table, "square_half_side_m", f"k_{axis}_m", needed=False)
 
+    @property
+    def products_kg_m2(self) -> tuple[float, float, float]:
+        """``Ixy``, ``Ixz``, ``Iyz``."""
+        return self.ixy_kg_m2, self.ixz_kg_m2, self.iyz_kg_m2
+
+    def measured(self) -> tuple[dict[str, Estimate], Correlations]:
+        """Return mass, place and gyradii by :data:`MADE_OF`, and what ties them."""
+        gyradii, tied = self._gyradii()
+        values = (given(self, key) for key in MADE_OF[:4])
+        return dict(zip(MADE_OF, (*values, *gyradii), strict=True)), tied
+
     def part(self) -> Part:
         """Return it with its covariance."""
-        x, y, z = (given(self, f"{axis}_m") for axis in "xyz")
-        products = (self.ixy_kg_m2, self.ixz_kg_m2, self.iyz_kg_m2)
-        gyradii, tied = self._gyradii()
-        mass = given(self, "mass_kg")
-        return part(self.name, mass, (x, y, z), gyradii, products, correlations=tied)
+        own, tied = self.measured()
+        mass, x, y, z, roll, pitch, yaw = (own[key] for key in MADE_OF)
+        place, gyradii = (x, y, z), (roll, pitch, yaw)
+        return part(self.name, mass, place, gyradii, self.products_kg_m2, correlations=tied)
 
     def _gyradii(self) -> tuple[tuple[Estimate, Estimate, Estimate], Correlations]:
         side = given_or_none(self, "square_half_side_m")

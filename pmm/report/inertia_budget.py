@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_MOST_BARS = 8  # inputs by name; the rest together
 _LONGEST = 60  # characters of a result's words over its bars
 
 
@@ -37,8 +38,12 @@ def budget_figure(outcome: Outcome) -> "Figure":
 
 
 def _lines(one: Assessment) -> list[tuple[str, float]]:
-    shares = one.budget.shares
-    return [(line.name, 100.0 * line.share) for line in shares if line.input.uncertainty > 0.0]
+    lines = [line for line in one.budget.shares if line.input.uncertainty > 0.0]
+    shown = [(plain(line.name), 100.0 * line.share) for line in lines[:_MOST_BARS]]
+    rest = lines[_MOST_BARS:]
+    if rest:
+        shown.append((f"{len(rest)} more", 100.0 * sum(line.share for line in rest)))
+    return shown
 
 
 def _draw_bars(axes: "Axes", one: Finding, assessment: Assessment) -> None:

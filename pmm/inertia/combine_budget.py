@@ -1,0 +1,104 @@
+"""Budgets of bodies put together: which part's mass, place or gyradius the doubt comes from."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analysis.inertia.budget import Correlations, Formula, sensitivities
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import FloatArray, sqrt
+from analysis.inertia.parts import MADE_OF, combined
+from pmm.inertia.properties import AXES, PartTable
+
+if TYPE_CHECKING:
+    from analysis.inertia.estimate import Estimate
+
+_TRIALS = 50_000  # of up to seven inputs a part
+_PLACES = {"cg_x_m": 1, "cg_y_m": 2, "cg_z_m": 3}  # rows of the whole
+_GYRADII = {f"k_{axis}_m": 4 + k for k, axis in enumerate(AXES)}
+
+Put = Callable[[Mapping[str, Any]], FloatArray]
+
+
+def combined_budgets(
+    parts: Sequence[PartTable], without: Sequence[PartTable] = ()
+) -> dict[str, Assessment]:
+    """Return the budget, with a Monte Carlo, of each result that an input's doubt reaches.
+
+    Returns
+    -------
+    dict of str to Assessment
+        By the result's name: ``cg_x_m`` ... ``k_yaw_m``. The inputs are called ``part.key``, those
+        of what is taken off ``less part.key``.
+    """
+    tables = [*parts, *without]
+    labels = _labels([one.name for one in parts], [f"less {one.name}" for one in without])
+    inputs: dict[str, Estimate] = {}
+    tied: dict[tuple[str, str], float] = {}
+    for label, one in zip(labels, tables, strict=True):
+        own, correlations = one.measured()
+        inputs |= {f"{label}.{key}": value for key, value in own.items() if value.uncertainty > 0.0}
+        tied |= {
+            (f"{label}.{a}", f"{label}.{b}"): r
+            for (a, b), r in correlations.items()
+            if own[a].uncertainty > 0.0 and own[b].uncertainty > 0.0
+        }
+    if not inputs:
+        return {}
+    put = _putting(tables, labels, np.array([1.0] * len(parts) + [-1.0] * len(without)))
+    whole = put({})
+    reached = [*_PLACES, *(key for key, row in _GYRADII.items() if whole[row] > 0.0)]
+    found = {key: _assessed(key, _reading(put, key), inputs, tied) for key in reached}
+    return {key: one for key, one in found.items() if one is not None}
+
+
+def _assessed(
+    key: str, formula: Formula, inputs: "Mapping[str, Estimate]", tied: Correlations
+) -> Assessment | None:
+    """Assess one result by the inputs that it depends on; None where there is none."""
+    _, slopes = sensitivities(key, formula, inputs)
+    felt = {name: inputs[name] for name, slope in zip(inputs, slopes, strict=True) if slope != 0.0}
+    own = {pair: r for pair, r in tied.items() if set(pair) <= set(felt)}
+    if not felt:
+        return None
+    return assess(key, formula, felt, unit="m", correlations=own, trials=_TRIALS)
+
+
+def _labels(parts: list[str], without: list[str]) -> list[str]:
+    """Return a name for each part that no other has."""
+    names = [*parts, *without]
+    return [
+        f"{name} ({k})" if names.count(name) > 1 else name for k, name in enumerate(names, start=1)
+    ]
+
+
+def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArray) -> Put:
+    """Return what puts the parts together for some inputs, numbers or trials; the rest as read."""
+    read = [{key: one.value for key, one in table.measured()[0].items()} for table in tables]
+
+    def put(given: Mapping[str, Any]) -> FloatArray:
+        shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
+        rows = np.empty((len(tables), 10, *shape))
+        for row, label, table, own in zip(rows, labels, tables, read, strict=True):
+            values = [given.get(f"{label}.{key}", own[key]) for key in MADE_OF]
+            row[:4] = np.broadcast_arrays(*values[:4], row[0])[:4]
+            for k, gyradius in enumerate(values[4:], start=4):
+                row[k] = values[0] * gyradius**2
+            for k, product in enumerate(table.products_kg_m2, start=7):
+                row[k] = product
+        return combined(rows, signs)
+
+    return put
+
+
+def _reading(put: Put, key: str) -> Formula:
+    """Return the formula of one result."""
+
+    def formula(**given: Any) -> Any:
+        whole = put(given)
+        if key in _PLACES:
+            return whole[_PLACES[key]]
+        return sqrt(whole[_GYRADII[key]] / whole[0])
+
+    return formula
