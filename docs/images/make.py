@@ -52,7 +52,7 @@ def show_console() -> None:
         folder = Path(name)
         shutil.copytree(EXAMPLES / "vertical", folder / "rig")
         with (
-            console(folder / "rig" / "rig.toml", folder / "out", "--speed", "2") as one,
+            console(folder / "rig" / "rig.toml", folder / "out") as one,
             browser(folder / "profile") as page,
         ):
             page.open(one.address)
