@@ -52,6 +52,7 @@ SCALE_KG = 5e-3
 LEVER_RELATIVE = 1e-3
 RELEASE = 3e-4  # of the period
 BOW = 5e-4  # the inclinometer's largest non-linearity, over twice its range
+ZERO = 2e-4  # the same of its zero from one reading to the next
 
 
 @dataclass(frozen=True)
@@ -190,7 +191,7 @@ def swing_campaign(generator: Generator) -> Campaign:
     found = linear_budget("k_model", model_gyradius, inputs, unit="m", correlations=tied).result
     known = {
         "period_s": RELEASE / math.sqrt(RUNS),
-        "moment_kg_m": math.hypot(LEVER_RELATIVE, tilt_relative()),
+        "moment_kg_m": known_moment(),
         "mass_kg": SCALE_KG / MODEL.mass_kg,
         "m_s2": 0.0,
     }
@@ -202,8 +203,7 @@ def swing_campaign(generator: Generator) -> Campaign:
         )
         for name, one in inputs.items()
     }
-    scale = math.hypot(LEVER_RELATIVE, tilt_relative())
-    tied = {("tare_moment_kg_m", "total_moment_kg_m"): (tilt_relative() / scale) ** 2}
+    tied = {("tare_moment_kg_m", "total_moment_kg_m"): (tilt_relative() / known_moment()) ** 2}
     ideal = linear_budget("k_model", model_gyradius, best, unit="m", correlations=tied)
     true = math.sqrt(MODEL.inertia_kg_m2 / MODEL.mass_kg)
     return Campaign(found, true, ideal.result.uncertainty)
@@ -229,6 +229,13 @@ def tilt_relative() -> float:
     x = TILTS_RAD / INCLINOMETER_RANGE_RAD
     slope = float(np.polyfit(x, 1.5 * math.sqrt(3.0) * x * (1.0 - x * x), 1)[0])
     return abs(2.0 * BOW * slope) / math.sqrt(3.0)
+
+
+def known_moment() -> float:
+    """Return the relative standard uncertainty of a moment, every source of it known."""
+    x = np.tan(TILTS_RAD)
+    reading = 2.0 * ZERO * INCLINOMETER_RANGE_RAD / math.sqrt(float(((x - x.mean()) ** 2).sum()))
+    return math.hypot(LEVER_RELATIVE, tilt_relative(), reading)
 
 
 def swing_moment(model: RigidPart | None, bow: float, generator: Generator) -> Estimate:

@@ -14,7 +14,6 @@ from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing import SwingState, forecast_swing
 from benchmarks.inertia_bound import bound_ratio, bound_ratio_two
 from benchmarks.inertia_campaigns import (
-    LEVER_RELATIVE,
     MODEL,
     RELEASE,
     RUNS,
@@ -22,8 +21,8 @@ from benchmarks.inertia_campaigns import (
     Campaign,
     G,
     bifilar_campaign,
+    known_moment,
     swing_campaign,
-    tilt_relative,
 )
 from benchmarks.inertia_simulated import worst_errors
 from sim.pendulum.benches import SWING_2021, SWING_MODEL_2021
@@ -61,7 +60,7 @@ def forecast(model: RigidPart) -> tuple[bool, float]:
     moment = SWING_2021.mass_kg * SWING_2021.lever_m
     period = 2.0 * math.pi * math.sqrt(SWING_2021.about_pivot_kg_m2 / (moment * G.value))
     scatter = RELEASE / math.sqrt(RUNS)
-    known = math.hypot(LEVER_RELATIVE, tilt_relative())
+    known = known_moment()
     tare = SwingState(
         Estimate(period, scatter * period, "s"),
         Estimate(SWING_2021.mass_kg, SCALE_KG, "kg"),
