@@ -55,6 +55,12 @@ def entries() -> list[Entry]:
     return [Entry(**one) for one in told["plots"]]
 
 
+def helpers() -> set[str]:
+    """Return the functions that hand on another's figure."""
+    told = tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))
+    return set(told["helpers"])
+
+
 def drawing_functions() -> set[str]:
     """Return all public functions of the program that return a figure, by their full names."""
     found = set()

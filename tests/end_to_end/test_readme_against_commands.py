@@ -45,12 +45,6 @@ def test_the_campaign_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert len(list((tmp_path / "my-campaign" / "plots").glob("*.svg"))) >= 18
 
 
-def test_the_inertia_commands_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    (block,) = (block for block in blocks("sh") if "inertia" in block)
-    monkeypatch.chdir(HOUSE)
-    assert all("Monte Carlo" in run(command) for command in block.strip().splitlines())
-
-
 def test_every_link_leads_somewhere() -> None:
     targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
     assert targets
