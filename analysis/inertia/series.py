@@ -16,6 +16,9 @@ DIED_OUT = 0.03  # of the first amplitude
 ABOVE_NOISE = 3.0  # times the noise's standard deviation
 RELEASED = 0.9  # of the largest amplitude
 LONGEST_GAP_PERIODS = 0.5
+# What the reader says of missing samples: void for means over whole cycles, but the fits here leave
+# them out, and usable_part flags them by their length in periods.
+_LEFT_OUT = ("gap", "missing")
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,11 @@ def series_from_recording(recording: Recording, channel: str) -> Series:
     values = np.asarray(recording.values(channel), dtype=np.float64)
     if not np.isfinite(values).any():
         raise DataError(f"{recording.name}: channel {channel!r} has no finite sample")
-    flags = tuple(flag for flag in recording.flags if flag.channel in (None, channel))
+    flags = tuple(
+        flag
+        for flag in recording.flags
+        if flag.channel in (None, channel) and flag.code not in _LEFT_OUT
+    )
     return Series(
         recording.name, channel, unit, recording.sample_rate_hz, recording.start_s, values, flags
     )

@@ -1,13 +1,15 @@
 """``pmm inertia bifilar``: yaw, pitch, roll and depth of a body on two lines."""
 
+import math
 from collections.abc import Iterator, Mapping
+from itertools import combinations
 
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.spread import Geometry, compare_geometries
 from hardware.description.errors import ConfigurationError
-from hardware.description.flags import Flag
+from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
@@ -26,6 +28,8 @@ from pmm.inertia.properties import AXES, properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.suspended import Suspended, hang
+
+_APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
 
 
 def run(path: str) -> Outcome:
@@ -132,10 +136,26 @@ def _results(
         findings[:] = [one for one in findings if one.name != f"k_{axis}_m"]
         whole = used[axis] if len(chosen) == 1 else None
         findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
+    flags += [flag for one in hung for flag in _between_methods(one)]
     if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
         method = next(key for key, one in hung[0].found.items() if one is used["yaw"])
         notes.append(f"the {method} is the result (method in the file chooses another)")
     return gyradii, used
+
+
+def _between_methods(one: Suspended) -> Iterator[Flag]:
+    """Flag methods whose yaw gyradii differ by more than three times their joint uncertainty."""
+    own = [(key, found.result) for key, found in one.found.items() if key.startswith("yaw by")]
+    for (first, a), (second, b) in combinations(own, 2):
+        joint = math.hypot(a.uncertainty, b.uncertainty)
+        apart = abs(a.value - b.value)
+        if apart > _APART * joint:
+            message = (
+                f"{one.table.name}: {first} gives {a.value:.5g} m and {second} {b.value:.5g} m, "
+                f"{apart / joint:.2g} times their joint uncertainty apart (limit {_APART:g}); "
+                "check line length (period), sway record (ratio) and count (beats)"
+            )
+            yield Flag("methods_disagree", Severity.WARNING, message)
 
 
 def _chosen(table: BifilarTable, one: Suspended, axis: str) -> Assessment | None:
