@@ -1,4 +1,4 @@
-"""``python -m tests.sealed``: makes a board, or carries out a further run for one of its cases."""
+"""``python -m tests.sealed``: makes a board, has it answered, and scores it. docs/sealed.md."""
 
 import json
 import os
@@ -6,7 +6,19 @@ from pathlib import Path
 
 import click
 
-from tests.sealed.board import generate
+BOARD = click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
+WORKERS = click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
+                       type=click.IntRange(1))  # fmt: skip
+LIMIT = click.option("--limit", "limit_s", default=300.0, show_default=True,
+                     type=click.FloatRange(1.0), help="Seconds that a case may take.")  # fmt: skip
+MOST = click.option("--left-out", "most", type=click.IntRange(0),
+                    help="Leave-one-out on no more cases than that.")  # fmt: skip
+_OPTIONS = (
+    click.option("--seed", type=click.IntRange(0, 99), help="A seed for development."),
+    click.option("--commit", help="The hash of the commit whose diagnosis is to be scored."),
+    click.option("--cases", default=300, show_default=True, type=click.IntRange(0)),
+    click.option("--nulls", default=300, show_default=True, type=click.IntRange(0)),
+)
 
 
 @click.group()
@@ -14,27 +26,29 @@ def main() -> None:
     """Sealed data: see docs/sealed.md."""
 
 
-@main.command("generate")
-@click.option("--seed", type=click.IntRange(0, 99), help="A seed for development.")
-@click.option("--commit", help="The hash of the commit whose diagnosis is to be scored.")
-@click.option("--cases", default=300, show_default=True, type=click.IntRange(0))
-@click.option("--nulls", default=300, show_default=True, type=click.IntRange(0))
-@click.option("--output", required=True, type=click.Path(path_type=Path))
-@click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
-              type=click.IntRange(1))  # fmt: skip
-def generate_command(
-    seed: int | None, commit: str | None, cases: int, nulls: int, output: Path, workers: int
-) -> None:
-    """Make a board of sealed cases."""
+def _number(seed: int | None, commit: str | None) -> int:
     if (seed is None) == (commit is None):
         raise click.UsageError("give either --seed (0 to 99, development) or --commit (scored)")
     try:
-        number = seed if seed is not None else int(str(commit), 16)
+        return seed if seed is not None else int(str(commit), 16)
     except ValueError as error:
         raise click.UsageError(f"--commit {commit!r} is no hash in hexadecimal") from error
-    with click.progressbar(length=cases + nulls, label="cases") as bar:
-        for _name in generate(number, cases, nulls, output, workers):
-            bar.update(1)
+
+
+@main.command("generate")
+@_OPTIONS[0]
+@_OPTIONS[1]
+@_OPTIONS[2]
+@_OPTIONS[3]
+@click.option("--output", required=True, type=click.Path(path_type=Path))
+@WORKERS
+def generate_command(
+    seed: int | None, commit: str | None, cases: int, nulls: int, output: Path, workers: int
+) -> None:
+    """Make a board of sealed cases; cases that are there already are kept."""
+    from tests.sealed.steps import generated
+
+    generated(output, _number(seed, commit), cases, nulls, workers)
 
 
 @main.command("run")
@@ -48,34 +62,43 @@ def run_command(key: Path, run: Path, output: Path) -> None:
     carried_out(case_of(key), json.loads(run.read_text()), output)
 
 
-@main.command("rows")
-@click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option("--only", multiple=True, help="Names of the rows; all controls and peers if none.")
-@click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
-              type=click.IntRange(1))  # fmt: skip
-def rows_command(board: Path, only: tuple[str, ...], workers: int) -> None:
-    """Answer BOARD by the trivial controls and by those peers that are installed."""
-    from tests.sealed.rows import answer_rows
+@main.command("answer")
+@BOARD
+@LIMIT
+@WORKERS
+def answer_command(board: Path, limit_s: float, workers: int) -> None:
+    """Answer BOARD by the diagnosis; what has an answer keeps it, what fails counts as wrong."""
+    from tests.sealed.steps import answered
 
-    for line in answer_rows(board, only, workers):
-        click.echo(line)
+    answered(board, workers, limit_s)
+
+
+@main.command("rows")
+@BOARD
+@click.option("--only", multiple=True, help="Names of the rows; all controls and peers if none.")
+@LIMIT
+@WORKERS
+def rows_command(board: Path, only: tuple[str, ...], limit_s: float, workers: int) -> None:
+    """Answer BOARD by the trivial controls and by those peers that are installed."""
+    from tests.sealed.steps import others
+
+    others(board, workers, limit_s, only)
 
 
 @main.command("leave-out")
-@click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option("--output", required=True, type=click.Path(path_type=Path))
-def leave_out_command(board: Path, output: Path) -> None:
-    """Write for each case with a named gap the effects to take out of the catalogue."""
-    out = {}
-    for key in sorted((board / "keys").iterdir()):
-        truth = json.loads((key / "truth.json").read_text())
-        if truth["verdict"] == "gap" and truth["determinable"]:
-            out[key.name] = sorted({name for answer in truth["right"] for name in answer})
-    output.write_text(json.dumps(out, indent=1) + "\n")
+@BOARD
+@MOST
+@LIMIT
+@WORKERS
+def leave_out_command(board: Path, most: int | None, limit_s: float, workers: int) -> None:
+    """Answer BOARD by the diagnosis with each case's right effects out of the catalogue."""
+    from tests.sealed.steps import left_out_answered
+
+    left_out_answered(board, workers, limit_s, most)
 
 
 @main.command("score")
-@click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@BOARD
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write it there.")
 @click.option("--page", type=click.Path(path_type=Path), help="Write the page there.")
 @click.option("--docs", type=click.Path(path_type=Path), help="Write docs/scoreboard.md there.")
@@ -85,8 +108,7 @@ def leave_out_command(board: Path, output: Path) -> None:
     show_default=True,
     help="Carry the proposed runs out in the sealed reality.",
 )
-@click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
-              type=click.IntRange(1))  # fmt: skip
+@WORKERS
 def score_command(
     board: Path,
     json_file: Path | None,
@@ -101,6 +123,39 @@ def score_command(
 
     score_board(board, carrier(board, workers) if carry_out else None,
                 json_file=json_file, page=page, docs=docs)  # fmt: skip
+
+
+@main.command("whole")
+@_OPTIONS[0]
+@_OPTIONS[1]
+@_OPTIONS[2]
+@_OPTIONS[3]
+@click.option("--output", required=True, type=click.Path(path_type=Path), help="The board.")
+@click.option("--docs", default="docs", show_default=True,
+              type=click.Path(exists=True, file_okay=False, path_type=Path),
+              help="Folder of scoreboard.md and scoreboard.json.")  # fmt: skip
+@MOST
+@LIMIT
+@WORKERS
+def whole_command(
+    seed: int | None,
+    commit: str | None,
+    cases: int,
+    nulls: int,
+    output: Path,
+    docs: Path,
+    most: int | None,
+    limit_s: float,
+    workers: int,
+) -> None:
+    """Make a board, answer it by all, and score it; begun again, it goes on where it was."""
+    from tests.sealed import steps
+
+    steps.generated(output, _number(seed, commit), cases, nulls, workers)
+    steps.answered(output, workers, limit_s)
+    steps.others(output, workers, limit_s)
+    steps.left_out_answered(output, workers, limit_s, most)
+    steps.scored(output, docs, workers)
 
 
 if __name__ == "__main__":

@@ -14,10 +14,13 @@ from pmm.gap.scoring.score import score
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import catalogue
 from tests.pmm.gap.scoring import handmade
+from tests.sealed import answering
 from tests.sealed.__main__ import main
-from tests.sealed.board import generate
+from tests.sealed.answering import answer_case, still_asked
+from tests.sealed.board import generate, jobs_of
 from tests.sealed.carrying_out import carrier
 from tests.sealed.controls import CONTROLS, at_random
+from tests.sealed.leaving_out import left_out
 from tests.sealed.peers import by_bic, largest, sparse, structural
 from tests.sealed.peers.scene import Remainder, Scene, scene
 from tests.sealed.peers.terms import TERMS, force_rows, library
@@ -103,21 +106,40 @@ def test_stages_go_with_what_is_said(row: str) -> None:
             assert found["stages"] == {catalogue()[name].stage.value: 1.0}
 
 
-def test_leave_out_lists_right_effects_of_named_gaps(board: Path, tmp_path: Path) -> None:
+def test_leave_out_lists_right_effects_of_named_gaps(board: Path) -> None:
     for key in (board / "keys").iterdir():
         table = json.loads((key / "truth.json").read_text())
         table["determinable"] = table["snr"] >= 3.0
         (key / "truth.json").write_text(json.dumps(table))
-    target = tmp_path / "leave-out.json"
-    done = CliRunner().invoke(main, ["leave-out", str(board), "--output", str(target)])
-    assert done.exit_code == 0, done.output
-    assert json.loads(target.read_text()) == {
+    everything = left_out(board)
+    assert everything == {
         "case-0006": ["gain-error"],
         "case-0007": ["coulomb-friction"],
         "case-0008": ["cable", "memory"],
         "case-0011": ["amplifier-lag", "channel-skew"],
         "case-0012": ["quadratic-damping"],
     }
+    assert list(left_out(board, 2)) == ["case-0006", "case-0007"]
+    asked = still_asked(board, ("leave-one-out",), everything)
+    assert {one.case: list(one.left_out) for one in asked} == everything
+    assert asked[0].target("leave-one-out") == board / "answers-leave-one-out" / "case-0006.json"
+
+
+def test_a_case_that_cannot_be_answered_is_answered_as_failed(
+    board: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(case: Path) -> dict[str, object]:
+        raise ZeroDivisionError("division by zero")
+
+    (board / "answers-largest-residual").mkdir()
+    monkeypatch.setattr(largest, "scene", broken)
+    monkeypatch.setattr(answering, "prepared", broken)
+    for one in still_asked(board, ("largest-residual",)):
+        assert answer_case(one) == {"largest-residual": "ZeroDivisionError: division by zero"}
+    peer = score(read_board(board)).rows[1]
+    reached = {key: figure.value for key, figure in peer.bins[-1].figures.items()}
+    assert (reached["failed"], reached["false_alarms"], reached["detection"]) == (1.0, 1.0, 0.0)
+    assert reached["brier"] == 2.0
 
 
 def test_targets_are_held_against_the_first_row(board: Path) -> None:
@@ -146,7 +168,7 @@ def test_targets_are_held_against_the_first_row(board: Path) -> None:
 def null_board(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a sealed board of one case in which nothing is."""
     folder = tmp_path_factory.mktemp("sealed") / "board"
-    assert list(generate(6, 0, 1, folder)) == ["case-0001"]
+    assert list(generate(jobs_of(6, 0, 1, folder))) == ["case-0001"]
     return folder
 
 
@@ -171,12 +193,26 @@ def test_rows_of_a_sealed_board_are_whole(
     null_board: Path, seen: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(largest, "scene", lambda case: seen)
-    words = ["rows", str(null_board), "--workers", "1"]
-    done = CliRunner().invoke(main, [*words, "--only", "no-gap", "--only", "largest-residual"])
-    assert done.exit_code == 0, done.output
+    monkeypatch.setattr(answering, "prepared", lambda case: None)
+    rows = ("no-gap", "largest-residual")
+    for row in rows:
+        (null_board / f"answers-{row}").mkdir()
+    asked = still_asked(null_board, rows)
+    assert [answer_case(one) for one in asked] == [{}]
+    assert still_asked(null_board, rows) == []
     found = score(read_board(null_board))
     assert [row.name for row in found.rows] == ["largest-residual", "no-gap"]
-    assert {row.figure("all", "false_alarms").count for row in found.rows} == {1}  # type: ignore[union-attr]
+    for one in found.rows:
+        alarms, seconds = one.figure("all", "false_alarms"), one.figure("all", "seconds")
+        assert alarms is not None
+        assert seconds is not None
+        assert alarms.count == seconds.count == 1
+
+
+def test_rows_that_nobody_knows_are_named(null_board: Path) -> None:
+    done = CliRunner().invoke(main, ["rows", str(null_board), "--only", "nogap"])
+    assert done.exit_code == 2
+    assert "no rows nogap" in done.output
 
 
 def test_proposals_meet_one_and_the_same_random_run(

@@ -11,7 +11,7 @@ from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from pmm.gap.scoring.files import checked, read_json
 from pmm.gap.scoring.keys import Truth, forces
 
-NONE, COEFFICIENTS, UNKNOWN = "none", "coefficients", "unknown"
+NONE, COEFFICIENTS, UNKNOWN, FAILED = "none", "coefficients", "unknown", "failed"
 VERDICTS = (NONE, COEFFICIENTS, UNKNOWN)
 _ALIKE = 1e-6  # that a sum of probabilities may differ from 1 by
 
@@ -50,7 +50,15 @@ class Named:
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer; entries as in ``docs/sealed.md``."""
+    """An answer; entries as in ``docs/sealed.md``.
+
+    Attributes
+    ----------
+    failed
+        Why there is none, where whoever was asked failed or took too long; else empty.
+    seconds
+        Processor time that it took; ``None`` where nobody measured it.
+    """
 
     schema: str
     case: str
@@ -62,18 +70,22 @@ class Answer:
     after: Mapping[str, Mapping[str, Predicted]] = field(default_factory=dict)
     shrinkage: Interval = field(default_factory=lambda: Interval(0.0, 0.0, 0.0))
     next_run: Mapping[str, Any] | None = None
+    failed: str = ""
+    seconds: float | None = None
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
     @property
     def said(self) -> str:
         """The most probable answer; of equal ones the first in the alphabet."""
+        if self.failed:
+            return FAILED
         return min(self.probabilities, key=lambda name: (-self.probabilities[name], name))
 
     @property
     def alarm(self) -> bool:
         """Whether the answer is a gap that coefficients do not account for."""
-        return self.said not in (NONE, COEFFICIENTS)
+        return self.said not in (NONE, COEFFICIENTS, FAILED)
 
 
 def read_answer(path: Path, known: frozenset[str], truth: Truth) -> Answer:
@@ -99,6 +111,13 @@ def read_answer(path: Path, known: frozenset[str], truth: Truth) -> Answer:
 def _faults(answer: Answer, known: frozenset[str], truth: Truth) -> Iterator[str]:
     if answer.case != truth.case:
         yield f"case is {answer.case!r}, should be {truth.case!r}"
+    if not answer.failed:
+        yield from _faults_of_given(answer, known, truth)
+    elif answer.probabilities:
+        yield "failed, and yet there are probabilities: one or the other"
+
+
+def _faults_of_given(answer: Answer, known: frozenset[str], truth: Truth) -> Iterator[str]:
     yield from _shares("probabilities", answer.probabilities)
     if answer.stages:
         yield from _shares("stages", answer.stages)

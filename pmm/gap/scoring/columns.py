@@ -133,16 +133,25 @@ def _won(twins: bool) -> Values:
     return won
 
 
+def _seconds(entry: Entry) -> Iterable[float]:
+    if entry.answer.seconds is not None:
+        yield entry.answer.seconds
+
+
 def _separates(entry: Entry) -> bool:
     run = entry.answer.next_run
-    return run is not None and run.get("kind", "oscillation") == entry.truth.separated_by
+    if run is None:
+        return False
+    return entry.truth.separated_by in (run.get("kind", "oscillation"), run.get("medium"))
 
 
 COLUMNS: Final = (
     Column("detection", "gap seen", _when(lambda e: e.has_gap, lambda e: e.answer.alarm),
            ceiling="detection"),
     Column("false_alarms", "false alarms",
-           _when(lambda e: e.truth.verdict == "none", lambda e: e.answer.alarm), falls=True),
+           _when(lambda e: e.truth.verdict == "none",
+                 lambda e: e.answer.alarm or bool(e.answer.failed)), falls=True),
+    Column("failed", "failed", lambda e: (float(bool(e.answer.failed)),), falls=True),
     Column("coefficients", "coefficients said",
            _when(lambda e: e.truth.verdict == "coefficients",
                  lambda e: e.answer.said in exactly(e.truth))),
@@ -178,4 +187,5 @@ COLUMNS: Final = (
     Column("next_run_twins", "the same, twins", _won(twins=True)),
     Column("separates_twins", "next run tells twins apart",
            _when(lambda e: e.truth.kind == "twin", _separates)),
+    Column("seconds", "processor time (s)", _seconds, median, falls=True),
 )  # fmt: skip

@@ -26,7 +26,7 @@ class LeftOut:
         The same, or an effect that leaves less than ``LEAST`` sigma of what is there; in both
         cases with a right stage.
     sure_and_wrong
-        Another name was given more than ``SURE``.
+        Another name was given more than ``SURE``, or the answer failed.
     """
 
     unknown: Figure
@@ -49,7 +49,7 @@ def left_out(truths: Sequence[Truth], answers: Mapping[str, Answer]) -> LeftOut 
     stage = [_stage(a) in t.stages for a, t in pairs]
     good = [(a or b) and c for a, b, c in zip(silent, like, stage, strict=True)]
     wrong = [
-        bool(named(a.said)) and not b and a.probabilities[a.said] > SURE
+        bool(a.failed) or (bool(named(a.said)) and not b and a.probabilities[a.said] > SURE)
         for (a, _), b in zip(pairs, like, strict=True)
     ]
     figures = [share([float(hit) for hit in hits]) for hits in (silent, good, stage, wrong)]

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
-from pmm.gap.scoring.answers import COEFFICIENTS, NONE, UNKNOWN, Answer
+from pmm.gap.scoring.answers import COEFFICIENTS, FAILED, NONE, UNKNOWN, Answer
 from pmm.gap.scoring.keys import Truth
 
 
 def named(answer: str) -> tuple[str, ...]:
-    """Return the effects of an answer, in alphabetical order; none for the three verdicts."""
-    return () if answer in (NONE, COEFFICIENTS, UNKNOWN) else tuple(sorted(answer.split("+")))
+    """Return the effects of an answer, in alphabetical order; none for a verdict or a failure."""
+    silent = (NONE, COEFFICIENTS, UNKNOWN, FAILED)
+    return () if answer in silent else tuple(sorted(answer.split("+")))
 
 
 def exactly(truth: Truth) -> frozenset[str]:
@@ -46,7 +47,12 @@ def is_stated(answer: Answer, truth: Truth) -> bool:
 
 
 def brier(answer: Answer, truth: Truth) -> float:
-    """Return the answer's Brier score (1950), 0 to 2: all right answers count as one."""
+    """Return the answer's Brier score (1950), 0 to 2: all right answers count as one.
+
+    One that failed counts as sure and wrong.
+    """
+    if answer.failed:
+        return 2.0
     right = by_class(truth)
     sure = sum(p for name, p in answer.probabilities.items() if name in right)
     wrong = sum(p**2 for name, p in answer.probabilities.items() if name not in right)
@@ -68,7 +74,7 @@ def reliability(
     pairs: Sequence[tuple[Answer, Truth]], edges: Sequence[float] = (0.0, 0.5, 0.7, 0.9, 0.99, 1.01)
 ) -> tuple[Reliability, ...]:
     """Return, by the probability of the most probable answer, how often it is right."""
-    sure = [(a.probabilities[a.said], a.said in by_class(t)) for a, t in pairs]
+    sure = [(a.probabilities[a.said], a.said in by_class(t)) for a, t in pairs if not a.failed]
     found = []
     for low, high in pairwise(edges):
         inside = [one for one in sure if low <= one[0] < high]

@@ -55,12 +55,16 @@ def _parts(said: Predicted, there: TrueChannel) -> Iterator[float]:
 def shrunk(answer: Answer, truth: Truth, before: float) -> Shrunk | None:
     """Return an answer's gaps; ``None`` where it foretells nothing or there is nothing to shrink.
 
+    Where it failed, nothing of the gap goes away.
+
     Parameters
     ----------
     before
         The smallest gap that any row of the board foretells for this case without an effect, so
         that nobody gains by making the gap larger first.
     """
-    if not answer.after or before < SEEN:
+    if before < SEEN or not (answer.after or answer.failed):
         return None
+    if answer.failed:
+        return Shrunk(before, before)
     return Shrunk(before, gap(answer.after, truth))

@@ -7,16 +7,31 @@ from typing import Any
 import numpy as np
 
 from tests.sealed.generator.background import Background
-from tests.sealed.generator.ceiling import Library, ceiling, harmonic_blocks
+from tests.sealed.generator.catalogue import BY_NAME
+from tests.sealed.generator.ceiling import SAME, Library, ceiling, harmonic_blocks
 from tests.sealed.generator.design import Campaign, design
-from tests.sealed.generator.features import FREQUENCY_RELATIVE, PULSE_RAD
-from tests.sealed.generator.kinds import DETERMINABLE, Content, Drawing, drawn_kind
+from tests.sealed.generator.features import (
+    FREQUENCY_RELATIVE,
+    PULSE_RAD,
+    Reference,
+    StalledError,
+    reference,
+)
+from tests.sealed.generator.kinds import (
+    DETERMINABLE,
+    Content,
+    Drawing,
+    NothingFitsError,
+    drawn_kind,
+)
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.priors import drawn, priors
 from tests.sealed.generator.rig import Record, Run
 from tests.sealed.generator.sensing import record
 from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import Sized, nuisances
+
+TRIES = 5
 
 
 @dataclass(frozen=True)
@@ -56,9 +71,15 @@ class Case:
         named = replace(run, name=f"{self.seed}-{self.index}-{number}")
         return record(p, named, self.campaign.rig, rng)
 
-    def noise_free(self, run: Run) -> Record:
-        """Return the record of a run as it would be without noise."""
-        return record(self.parameters, run, self.campaign.rig)
+    @cached_property
+    def withheld(self) -> tuple[tuple[Record, Reference], ...]:
+        """Withheld runs as they would be without noise, each with the phase of its shaft."""
+        rig = self.campaign.rig
+        records = [record(self.parameters, run, rig) for run in self.campaign.held_out]
+        return tuple(
+            (made, reference(made, run, rig.sensors))
+            for made, run in zip(records, self.campaign.held_out, strict=True)
+        )
 
     @cached_property
     def signature(self) -> FloatArray:
@@ -80,6 +101,22 @@ class Case:
         """The catalogue's signatures in this campaign."""
         return Library.of(self.situation, self.projection, self.campaign)
 
+    @cached_property
+    def right(self) -> tuple[tuple[str, ...], ...]:
+        """Right answers: the content's own; with twins, whatever else these runs take for it."""
+        own = self.content.right
+        if self.content.kind != "twin":
+            return own
+        known = [name for answer in own for name in answer]
+        near = self.templates.imitators(self.signature, known)
+        return (*own, *((name,) for name, cosine in near if cosine > SAME))
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Right stages: the content's own, and those of what is right besides."""
+        more = {BY_NAME[answer[0]].stage for answer in self.right[len(self.content.right) :]}
+        return (*self.content.stages, *sorted(more - set(self.content.stages)))
+
     def alone(self, sized: Sized) -> float:
         """Return what is left of one member of a pair, the other and its class taken out, sigma."""
         own = self.projection.left(self.situation.signature(sized.effect, sized.size, sized.drawn))
@@ -100,11 +137,7 @@ class Case:
         """Return the ceiling of this case."""
         rng = np.random.default_rng([self.seed, self.index, 2])
         blocks = harmonic_blocks(self.campaign.runs, self.campaign.rig)
-        return dict(
-            ceiling(
-                self.templates, self.signature, self.content.right, self.content.stages, blocks, rng
-            )
-        )
+        return dict(ceiling(self.templates, self.signature, self.right, self.stages, blocks, rng))
 
     @property
     def determinable(self) -> bool:
@@ -113,8 +146,22 @@ class Case:
 
 
 def make(seed: int, index: int, *, null: bool) -> Case:
-    """Return case ``index`` of a seed; the same two numbers give the same case."""
-    rng = np.random.default_rng([seed, index, 0])
+    """Return case ``index`` of a seed; the same two numbers give the same case.
+
+    Where what is drawn stalls a shaft, or no effect fits the rig, all of it is drawn again.
+    """
+    for again in range(TRIES):
+        rng = np.random.default_rng([seed, index, 0, *([again] if again else [])])
+        try:
+            case = _drawn(seed, index, null, rng)
+            case.signature, case.withheld  # noqa: B018 (what has to turn, turns)
+        except (StalledError, NothingFitsError):
+            continue
+        return case
+    raise NothingFitsError(f"seed {seed}, case {index}: nothing fits in {TRIES} tries")
+
+
+def _drawn(seed: int, index: int, null: bool, rng: np.random.Generator) -> Case:
     campaign = design(rng)
     known = priors(campaign.believed)
     true = drawn(campaign.believed, known, rng)

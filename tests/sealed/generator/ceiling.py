@@ -22,9 +22,10 @@ VANISHES = 1e-3
 
 
 def applicable(effect: Effect, campaign: Campaign) -> bool:
-    """Tell whether a rig can have an effect."""
+    """Tell whether a campaign can have an effect."""
     rod = campaign.rig.rod_length_m is not None
-    return {"yoke": not rod, "rod": rod}.get(effect.needs or "", True)
+    wet = all(run.medium == "water" for run in campaign.runs)
+    return {"yoke": not rod, "rod": rod, "wet": wet}.get(effect.needs or "", True)
 
 
 @dataclass(frozen=True)

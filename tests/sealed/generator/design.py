@@ -7,7 +7,7 @@ import numpy as np
 
 from tests.sealed.generator.effect import heavier
 from tests.sealed.generator.parameters import FloatArray, P, neutral
-from tests.sealed.generator.rig import CHANNELS, Noise, Rig, Run
+from tests.sealed.generator.rig import CHANNELS, Medium, Noise, Rig, Run
 
 ALL = (*CHANNELS, "photocell")
 _SENSORS = (
@@ -118,7 +118,7 @@ def _withheld(rig: Rig, runs: list[Run]) -> tuple[Run, ...]:
     first, middle = runs[0], runs[2]
     between = round(math.sqrt(middle.frequency_hz * runs[3].frequency_hz), 3)
     larger = 0.45 * middle.eccentricity_m
-    other = "water" if any(run.medium == "air" for run in runs) else "air"
+    other: Medium = "water" if any(run.medium == "air" for run in runs) else "air"
     return (
         replace(middle, name="withheld-1", frequency_hz=between,
                 eccentricity_m=_eccentricity(rig, between, 0.6)),

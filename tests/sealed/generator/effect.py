@@ -36,7 +36,8 @@ class Effect:
     parameter
         Parameter of the catalogue's effect that the size is, where the two mean the same.
     needs
-        ``"yoke"`` or ``"rod"`` for a rig with one, ``"speed"`` for a carriage that moves.
+        ``"yoke"`` or ``"rod"`` for a rig with one, ``"speed"`` for a carriage that moves, ``"wet"``
+        for a campaign without a run in air.
     fixed
         Whether only the typical size makes sense.
     rebased

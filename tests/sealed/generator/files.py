@@ -11,10 +11,10 @@ from tests.sealed.generator.case import Case
 from tests.sealed.generator.design import REGIMES
 from tests.sealed.generator.features import (
     ORDERS,
+    Reference,
     harmonics,
     line_sigma,
     recorded,
-    reference,
     resampled,
 )
 from tests.sealed.generator.parameters import FloatArray, P
@@ -151,10 +151,9 @@ def case_text(case: Case) -> str:
     return "\n".join(parts)
 
 
-def _held_out(case: Case, run: Run, record: Record) -> dict[str, Any]:
+def _held_out(case: Case, run: Run, record: Record, ref: Reference) -> dict[str, Any]:
     """Return the harmonics of a withheld run without noise, with sigma as if it had some."""
     rig = case.campaign.rig
-    ref = reference(record, run, rig.sensors)
     means, in_phase, quadrature = harmonics(resampled(record, ref, run.periods), run.periods)
     own = np.arange(1, ORDERS + 1) * run.periods
     channels = {}
@@ -196,8 +195,8 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
         "verdict": content.verdict,
         "determinable": case.determinable,
         "effects": _effects(case),
-        "right": [list(answer) for answer in content.right],
-        "stages": list(content.stages),
+        "right": [list(answer) for answer in case.right],
+        "stages": list(case.stages),
         "snr": case.snr,
         "angle_deg": None,
         "imitators": [],
@@ -216,7 +215,7 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
         "ceiling": None,
     }
     if content.effects and content.verdict != "none":
-        absent = {name for answer in content.right for name in answer}
+        absent = {name for answer in case.right for name in answer}
         near = case.templates.imitators(case.signature, sorted(absent))
         out["imitators"] = [{"name": name, "cosine": cosine} for name, cosine in near]
         out["angle_deg"] = float(np.degrees(np.arccos(min(near[0][1], 1.0))))
@@ -241,8 +240,7 @@ def write(case: Case, cases: Path, keys: Path) -> None:
     (folder / "campaign.toml").write_text(campaign_text(case, foreign=foreign))
     (folder / "case.toml").write_text(case_text(case))
     held_out = {}
-    for run in case.campaign.held_out:
-        clean = case.noise_free(run)
+    for run, (clean, ref) in zip(case.campaign.held_out, case.withheld, strict=True):
         write_netcdf(key / "held-out" / f"{run.name}.nc", clean, run, rig)
-        held_out[run.name] = _held_out(case, run, clean)
+        held_out[run.name] = _held_out(case, run, clean, ref)
     (key / "truth.json").write_text(json.dumps(truth(case, held_out), indent=1) + "\n")

@@ -64,7 +64,7 @@ def remembered(kernel: FloatArray, past: FloatArray, n: int, interval: float) ->
     total = 0.5 * kernel[0] * past[n]
     for i in range(1, taps):
         total += kernel[i] * past[n - i]
-    return total * interval
+    return float(total * interval)
 
 
 @compiled

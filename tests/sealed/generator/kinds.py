@@ -35,6 +35,10 @@ COEFFICIENTS = ("added-mass-error", "damping-error")
 DETERMINABLE = 3.0
 
 
+class NothingFitsError(ValueError):
+    """What was drawn does not go together: no effect fits this rig."""
+
+
 @dataclass(frozen=True)
 class Content:
     """What is there, and what is right to say of it.
@@ -44,7 +48,7 @@ class Content:
     right
         Right answers, each a sorted tuple of effects' names; the empty one is "none".
     separated_by
-        The further run that tells twins apart.
+        The further run that tells twins apart: a special run's kind, or a medium.
     """
 
     kind: Kind
@@ -99,7 +103,8 @@ class Drawing:
             kept = found
             if 0.5 * wanted < found.snr < 2.0 * wanted:
                 break
-        assert kept is not None, "no effect for this rig"
+        if kept is None:
+            raise NothingFitsError(f"no effect in {tries} tries whose own parts stay unseen")
         return kept
 
     def _pool(self, effects: tuple[Effect, ...]) -> list[Effect]:
@@ -172,8 +177,10 @@ class Drawing:
         return Content("outside", "unknown", (found,), also, (found.effect.stage,))
 
     def _twin(self) -> Content:
-        effect, right, stages, apart = TWINS[int(self.rng.integers(len(TWINS)))]
+        there = [twin for twin in TWINS if applicable(twin.effect, self.campaign)]
+        twin = there[int(self.rng.integers(len(there)))]
         found = sized(
-            self.situation, self.projection, effect, max(wanted_snr(self.rng), 5.0), self.rng
+            self.situation, self.projection, twin.effect, max(wanted_snr(self.rng), 5.0), self.rng
         )
-        return Content("twin", "gap", (found,), tuple((name,) for name in right), stages, apart)
+        right = tuple((name,) for name in twin.right)
+        return Content("twin", twin.verdict, (found,), right, twin.stages, twin.separated_by)

@@ -24,13 +24,13 @@ def carriage_speed(p: FloatArray, t: float) -> float:
     if p[P.SURGE] != 0.0:
         turn = 2.0 * math.pi * p[P.SURGE_HZ] * t + p[P.SURGE_PHASE]
         swell = math.sin(turn) + 0.15 * math.sin(1.41 * turn)
-    return p[P.SPEED] * (1.0 + p[P.CARRIAGE_ERROR] + p[P.SURGE] * swell)
+    return float(p[P.SPEED] * (1.0 + p[P.CARRIAGE_ERROR] + p[P.SURGE] * swell))
 
 
 @compiled
 def kelvin(p: FloatArray) -> float:
     """Return by how much the tank is warmer than at the campaign's beginning."""
-    return p[P.KELVIN_HOUR] * p[P.HOUR]
+    return float(p[P.KELVIN_HOUR] * p[P.HOUR])
 
 
 @compiled
@@ -92,7 +92,9 @@ def disturbances(p: FloatArray, t: float, speed: float, wake: float, aired: floa
         turn = 2.0 * math.pi * p[P.WAVE_HZ] * t + p[P.WAVE_PHASE]
         left = p[P.WAVE] * math.exp(-(p[P.WAITED] + t) / p[P.WAVE_DECAY])
         waves = left * (math.sin(turn) + 0.3 * math.sin(1.13 * turn + 1.0))
-    return waves + p[P.WAKE] * speed * speed * wake + p[P.VENTILATION] * speed * speed * aired
+    return float(
+        waves + p[P.WAKE] * speed * speed * wake + p[P.VENTILATION] * speed * speed * aired
+    )
 
 
 @compiled
@@ -104,4 +106,6 @@ def held_by_carriage(p: FloatArray, x: float, v: float, bristle: float, wound: f
     cable = p[P.CABLE_STIFFNESS] * x / (1.0 + p[P.CABLE_SOFTENING] * x * x) + p[P.CABLE_PRELOAD]
     tare = p[P.TARE_VISCOUS] * v + p[P.TARE_QUADRATIC] * smooth_square(v)
     below = p[P.GUIDE_BELOW] * v / (1.0 + 0.2 * abs(v))
-    return bristle + below + 0.5 * cable + 0.5 * p[P.CABLE_RUBBING] * wound + p[P.WATER] * tare
+    return float(
+        bristle + below + 0.5 * cable + 0.5 * p[P.CABLE_RUBBING] * wound + p[P.WATER] * tare
+    )

@@ -24,7 +24,7 @@ from tests.sealed.generator.places import H, W, Y
 @compiled
 def side(p: FloatArray, strut: int) -> float:
     """Return +1 for the strut that a positive rotation moves along d, -1 for the other."""
-    return p[P.AFT_SIGN] if strut == 0 else -p[P.AFT_SIGN]
+    return float(p[P.AFT_SIGN] if strut == 0 else -p[P.AFT_SIGN])
 
 
 @compiled
@@ -60,7 +60,7 @@ def dead_zone(x: float, half: float) -> float:
 def lift_of(p: FloatArray, rotation: float, strut: int) -> float:
     """Return the strut point's displacement by a rotation of the model."""
     turned = math.sin(rotation) if p[P.ARC] > 0.0 else rotation
-    return side(p, strut) * p[P.LEVER] * turned
+    return float(side(p, strut) * p[P.LEVER] * turned)
 
 
 @compiled
@@ -75,7 +75,7 @@ def gauge_force(
     if stretch == 0.0 and p[P.KNOCK] > 0.0:
         return 0.0
     damping = p[P.GAUGE_DAMPING] * (speed + y[Y.FRAME_SPEED] - rate)
-    return p[P.GAUGE_STIFFNESS] * stretch + damping
+    return float(p[P.GAUGE_STIFFNESS] * stretch + damping)
 
 
 @compiled
@@ -91,7 +91,7 @@ def meshed(p: FloatArray, y: FloatArray, held: FloatArray) -> float:
         twist = dead_zone(twist, p[P.BACKLASH])
         if twist == 0.0:
             return 0.0
-    return p[P.GEAR_STIFFNESS] * twist + p[P.GEAR_DAMPING] * rate
+    return float(p[P.GEAR_STIFFNESS] * twist + p[P.GEAR_DAMPING] * rate)
 
 
 @compiled
@@ -134,7 +134,7 @@ def slosh_rates(p: FloatArray, y: FloatArray, dy: FloatArray) -> float:
     pull += 2.0 * p[P.SLOSH_DAMPING] * omega * rate
     dy[Y.SLOSH] = rate
     dy[Y.SLOSH_SPEED] = -pull
-    return pull
+    return float(pull)
 
 
 @compiled
@@ -173,7 +173,9 @@ def kept_at(p: FloatArray, y: FloatArray, held: FloatArray, strut: int) -> float
 @compiled
 def above(p: FloatArray, y: FloatArray, held: FloatArray, slope: float, strut: int) -> float:
     """Return the shaft's torque by one strut's guides above the dynamometer."""
-    return slope * (held[H.GUIDE_AFT + strut] + p[P.GUIDE_VISCOUS] * slope * y[Y.CRANK_SPEED])
+    return float(
+        slope * (held[H.GUIDE_AFT + strut] + p[P.GUIDE_VISCOUS] * slope * y[Y.CRANK_SPEED])
+    )
 
 
 @compiled

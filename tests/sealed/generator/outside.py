@@ -1,6 +1,8 @@
 """Effects that no catalogue holds, twins, and friction that nothing shows."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
 
 from tests.sealed.generator.catalogue import (
     CHAIN,
@@ -49,17 +51,50 @@ ALSO_RIGHT: Mapping[str, tuple[str, ...]] = {
     "ventilation": ("vortex-shedding",),
 }
 
-# Effect, the right answers, the stages, and the further run that tells them apart.
-TWINS: tuple[tuple[Effect, tuple[str, ...], tuple[str, ...], str], ...] = (
-    (Effect("uneven-friction", STRUCTURE, "friction forward more than backward", 0.5, 6.0,
-            {P.UNEVEN: 1.0}, settles=0.75, signed=True),
-     ("zero-offset",), (GAUGE, STRUCTURE), "rest"),
-    (Effect("skew-of-all", CHAIN, "both force channels late", 1e-3, 0.03,
-            {P.SKEW_AFT: 1.0, P.SKEW_FORE: 1.0}, settles=0.5, measured=True),
-     ("amplifier-lag", "channel-skew"), (CHAIN,), "injection"),
-    (Effect("zero-offset", GAUGE, "aft zero off", 0.3, 4.0, {P.ZERO_AFT: 1.0}, signed=True,
-            measured=True),
-     ("zero-offset",), (GAUGE, STRUCTURE), "rest"),
+
+@dataclass(frozen=True)
+class Twin:
+    """What some runs cannot tell apart, whoever looks at them.
+
+    Attributes
+    ----------
+    right
+        Right answers: the names of the group.
+    separated_by
+        The further run that tells its members apart: a special run's kind, or a medium.
+    verdict
+        ``"coefficients"`` where the hull alone accounts for it as well.
+    """
+
+    effect: Effect
+    right: tuple[str, ...]
+    stages: tuple[str, ...]
+    separated_by: str
+    verdict: Literal["gap", "coefficients"] = "gap"
+
+
+TWINS: tuple[Twin, ...] = (
+    Twin(Effect("uneven-friction", STRUCTURE, "friction forward more than backward", 0.5, 6.0,
+                {P.UNEVEN: 1.0}, settles=0.75, signed=True),
+         ("zero-offset",), (GAUGE, STRUCTURE), "rest"),
+    Twin(Effect("zero-offset", GAUGE, "aft zero off", 0.3, 4.0, {P.ZERO_AFT: 1.0}, signed=True,
+                measured=True),
+         ("zero-offset",), (GAUGE, STRUCTURE), "rest"),
+    Twin(Effect("skew-of-all", CHAIN, "both force channels late", 1e-3, 0.03,
+                {P.SKEW_AFT: 1.0, P.SKEW_FORE: 1.0}, settles=0.5, measured=True),
+         ("amplifier-lag", "channel-skew"), (CHAIN,), "injection"),
+    # Jitter lowers the harmonics as a gain does, but scatters the cycles too, and these records
+    # hold the cycles: only what needs a weight is left of that pair.
+    Twin(Effect("gain-of-both", GAUGE, "both gauges too low", 5e-3, 0.05,
+                {P.GAIN_AFT: -1.0, P.GAIN_FORE: -1.0}, measured=True),
+         ("gain-error",), (GAUGE,), "check-weight"),
+    # Without a run in air nothing tells the model's mass from the water's, and guides from hull.
+    Twin(Effect("mass-or-water", WATER, "mass that the water has as well", 5.0, 60.0,
+                {P.ADDED_00: 1.0}, signed=True, needs="wet"),
+         ("added-mass-error", "mass-error"), (WATER,), "air", "coefficients"),
+    Twin(Effect("guides-or-hull", WATER, "linear drag of both struts that the hull has as well",
+                20.0, 150.0, {P.DAMPING_00: 2.0, P.DAMPING_11: 0.5}, needs="wet"),
+         ("damping-error", "viscous-guides"), (STRUCTURE, WATER), "air", "coefficients"),
 )  # fmt: skip
 
 ABOVE = Effect("guide-friction", DRIVE, "LuGre bristles above the dynamometers", 5.0, 40.0,

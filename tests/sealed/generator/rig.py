@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from tests.sealed.generator.parameters import FloatArray
 
 Kind = Literal["oscillation", "rest", "check-weight", "injection"]
+Medium = Literal["water", "air"]
 
 CHANNELS = (
     "shaft_angle",
@@ -63,7 +64,7 @@ class Run:
     eccentricity_m: float = 0.0
     strut_phase_rad: float = 0.0
     carriage_speed_m_s: float = 0.0
-    medium: Literal["water", "air"] = "water"
+    medium: Medium = "water"
     periods: int = 8
     hour: float = 0.0
     waited_s: float = 300.0

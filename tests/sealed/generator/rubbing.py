@@ -29,14 +29,14 @@ def friction_level(p: FloatArray, force: float, v: float) -> float:
     level = p[P.COULOMB] + math.copysign(0.5 * p[P.UNEVEN], v)
     if p[P.STRIBECK] != 0.0:
         level += p[P.STRIBECK] * math.exp(-abs(v) / p[P.STRIBECK_SPEED])
-    return level + p[P.LOAD_FRICTION] * abs(force + p[P.SIDE_LOAD])
+    return float(level + p[P.LOAD_FRICTION] * abs(force + p[P.SIDE_LOAD]))
 
 
 @compiled
 def rubs(p: FloatArray) -> bool:
     """Tell whether anything rubs below the dynamometers."""
     some = p[P.COULOMB] + abs(p[P.UNEVEN]) + p[P.STRIBECK] + p[P.LOAD_FRICTION]
-    return some + p[P.CABLE_RUBBING] != 0.0
+    return bool(some + p[P.CABLE_RUBBING] != 0.0)
 
 
 @compiled

@@ -55,7 +55,7 @@ def delayed(signal: FloatArray, delay_samples: float) -> FloatArray:
     """Return the signal of ``delay_samples`` ago."""
     count = len(signal)
     places = np.clip(np.arange(count) - delay_samples, 0.0, count - 1.0)
-    return between(signal[None, :], places)[0]
+    return np.asarray(between(signal[None, :], places)[0])
 
 
 def _amplifiers(p: FloatArray, shown: FloatArray, times: FloatArray, rate_hz: float) -> FloatArray:

@@ -105,7 +105,7 @@ def values(key: Path, wanted: Sequence[Mapping[str, Any]]) -> list[float]:
         For a case that no effect of the catalogue is right for: it has no true class.
     """
     case = case_of(key)
-    right = {name for answer in case.content.right for name in answer}
+    right = {name for answer in case.right for name in answer}
     if not right:
         raise ValueError(f"{key.name}: nothing of the catalogue is right, so no run has a worth")
     effects = [effect for effect in CATALOGUE if applicable(effect, case.campaign)]

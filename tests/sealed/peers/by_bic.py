@@ -44,7 +44,7 @@ def _hypotheses() -> Iterator[tuple[str, tuple[int, ...]]]:
 
 def _fitted(left: FloatArray, laws: FloatArray, terms: Sequence[int]) -> tuple[float, FloatArray]:
     """Return the BIC and the coefficients of some laws, those of the others zero."""
-    import lmfit
+    import lmfit  # type: ignore[import-not-found, unused-ignore]
 
     out = np.zeros(laws.shape[1])
     if not terms:

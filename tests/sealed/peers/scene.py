@@ -6,6 +6,7 @@ the remainder is theirs.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +75,9 @@ def _as_stack(one: Remainder) -> Stack:
     return Stack(one.runs, one.components, one.run, one.values, one.sigma)
 
 
+@lru_cache(maxsize=1)
 def scene(folder: Path) -> Scene:
-    """Return what a peer sees of a case."""
+    """Return what a peer sees of a case; the last one is kept, as peers answer in turn."""
     loaded, case = load_campaign(folder), read_case(folder)
     stack = Stack.of(pooled(loaded.runs))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)

@@ -17,7 +17,7 @@ EXPLAINED = 0.5  # share of the chi-square below which nothing is named
 
 def pysindy_stlsq(case: Path) -> dict[str, Any]:
     """Answer by the law that keeps most after sequentially thresholded least squares."""
-    import pysindy
+    import pysindy  # type: ignore[import-not-found, unused-ignore]
 
     seen = scene(case)
     rows = force_rows(seen.fitting)

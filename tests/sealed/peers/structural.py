@@ -38,7 +38,9 @@ _STAGES: Final = (
 
 def tests_of_chain() -> dict[str, frozenset[str]]:
     """Return for each channel that a test ends in the stages whose faults make it fire."""
-    from faultdiagnosistoolbox import DiagnosisModel
+    from faultdiagnosistoolbox import (  # type: ignore[import-not-found, unused-ignore]
+        DiagnosisModel,
+    )
 
     model = DiagnosisModel(
         {

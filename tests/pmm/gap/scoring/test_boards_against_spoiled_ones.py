@@ -54,6 +54,7 @@ def _strange(board: Path) -> None:
         (_changed(stages={"drive": 0.2}), "stages sum to 0.2"),
         (_changed(schema="sealed-answer-2"), "'sealed-answer-2', should be 'sealed-answer-1'"),
         (_changed(case="case-0007"), "case is 'case-0007', should be 'case-0006'"),
+        (_changed(failed="too slow"), "failed, and yet there are probabilities"),
         (_changed(before={}), "before and after go together"),
         (_changed(after={"withheld-1": {}}), "after.withheld-1.force_aft is missing"),
         (_changed(propabilities={}), "did you mean probabilities"),

@@ -85,3 +85,26 @@ def test_an_empty_column_counts_nothing_reached(board: Path) -> None:
     full, silent_row = score(read_board(board)).rows
     assert silent_row.figure("all", "shrinkage") is None
     assert silent_row.mean == pytest.approx(full.mean - 0.9 / 11)
+
+
+def test_answers_that_failed_are_wrong_everywhere(board: Path) -> None:
+    for case in ("case-0001", "case-0007"):
+        said = {"schema": "sealed-answer-1", "case": case, "probabilities": {}, "stages": {},
+                "failed": "it took longer than it may"}  # fmt: skip
+        (board / "answers" / f"{case}.json").write_text(json.dumps(said))
+    figures = score(read_board(board)).rows[0].bins[-1].figures
+    for row in handmade.page_table("changed", "over all but the hidden"):
+        stated = float(row["over all but the hidden"])
+        assert figures[row["changed"]].value == pytest.approx(stated, abs=1e-9), row["changed"]
+
+
+def test_nothing_shrinks_where_an_answer_failed_and_another_row_foretells(board: Path) -> None:
+    (board / "answers").rename(board / "answers-peer")
+    (board / "answers").mkdir()
+    for path in (board / "answers-peer").iterdir():
+        said = {"schema": "sealed-answer-1", "case": path.stem, "probabilities": {}, "stages": {},
+                "failed": "it took longer than it may"}  # fmt: skip
+        (board / "answers" / path.name).write_text(json.dumps(said))
+    figures = score(read_board(board)).rows[0].bins[-1].figures
+    assert figures["shrinkage"].value == 0.0
+    assert figures["gap_after"].value == figures["gap_before"].value == 10.0
