@@ -80,7 +80,7 @@ def calibrated(recording: Recording, given: Calibration | None = None) -> Record
     return replace(
         recording,
         channels=channels,
-        samples=_Forces(recording.samples, rows, np.linalg.inv(one.matrix)),
+        samples=_Forces(recording.samples, rows, np.asarray(np.linalg.inv(one.matrix), float)),
         provenance=kept | {APPLIED: provenance_of(one)[CARRIED]},
         flags=(
             *recording.flags,

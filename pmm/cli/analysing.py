@@ -1,7 +1,6 @@
 """What ``pmm analyse`` does: read, resolve, then print, plot and save."""
 
 import json
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from analysis.resolver.analyse import Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import NoReferenceError
 from hardware.description.errors import ConfigurationError, DataError, PmmError
+from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
@@ -247,7 +247,7 @@ def document(
     doubts: "Sequence[tuple[Path, tuple[Flag, ...]]]" = (),
 ) -> dict[str, Any]:
     """Return what ``--json`` prints; ``docs/campaigns.md`` describes it."""
-    text: dict[str, Any] = _without_nan(
+    text: dict[str, Any] = without_nan(
         {
             "schema": JSON_SCHEMA,
             "level": level,
@@ -263,14 +263,3 @@ def document(
         }
     )
     return text
-
-
-def _without_nan(value: Any) -> Any:
-    """Return the same with ``None`` for every number that JSON does not have."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _without_nan(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(part) for part in value]
-    return value

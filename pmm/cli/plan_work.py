@@ -2,15 +2,16 @@
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import click
 
+from pmm.cli.documents import without_nan
+from pmm.cli.findings import finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
@@ -37,7 +38,6 @@ _HEADINGS = (
     "time",
     "ends at",
 )
-_STYLES = {Verdict.REFUSE: "bold red", Verdict.WARN: "yellow", Verdict.NOTE: "cyan"}
 
 
 def check(file: str, *, every: bool, as_json: bool) -> None:
@@ -104,26 +104,13 @@ def _check_document(
         "rig": str(rig.path),
         "runs": len(plan.runs),
         "possible": not refused,
-        "findings": [_without_nan(asdict(one)) for one in found],
-    }
-
-
-def _without_nan(row: dict[str, Any]) -> dict[str, Any]:
-    return {
-        key: None if isinstance(one, float) and math.isnan(one) else one for key, one in row.items()
+        "findings": [without_nan(asdict(one)) for one in found],
     }
 
 
 def _print_findings(plan: Plan, found: Sequence[Finding], *, every: bool) -> None:
-    from rich.text import Text
-
     console = output()
-    for one, more in _gathered(found, every=every):
-        others = f" (and {counted(more, 'other run')} so)" if more else ""
-        run = f"{one.run}: " if one.run else ""
-        line = Text.assemble(
-            (f"{one.verdict:7s}", _STYLES[one.verdict]), f"{run}{one.message}{others}"
-        )
+    for line in finding_lines(found, every=every):
         console.print(line, soft_wrap=True)
     refused = sum(one.verdict is Verdict.REFUSE for one in found)
     warned = sum(one.verdict is Verdict.WARN for one in found)
@@ -132,23 +119,6 @@ def _print_findings(plan: Plan, found: Sequence[Finding], *, every: bool) -> Non
         console.print(f"{what}; the rig cannot run it: {counted(refused, 'refusal')}")
     else:
         console.print(f"{what}; the rig can run it, with {counted(warned, 'warning')}")
-
-
-def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Finding, int]]:
-    """Yield findings; of those of one kind the one furthest off, and how many there are beside."""
-    if every:
-        yield from ((one, 0) for one in found)
-        return
-    ranks = list(Verdict)
-
-    def kind(one: Finding) -> tuple[int, str, float]:
-        what = one.quantity if one.run else one.message
-        return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
-
-    for _, group in groupby(sorted(found, key=kind), kind):
-        alike = list(group)
-        worst = max(alike, key=lambda one: abs(one.value - one.limit))
-        yield worst, len({one.run for one in alike}) - 1
 
 
 def _show_document(plan: Plan, rig: RigFile, times: Sequence[float]) -> dict[str, Any]:

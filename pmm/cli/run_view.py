@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
+from hardware.description.channels import SHAFT_ANGLE
+from pmm.cli.printing import counted
 from pmm.cli.screen import messages
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
@@ -14,10 +16,15 @@ from pmm.run.status import HarmonicRow, RunOutcome, Status
 if TYPE_CHECKING:
     from rich.console import Group, RenderableType
     from rich.table import Table
+    from rich.text import Text
 
 _EVERY_S: Final = 0.25
 _SWITCH_S: Final = 5e-4  # so that drawing, in its thread, does not make cycles late
 _GIGA: Final = 1e9
+_LABEL, _BAR = 28, 40  # columns
+_MOST_PLACES: Final = 6
+# How people read a unit: factor and unit shown.
+_SHOWN: Final = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
 _COLOURS: Final = {State.FAULT: "bold red", State.STOPPED: "yellow", State.GATE_OPEN: "bold green"}
 
 
@@ -54,30 +61,45 @@ class PlainView:
 
 
 class LiveView:
-    """A picture that is drawn anew a few times a second, from the last status."""
+    """A picture that is drawn anew a few times a second, from the last status.
+
+    It is made for 80 columns. What does not fit a line is cut, so that nothing jumps; alarms and
+    questions alone are folded, so that nothing of them is lost.
+    """
 
     def __init__(self, clock: Callable[[], float], question: Callable[[], str]) -> None:
         self._clock, self._due_s, self._asked = clock, -math.inf, question
+        self._control: RunControl | None = None
         self._status: Status | None = None
         self._outcomes: tuple[RunOutcome, ...] = ()
 
     def show(self, control: RunControl) -> None:
         """Take a new status when it is time."""
+        self._control = control
         now_s = self._clock()
         if now_s >= self._due_s:
             self._due_s = now_s + _EVERY_S
-            self._status, self._outcomes = control.status(), tuple(control.outcomes)
+            self._take()
+
+    def _take(self) -> None:
+        if self._control is not None:
+            self._status, self._outcomes = self._control.status(), tuple(self._control.outcomes)
 
     @contextmanager
     def shown(self) -> Iterator[None]:
-        """Draw for as long as the context lasts."""
+        """Draw for as long as the context lasts; what stays on the terminal is the end."""
         from rich.live import Live
 
         before = sys.getswitchinterval()
         sys.setswitchinterval(_SWITCH_S)
         try:
-            with Live(get_renderable=self.picture, console=messages(), refresh_per_second=4):
-                yield
+            console = messages()
+            console.soft_wrap = False  # alarms and questions are folded here, not cut
+            with Live(get_renderable=self.picture, console=console, refresh_per_second=4):
+                try:
+                    yield
+                finally:
+                    self._take()
         finally:
             sys.setswitchinterval(before)
 
@@ -90,11 +112,13 @@ class LiveView:
         if status is None:
             return Group(Text("opening the rig"))
         parts: list[RenderableType] = [
-            _head(status),
-            _bar(status, len(self._outcomes)),
-            harmonics_table(status.harmonics),
+            *_head(status),
+            _bars(status, len(self._outcomes)),
         ]
-        parts += [Text(outcome_line(one), style="dim") for one in self._outcomes[-5:]]
+        rows = tuple(one for one in status.harmonics if one.channel != SHAFT_ANGLE.name)
+        if rows:
+            parts.append(harmonics_table(rows))
+        parts += [_line(outcome_line(one), "dim") for one in self._outcomes[-5:]]
         parts += [Text(f"! {one}", style="bold red") for one in status.alarms[-5:]]
         if self._asked():
             parts.append(Text(f"? {self._asked()}", style="bold yellow"))
@@ -107,58 +131,75 @@ def outcome_line(one: RunOutcome) -> str:
     where = f", {one.file}" if one.file else ""
     voids = sum(flag.code == "gate_void" for flag in one.flags)
     void = f", {voids} void gates" if voids else ""
-    return f"{one.run}: {one.outcome}, {one.periods} periods{void}{where}{reason}"
+    return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{where}{reason}"
 
 
 def harmonics_table(rows: tuple[HarmonicRow, ...]) -> "Table":
-    """Return mean and first harmonic of each channel; what is not final yet is dim."""
+    """Return mean and first harmonic of each channel; what is not final yet is dim.
+
+    As many places as the interval allows; lengths in mm, angles in degrees.
+    """
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    table.add_column("channel")
+    table.add_column("channel", no_wrap=True)
     for heading in ("mean", "in phase", "quadrature", "amplitude", "95 %"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for one in rows:
-        width = "" if math.isnan(one.half_width) else f"± {one.half_width:.2g}"
+        factor, unit = _SHOWN.get(one.unit, (1.0, one.unit))
+        half_width = factor * one.half_width
         values = (one.mean, one.in_phase, one.quadrature, one.amplitude)
-        cells = [f"{value:.5g}" for value in values]
-        name = f"{one.channel} [{one.unit}]" if one.unit else one.channel
+        cells = [_places(factor * value, half_width) for value in values]
+        width = "" if math.isnan(half_width) else f"± {half_width:.2g}"
+        name = f"{one.channel} [{unit}]" if unit else one.channel
         table.add_row(name, *cells, width, style="" if one.final else "dim")
     return table
 
 
-def _head(status: Status) -> "Table":
-    from rich.table import Table
+def _places(value: float, half_width: float) -> str:
+    """Return a value to the second digit of its half-width; five digits where there is none."""
+    if not (math.isfinite(half_width) and half_width > 0.0):
+        return f"{value:.5g}"
+    places = min(max(0, 1 - math.floor(math.log10(half_width))), _MOST_PLACES)
+    return f"{value:z.{places}f}"
+
+
+def _line(text: str, style: str = "") -> "Text":
     from rich.text import Text
 
-    grid = Table.grid(padding=(0, 3))
+    return Text(text, style=style, no_wrap=True, overflow="ellipsis")
+
+
+def _head(status: Status) -> "Iterator[Text]":
+    """Yield state, run and time in a line, and how the computer fares in another."""
+    first = _line(f"{str(status.state).upper():10s}", _COLOURS.get(status.state, "bold"))
+    run = f"{status.run}  {status.frequency_hz:g} Hz" if status.frequency_hz else status.run
+    first.append(f" {status.time_s:8.1f} s  {run}", style="default not bold")
+    yield first
+    said = []
     late = status.statistics
-    cycles = (
-        f"cycles late {late.late}, p99 {1e3 * late.p99_s:.2f} ms, worst {1e3 * late.worst_s:.2f} ms"
-        if late is not None and late.cycles
-        else ""
-    )
-    free = "" if status.free_bytes is None else f"disk {status.free_bytes / _GIGA:.1f} GB free"
-    grid.add_row(
-        Text(str(status.state).upper(), style=_COLOURS.get(status.state, "bold")),
-        f"{status.run}  {status.frequency_hz:g} Hz" if status.run else "",
-        f"{status.time_s:.1f} s",
-        cycles,
-        free,
-    )
-    return grid
+    if late is not None and late.cycles:
+        said.append(
+            f"cycles late {late.late}, p99 {1e3 * late.p99_s:.2f} ms, "
+            f"worst {1e3 * late.worst_s:.2f} ms"
+        )
+    if status.free_bytes is not None:
+        said.append(f"disk {status.free_bytes / _GIGA:.1f} GB free")
+    yield _line("   ".join(said), "dim")
 
 
-def _bar(status: Status, ended: int) -> "Table":
+def _bars(status: Status, ended: int) -> "Table":
     from rich.progress_bar import ProgressBar
     from rich.table import Table
 
     grid = Table.grid(padding=(0, 2))
+    grid.add_column(min_width=_LABEL, no_wrap=True)
     share = status.periods / status.wanted_periods if status.wanted_periods else 0.0
+    runs = max(status.run_count, 1)
     grid.add_row(
         f"run {status.run_number} of {status.run_count}",
-        ProgressBar(total=max(status.run_count, 1), completed=ended + share, width=30),
-        f"gate {status.gate}, period {status.periods} of {status.wanted_periods}",
-        ProgressBar(total=1.0, completed=share, width=30),
+        ProgressBar(total=runs, completed=min(ended + share, runs), width=_BAR),
     )
+    done = f", period {status.periods} of {status.wanted_periods}" if status.wanted_periods else ""
+    grid.add_row(f"gate {status.gate}{done}", ProgressBar(total=1.0, completed=share, width=_BAR))
     return grid

@@ -16,6 +16,7 @@ import click
 from hardware.description.errors import DataError
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
+from pmm.cli.findings import finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.run_console import Answers, Interrupts, standard_input
@@ -79,8 +80,8 @@ def work(request: Request) -> None:
         If the rig stopped in a fault.
     """
     job = _job(request)
-    for one in job.findings:
-        messages().print(f"{one.verdict}: {one.run or 'plan'}: {one.message}")
+    for line in finding_lines(job.findings):
+        messages().print(line, soft_wrap=True)
     outcomes: list[RunOutcome] = []
     interrupted = False
     fault = ""
@@ -105,6 +106,8 @@ def _job(request: Request) -> Job:
     check_folder(folder, "--output")
     runs = chosen_runs(plan, folder, request.only, resume=request.resume)
     real_time = rig_file.realtime or request.real_time
+    chosen = {"", *(one.name for one in runs)}
+    findings = tuple(one for one in findings if one.run in chosen)
     return Job(plan, rig_file, folder, runs, findings, real_time)
 
 
@@ -227,7 +230,8 @@ def _report(request: Request, job: Job, outcomes: Sequence[RunOutcome], fault: s
         console.print(f"{job.folder}: all runs are complete")
         return
     for one in outcomes:
-        if one.outcome != Outcome.COMPLETE:
+        told = bool(fault) and one.reason == fault  # as the error
+        if one.outcome != Outcome.COMPLETE and not told:
             console.print(outcome_line(one), soft_wrap=True)
     complete = sum(one.outcome == Outcome.COMPLETE for one in outcomes)
     console.print(f"{complete} of {len(job.runs)} runs complete in {job.folder}")

@@ -1,0 +1,49 @@
+"""What a check of a plan found, in lines for people."""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Final
+
+from pmm.cli.printing import counted
+from pmm.plan.findings import Finding, Verdict
+
+if TYPE_CHECKING:
+    from rich.text import Text
+
+_STYLES: Final = {Verdict.REFUSE: "bold red", Verdict.WARN: "yellow", Verdict.NOTE: "cyan"}
+
+
+def finding_lines(found: Sequence[Finding], *, every: bool = False) -> "Iterator[Text]":
+    """Yield a line for each finding; of those of one kind, unless every one is wanted, the worst.
+
+    Parameters
+    ----------
+    every
+        Whether all findings of a kind are wanted.
+    """
+    from rich.text import Text
+
+    for one, more in _gathered(found, every=every):
+        others = f" (and {counted(more, 'other run')} so)" if more else ""
+        run = f"{one.run}: " if one.run else ""
+        yield Text.assemble(
+            (f"{one.verdict:7s}", _STYLES[one.verdict]), f"{run}{one.message}{others}"
+        )
+
+
+def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Finding, int]]:
+    """Yield findings; of those of one kind the one furthest off, and how many there are beside."""
+    if every:
+        yield from ((one, 0) for one in found)
+        return
+    ranks = list(Verdict)
+
+    def kind(one: Finding) -> tuple[int, str, float]:
+        what = one.quantity if one.run else one.message
+        return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
+
+    for _, group in groupby(sorted(found, key=kind), kind):
+        alike = list(group)
+        worst = max(alike, key=lambda one: abs(one.value - one.limit))
+        yield worst, len({one.run for one in alike}) - 1

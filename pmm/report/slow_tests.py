@@ -1,0 +1,125 @@
+"""Figures of the slow and steady tests: restoring, static drift, straight tow."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pmm.plan.kinds import RunKind
+from pmm.report.rounding import rounded
+from pmm.report.style import FIT, PALETTE
+from pmm.run.restoring import Restoring, Track
+from pmm.run.tows import DriftSlope, Tow
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def restoring_figure(found: Sequence[Restoring], tracks: Sequence[Track]) -> "Figure":
+    """Return force and moment over the displacement, a column for each motion.
+
+    The turn as it was measured, and dashed the line of hydrostatics where they are given.
+    """
+    from matplotlib.figure import Figure
+
+    motions = list(dict.fromkeys(one.motion for one in found))
+    figure = Figure(figsize=(1.2 + 3.4 * len(motions), 5.2), layout="constrained")
+    panels = figure.subplots(2, len(motions), squeeze=False, sharex="col")
+    for column, motion in enumerate(motions):
+        mine = [(one, track) for one, track in zip(found, tracks, strict=True)
+                if one.motion == motion]  # fmt: skip
+        _draw_turns(panels[0, column], panels[1, column], mine)
+    figure.suptitle("Restoring: loads of the struts on the model")
+    return figure
+
+
+def _draw_turns(force: "Axes", moment: "Axes", mine: Sequence[tuple[Restoring, Track]]) -> None:
+    scale, unit = (180.0 / math.pi, "deg") if mine[0][0].rotates else (1e3, "mm")
+    largest_first = sorted(mine, key=_width, reverse=True)
+    for k, (one, track) in enumerate(largest_first):
+        colour = PALETTE[k % len(PALETTE)]
+        x = scale * track.displacement
+        force.plot(x, track.force, color=colour, lw=1.2, label=one.run)
+        moment.plot(x, track.moment, color=colour, lw=1.2)
+    widest, track = largest_first[0]
+    ends = np.array([track.displacement.min(), track.displacement.max()])
+    for panel, expected in ((force, widest.hydrostatic_force), (moment, widest.hydrostatic_moment)):
+        if expected is not None:
+            panel.plot(scale * ends, expected * ends, "--", color="0.3", lw=1.0,
+                       label="hydrostatics and weight")  # fmt: skip
+    force.set_title(widest.motion)
+    force.set_ylabel("force [N]")
+    moment.set_ylabel("moment [N m]")
+    moment.set_xlabel(f"{widest.motion} [{unit}]")
+    force.legend(loc="upper left", fontsize=7.5)
+
+
+def _width(one: tuple[Restoring, Track]) -> float:
+    return float(np.ptp(one[1].displacement))
+
+
+def drift_figure(tows: Sequence[Tow], slopes: Sequence[DriftSlope]) -> "Figure":
+    """Return force and moment over the velocity across the model, with the fitted curves."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 5.2), layout="constrained")
+    panels = figure.subplots(2, 1, sharex=True)
+    speeds = list(dict.fromkeys(one.speed_m_s for one in slopes))
+    for k, speed in enumerate(speeds):
+        mine = [one for one in tows if math.isclose(one.speed_m_s, speed, abs_tol=1e-3)]
+        pair = [one for one in slopes if one.speed_m_s == speed]
+        _draw_slope(panels[0], mine, pair[0], k, "force_n", "force_u")
+        _draw_slope(panels[1], mine, pair[1], k, "moment_n_m", "moment_u")
+    velocity = slopes[0].name[-1]
+    panels[0].set_ylabel("force [N]")
+    panels[1].set_ylabel("moment [N m]")
+    panels[1].set_xlabel(f"velocity {velocity} across the model [m/s] (squares: straight tow)")
+    for panel in panels:
+        panel.legend(loc="best", fontsize=7.5)
+    figure.suptitle("Static drift: loads of the water on the model, about the midpoint")
+    return figure
+
+
+def _draw_slope(
+    panel: "Axes", tows: Sequence[Tow], one: DriftSlope, k: int, value: str, u: str
+) -> None:
+    across = np.array([tow.across_m_s for tow in tows])
+    loads = np.array([getattr(tow, value) for tow in tows])
+    widths = np.array([tow.half_width(getattr(tow, u)) for tow in tows])
+    colour = PALETTE[k % len(PALETTE)]
+    grid = np.linspace(across.min(), across.max(), 100)
+    curve = one.at_zero + one.value * grid
+    if not math.isnan(one.cubic):
+        curve = curve + one.cubic * grid**3
+    panel.plot(grid, curve, color=colour, lw=1.0,
+               label=f"{one.name} = {rounded(one.value, one.half_width)} {one.unit}"
+               f", U = {one.speed_m_s:g} m/s")  # fmt: skip
+    for kind, marker in ((RunKind.STATIC_DRIFT, "o"), (RunKind.STRAIGHT_TOW, "s")):
+        here = np.array([tow.kind is kind for tow in tows])
+        if here.any():
+            panel.errorbar(across[here], loads[here], widths[here], fmt=marker, ms=4,
+                           color=colour, capsize=2)  # fmt: skip
+
+
+def resistance_figure(tows: Sequence[Tow]) -> "Figure":
+    """Return the straight tows over speed: resistance where it was measured, force and moment."""
+    from matplotlib.figure import Figure
+
+    rows = [("force_n", "force_u", "force [N]"), ("moment_n_m", "moment_u", "moment [N m]")]
+    if any(not math.isnan(one.resistance_n) for one in tows):
+        rows.insert(0, ("resistance_n", "resistance_u", "resistance [N]"))
+    figure = Figure(figsize=(6.4, 1.7 * len(rows) + 0.7), layout="constrained")
+    panels = figure.subplots(len(rows), 1, sharex=True)
+    speeds = np.array([one.speed_m_s for one in tows])
+    for panel, (value, u, label) in zip(panels, rows, strict=True):
+        loads = np.array([getattr(one, value) for one in tows])
+        widths = np.array([one.half_width(getattr(one, u)) for one in tows])
+        panel.errorbar(speeds, loads, widths, fmt="s", ms=4, color=FIT, capsize=2)
+        panel.axhline(0.0, color="0.5", lw=0.8)
+        panel.set_ylabel(label)
+    panels[-1].set_xlim(left=0.0)
+    panels[-1].set_xlabel("speed [m/s]")
+    figure.suptitle("Straight tow: mean loads of the water on the model")
+    return figure

@@ -1,0 +1,39 @@
+"""What the tests of a campaign say of rig and model."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pmm.calibration import Calibration
+from pmm.run.chart import Chart
+from pmm.run.in_water import InWater
+from pmm.run.rig_tests import InPlaceResponse, RungMode, ZeroDrift
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What a campaign's tests say; what was not tested is empty.
+
+    Attributes
+    ----------
+    notes
+        What could not be judged yet, and what is missing for it.
+    failed
+        Tests that show nothing, and why.
+    files
+        What was written.
+    """
+
+    zeros: tuple[ZeroDrift, ...]
+    calibration: Calibration | None
+    modes: tuple[RungMode, ...]
+    responses: tuple[InPlaceResponse, ...]
+    charts: tuple[Chart, ...]
+    water: InWater = field(default_factory=InWater)
+    notes: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
+
+    @property
+    def in_control(self) -> bool:
+        """Whether no chart shows a change."""
+        return all(one.in_control for one in self.charts)

@@ -1,0 +1,188 @@
+"""Quasi-static restoring: force and moment for a displacement, of a turn slower than all waves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.coefficients.cycle import Cycle, at_order
+from analysis.coefficients.phasors import FloatArray, Phasors
+from analysis.motion import mass_matrix, weight_matrix
+from analysis.uncertainty import student_factor
+from hardware.description.body import Body
+from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
+from pmm.campaign import Campaign
+
+_LEVEL = 0.95
+_PURE = 0.02  # of the larger motion, at the struts: as much of the other one may be in it
+_POINTS = 400
+
+
+@dataclass(frozen=True)
+class Restoring:
+    """Stiffness of one motion.
+
+    Attributes
+    ----------
+    motion
+        ``"heave"``, ``"pitch"``, ``"sway"`` or ``"yaw"``.
+    frequency_hz
+        Of the slow turn.
+    force, moment
+        Stiffness: N/m and N for a translation, N and N m for a rotation; positive for a load that
+        the struts have to exert. What inertia and believed added mass take at this frequency is
+        taken off.
+    force_half_width, moment_half_width
+        At 95 %, from the scatter of the periods.
+    force_inertia, moment_inertia
+        What was taken off, ``-omega^2 (m + a)``.
+    hydrostatic_force, hydrostatic_moment
+        What hydrostatics (``[hull]`` restoring) and the model's weight say; ``None`` where the
+        campaign file has none.
+    higher
+        Largest second or third harmonic of the force (moment for a rotation) over the first: a
+        line has none.
+    loop
+        Quadrature over in phase of the same: damping and friction open the line to a loop.
+    """
+
+    run: str
+    motion: str
+    frequency_hz: float
+    force: float
+    force_half_width: float
+    moment: float
+    moment_half_width: float
+    force_inertia: float
+    moment_inertia: float
+    hydrostatic_force: float | None
+    hydrostatic_moment: float | None
+    higher: float
+    loop: float
+
+    @property
+    def rotates(self) -> bool:
+        """Whether it is a rotation: pitch or yaw."""
+        return self.motion in _ROTATIONS
+
+    @property
+    def units(self) -> tuple[str, str]:
+        """Units of force and moment for the motion."""
+        return ("N/rad", "N m/rad") if self.rotates else ("N/m", "N m/m")
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Force and moment over the displacement, over one turn.
+
+    Attributes
+    ----------
+    displacement
+        m or rad, from the harmonics, as are force (N) and moment (N m); shape ``(points,)``.
+    """
+
+    displacement: FloatArray
+    force: FloatArray
+    moment: FloatArray
+
+
+_ROTATIONS = ("pitch", "yaw")
+_NAMES = {Plane.VERTICAL: ("heave", "pitch"), Plane.HORIZONTAL: ("sway", "yaw")}
+
+
+def restoring_of(cycle: Cycle, campaign: Campaign) -> Restoring:
+    """Return the stiffness that a slow turn shows.
+
+    Raises
+    ------
+    DataError
+        If translation and rotation move together: one run cannot tell their stiffness apart.
+    """
+    column = _moved(cycle)
+    motion = ("translation", "rotation")[column]
+    first = _of_order(cycle, 1).referred_to(motion)
+    values, widths = _stiffness(first, motion)
+    square = (2.0 * math.pi * cycle.frequency_hz) ** 2
+    body = campaign.model
+    inertia = -square * (_mass(body, cycle.plane) + np.array(campaign.hull.added_mass))[:, column]
+    expected = _hydrostatic(campaign, cycle.plane)
+    load = ("force", "moment")[column]
+    ratio = first[load]
+    return Restoring(
+        cycle.name,
+        _NAMES[cycle.plane][column],
+        cycle.frequency_hz,
+        float(values[0] - inertia[0]),
+        float(widths[0]),
+        float(values[1] - inertia[1]),
+        float(widths[1]),
+        float(inertia[0]),
+        float(inertia[1]),
+        None if expected is None else float(expected[0, column]),
+        None if expected is None else float(expected[1, column]),
+        max(abs(cycle.phasors[at_order(load, n)]) for n in (2, 3)) / abs(ratio),
+        ratio.imag / ratio.real if ratio.real else math.inf,
+    )
+
+
+def track_of(one: Restoring, cycle: Cycle) -> Track:
+    """Return force and moment over the displacement, as the harmonics 1 to 3 draw them."""
+    theta = np.linspace(0.0, 2.0 * math.pi, _POINTS)
+
+    def drawn(name: str) -> FloatArray:
+        return np.asarray(
+            sum(
+                np.imag(cycle.phasors[at_order(name, n)] * np.exp(1j * n * theta))
+                for n in range(1, cycle.orders + 1)
+            )
+        )
+
+    return Track(drawn("rotation" if one.rotates else "translation"), drawn("force"),
+                 drawn("moment"))  # fmt: skip
+
+
+def _of_order(cycle: Cycle, order: int) -> Phasors:
+    return cycle.run(order).phasors
+
+
+def _moved(cycle: Cycle) -> int:
+    """Return which motion it is: 0 for the translation, 1 for the rotation."""
+    first = _of_order(cycle, 1)
+    sizes = np.array([abs(first["translation"]), cycle.half_spacing_m * abs(first["rotation"])])
+    if sizes.min() > _PURE * sizes.max():
+        raise DataError(
+            f"{cycle.name}: translation ({1e3 * sizes[0]:.3g} mm) and rotation "
+            f"({1e3 * sizes[1]:.3g} mm at the struts) move together (limit {100.0 * _PURE:g} % of "
+            "the larger); their stiffness needs a run of each alone"
+        )
+    return int(np.argmax(sizes))
+
+
+def _stiffness(first: Phasors, motion: str) -> tuple[FloatArray, FloatArray]:
+    """Return the in-phase part of both loads over the motion, and their half-widths."""
+    amplitude = first[motion].real
+    at = 2 * first.index(motion)
+    values, widths = np.zeros(2), np.zeros(2)
+    for k, load in enumerate(("force", "moment")):
+        values[k] = first[load].real / amplitude
+        slope = np.zeros(2 * len(first.names))
+        slope[2 * first.index(load)] = 1.0 / amplitude
+        slope[at] -= values[k] / amplitude
+        for source in first.sources:
+            factor = float(student_factor(np.array([source.degrees_of_freedom]), _LEVEL)[0])
+            variance = max(float(slope @ source.covariance @ slope), 0.0)
+            widths[k] = math.hypot(widths[k], factor * math.sqrt(variance))
+    return values, widths
+
+
+def _mass(body: Body | None, plane: Plane) -> FloatArray:
+    return np.zeros((2, 2)) if body is None else mass_matrix(body, plane)
+
+
+def _hydrostatic(campaign: Campaign, plane: Plane) -> FloatArray | None:
+    """Return what the struts feel of hydrostatics and weight; ``None`` where nothing is given."""
+    believed = np.array(campaign.hull.restoring, dtype=np.float64)
+    if not believed.any():
+        return None
+    return believed if campaign.model is None else believed + weight_matrix(campaign.model, plane)
