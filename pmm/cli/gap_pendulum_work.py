@@ -11,7 +11,8 @@ import click
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
 from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.verdict import NONE, UNKNOWN, told_apart
-from pmm.cli.screen import busy, output
+from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.screen import output
 from pmm.gap.pendulum import load_problem
 from pmm.gap.pendulum_document import document, parameters
 
@@ -35,8 +36,8 @@ class Request:
 def run(request: Request) -> None:
     """Diagnose a file's records and print what was found."""
     path = Path(request.file)
-    with busy(f"diagnosing {path.name}"):
-        found = diagnose_trials(load_problem(path), most=request.most)
+    with progress() as told:
+        found = diagnose_trials(load_problem(path), most=request.most, progress=told)
     figures: list[Path] = []
     if request.plot is not None:
         from pmm.gap.pendulum_figure import draw

@@ -24,7 +24,7 @@ from analysis.gap.pendulum.trial import Problem, Trial
 from analysis.inertia.gates import passages, read_gate_events
 from analysis.inertia.series import UsablePart, series_from_recording, usable_part
 from analysis.readers import read_recording
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, DataError
 from pmm.configuration import Fault, as_error, read_toml, validate
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
@@ -133,8 +133,18 @@ def load_problem(path: Path) -> Problem:
     )
     if scaled:
         trials = tuple(_suspended(case, one, path.parent) for one in case.suspensions)
-        return Problem(trials, known, kinds=("period",))
-    return _decay(case, path.parent, known)
+        return _checked(path, Problem(trials, known, kinds=("period",)))
+    return _checked(path, _decay(case, path.parent, known))
+
+
+def _checked(path: Path, problem: Problem) -> Problem:
+    for number, trial in enumerate(problem.trials):
+        if not (problem.trial == number).any():
+            raise DataError(
+                f"{path}: {trial.name}: {trial.windows.count} windows of swings are too few to "
+                "tell their scatter; record longer, or let more swings count"
+            )
+    return problem
 
 
 def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:

@@ -9,9 +9,10 @@ from analysis.gap.pendulum.hypothesis import fit
 from analysis.gap.pendulum.search import search
 from analysis.gap.pendulum.verdict import judge
 from analysis.gap.pendulum.withheld import foretell
-from hardware.description.errors import ConfigurationError
+from analysis.inertia.spread import SURE
+from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.pendulum import load_problem, read_case
-from sim.pendulum.effects import body
+from sim.pendulum.effects import body, setup
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"
 measured = pytest.mark.skipif(not SHARED.exists(), reason="no shared measured data")
@@ -47,6 +48,58 @@ def test_roll_decay_misses_damping_beyond_linear(tmp_path: Path) -> None:
     quadratic = fit(problem, [cause(body.QuadraticDrag)])
     for regime in foretell(problem, [quadratic]):
         assert regime.foretold[0].shrinkage > 0.9
+
+
+ROD = """
+name = "rod"
+gyradius_m = 0.343
+gravity_m_s2 = 9.81
+swings = 60
+[tolerances]
+inertia = 0.05
+restoring = 3e-4
+amplitude_period = 0.02
+line_excess = 5e-4
+spacing = 2.5e-4
+"""
+
+
+@measured
+def test_what_makes_a_rods_suspensions_differ_cannot_be_told(tmp_path: Path) -> None:
+    """The same causes and sizes as from the gyradii alone, and no more sure: lines and clamps."""
+    tables = []
+    for path in sorted((SHARED / "bifilar").glob("*.csv")):
+        spacing, line = (float(one[1:]) for one in path.stem.split("_"))
+        tables.append(
+            f'[[suspensions]]\nname = "{path.stem}"\ngates = "{path.as_posix()}"\n'
+            f"half_spacing_m = {spacing / 2.0}\nline_m = {line}\n"
+        )
+    file = tmp_path / "rod.toml"
+    file.write_text(ROD + "".join(tables))
+    problem = load_problem(file)
+    both = fit(problem, [cause(setup.LineExcess), cause(setup.ClampMass)])
+    excess, share = (
+        axis.value(float(unit))
+        for one, unit in zip(both.causes, both.units, strict=True)
+        for axis in one.axes
+    )
+    assert excess == pytest.approx(0.0141, abs=2e-3)
+    assert share == pytest.approx(0.0151, abs=2e-3)
+    (regime,) = foretell(problem, [both])
+    assert regime.name == "each suspension"
+    assert 0.3 < regime.foretold[0].shrinkage < SURE
+
+
+@measured
+def test_too_few_swings_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "rod.toml"
+    gates = next((SHARED / "bifilar").glob("*.csv")).as_posix()
+    table = (
+        f'[[suspensions]]\nname = "one"\ngates = "{gates}"\nhalf_spacing_m = 0.2\nline_m = 0.6\n'
+    )
+    file.write_text(ROD.replace("swings = 60", "swings = 24") + table)
+    with pytest.raises(DataError, match="one: 6 windows of swings are too few"):
+        load_problem(file)
 
 
 def test_errors_of_a_file_are_said(tmp_path: Path) -> None:

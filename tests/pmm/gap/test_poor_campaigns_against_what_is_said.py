@@ -130,3 +130,15 @@ def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
     assert added.exit_code == 0, added.output
     again = run("gap", rig, *FEW, "--effects", own)
     assert again.stdout.startswith("gap: no gap beyond u")
+
+
+def test_a_zero_that_drifts_over_the_campaign(tmp_path: Path) -> None:
+    """Not within the runs alone, and not a zero that is off by one amount."""
+    rig = made(tmp_path, "--effect", "campaign-drift:aft_n_s=2e-4")
+    rivals = ("--effects", "zero-drift", "--effects", "zero-offset")
+    document = found(rig, "--effects", "campaign-drift", *rivals)
+    first = document["ranking"][0]
+    assert first["answer"] == "campaign-drift"
+    drift = first["effects"][0]["parameters"]["aft_n_s"]
+    assert drift["low"] < 2e-4 < drift["high"]
+    assert drift["value"] == pytest.approx(2e-4, rel=0.05)
