@@ -73,6 +73,7 @@ def _draw_intervals(axes: "Axes", one: Assessment) -> None:
     axes.axvline(0.0, color=TRACE, lw=0.8)
     axes.set_yticks([1.0, 0.0], ["budget", "Monte Carlo"])
     axes.set_ylim(-0.6, 1.6)
+    axes.locator_params(axis="x", nbins=5)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"95 % less the value ({unit})", fontsize=8.0)
     if not one.linear_good_enough:

@@ -72,7 +72,7 @@ def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"
 
 def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
     shown = display(run.part.series.unit)
-    time_s, values = thin(run.fit.time_s, run.fit.residual)
+    time_s, values = thin(run.part.series.time_s, residual_on_grid(run))
     axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.6)
     axes.axhline(0.0, color=FIT, lw=0.8)
     rms = shown.factor * float(np.sqrt(np.mean(run.fit.residual**2)))
@@ -94,10 +94,17 @@ def _smooth(run: RecordAnalysis) -> FloatArray:
     return np.linspace(start, stop, min(max(wanted, 200), _MOST_FIT_POINTS))
 
 
+def residual_on_grid(run: RecordAnalysis) -> FloatArray:
+    """Return the residual on the used part's even samples, NaN where none was recorded."""
+    values = np.full(run.part.series.values.size, np.nan)
+    at = (run.fit.time_s - run.part.series.start_s) * run.part.series.sample_rate_hz
+    values[np.clip(np.rint(at).astype(int), 0, values.size - 1)] = run.fit.residual
+    return values
+
+
 def thin(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a curve with few enough points that it still looks the same."""
-    good = np.isfinite(values)
-    if not good.all():
+    if not np.isfinite(values).all():
         return time_s, values
     trace = zigzag(time_s, values.reshape(1, -1), _BINS)
     return trace.time_s, trace.values[0]

@@ -9,7 +9,7 @@ from analysis.inertia.numeric import FloatArray
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from pmm.inertia.sources import PeriodRuns
-from pmm.report.inertia_record import MOST_RUNS, thin
+from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
 from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
@@ -51,7 +51,7 @@ def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
         rate = run.part.series.sample_rate_hz
         hz, amplitude = _lines(run.part.series.values, rate, top_hz)
         axes.semilogy(hz, shown.factor * amplitude, color=color, lw=0.9, label=name)
-        hz, rest = _lines(_residual(run), rate, top_hz)
+        hz, rest = _lines(residual_on_grid(run), rate, top_hz)
         axes.semilogy(hz, shown.factor * rest, ":", color=color, lw=0.9, label=f"{name}, residual")
     for mode in first.fit.modes:
         axes.axvline(1.0 / mode.period_s, color=FIT, lw=0.8, zorder=0)
@@ -68,14 +68,6 @@ def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
     axes.set_xlabel("frequency (Hz)")
     axes.set_ylabel(f"amplitude ({shown.label})")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
-
-
-def _residual(run: RecordAnalysis) -> FloatArray:
-    """Return the residual on the used part's even samples, NaN where none was recorded."""
-    values = np.full(run.part.series.values.size, np.nan)
-    at = (run.fit.time_s - run.part.series.start_s) * run.part.series.sample_rate_hz
-    values[np.clip(np.rint(at).astype(int), 0, values.size - 1)] = run.fit.residual
-    return values
 
 
 def _lines(values: FloatArray, rate_hz: float, top_hz: float) -> tuple[FloatArray, FloatArray]:

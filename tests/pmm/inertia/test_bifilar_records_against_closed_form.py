@@ -8,6 +8,7 @@ import pytest
 
 from pmm.inertia import bifilar
 from pmm.inertia.model_file import model_section
+from pmm.report.inertia_record import residual_on_grid
 
 G, LINE_M, HALF_M, GYRADIUS_M = 9.81, 2.0, 0.5, 0.62
 SWAY_S = 2.0 * math.pi * math.sqrt(LINE_M / G)
@@ -46,14 +47,18 @@ def record(folder: Path, number: int) -> str:
 
 
 def test_a_gap_is_left_out_and_does_not_void_the_model(tmp_path: Path) -> None:
-    runs = [record(tmp_path, number) for number in (1, 2, 3)]
+    names = [record(tmp_path, number) for number in (1, 2, 3)]
     path = tmp_path / "job.toml"
-    path.write_text(HEAD + f"yaw = {{ records = {runs} }}\n".replace("'", '"'))
+    path.write_text(HEAD + f"yaw = {{ records = {names} }}\n".replace("'", '"'))
     outcome = bifilar.run(str(path))
     found = {one.name: one.estimate for one in outcome.findings}
     assert found["k_yaw_m"].value == pytest.approx(GYRADIUS_M, rel=5e-5)
     assert not outcome.said_no
     assert "mass_kg = 80" in model_section(outcome)
+    (runs,) = outcome.periods
+    rest = residual_on_grid(runs.records[0])
+    assert rest.size == runs.records[0].part.series.values.size
+    assert np.isnan(rest).sum() == pytest.approx(60.0 * YAW_S, abs=2)  # drawn where it was blind
     gaps = [flag.message for flag in outcome.flags if flag.code == "gaps"]
     assert len(gaps) == 3
     assert "the longest gap is 3 periods (limit 0.5)" in gaps[0]
