@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+import can
 import pytest
 from can.interfaces.udp_multicast import UdpMulticastBus
 
@@ -49,12 +50,14 @@ def test_a_lost_controller_is_stopped_for(tmp_path: Path, number: signal.Signals
                 run.stdin.flush()
                 _wait_for_gate(folder, run)
                 stopped_s = _time_to_emergency(watcher, run, number)
+                speed = _speed_at_rest(watcher)
             finally:
                 run.kill()
         host.communicate("quit\n", timeout=5)
     # 300 ms after the last heartbeat, which was up to 100 ms old, and what the host's load adds.
     assert stopped_s is not None
     assert 0.15 < stopped_s < 1.0
+    assert speed == 0, "the shaft stands, and nobody told it to"
     (recorded,) = folder.glob("*/samples.arrows")
     assert read_run(recorded.parent).samples is not None
 
@@ -72,6 +75,23 @@ def _time_to_emergency(
         if frame is not None and frame.arbitration_id == 0x081:
             return time.monotonic() - lost_s
     return None
+
+
+def _speed_at_rest(watcher: UdpMulticastBus) -> int | None:
+    """Ask the shaft's drive for its speed (606C) until it stands; return what it says last."""
+    speed = None
+    ask = can.Message(
+        arbitration_id=0x601, data=[0x40, 0x6C, 0x60, 0, 0, 0, 0, 0], is_extended_id=False
+    )
+    until_s = time.monotonic() + 5.0
+    while speed != 0 and time.monotonic() < until_s:
+        watcher.send(ask)
+        frame = watcher.recv(0.2)
+        while frame is not None and frame.arbitration_id != 0x581:
+            frame = watcher.recv(0.2)
+        if frame is not None and bytes(frame.data[:4]) == bytes([0x43, 0x6C, 0x60, 0]):
+            speed = int.from_bytes(frame.data[4:8], "little", signed=True)
+    return speed
 
 
 def _wait_for_gate(folder: Path, run: subprocess.Popen[str]) -> None:
