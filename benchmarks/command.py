@@ -30,6 +30,7 @@ NAMES = (
     "kill",
     "coefficients",
     "campaign",
+    "sealed",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 

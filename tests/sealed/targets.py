@@ -38,6 +38,7 @@ def _measured(score: Score) -> Iterator[tuple[str, float]]:
         "shrinkage_covered": "shrinkage_covered",
         "shrinkage_covered_not_too_often": "shrinkage_covered",
         "next_run": "next_run",
+        "case_s": "seconds",
     }
     for key, column in whole.items():
         yield from _value(key, row.figure("all", column))
