@@ -198,6 +198,27 @@ def test_roll_decay_of_test_and_simulation() -> None:
     assert all(0.4 < beta < 1.0 for beta in betas)
 
 
+@pytest.mark.parametrize(
+    ("name", "time", "peaks_deg", "within_deg"),
+    [
+        ("model_test_21337.csv.gz", "time", (10.04, 9.47, 8.98), 0.13),
+        ("fnpf_kvlcc2_rolldecay_0kn.csv.gz", "Time", (9.90, 9.79, 9.68), 0.02),
+    ],
+)
+def test_the_decay_law_steps_from_peak_to_peak(
+    name: str, time: str, peaks_deg: tuple[float, ...], within_deg: float
+) -> None:
+    """The first peaks as read off the records; the law's first amplitude lies below the test's."""
+    part = roll(name, time).series
+    local = local_periods(part.time_s, part.values, fit_damped(part.time_s, part.values))
+    law = fit_power_decay(local.time_s, local.amplitude)
+    amplitude, period = math.radians(peaks_deg[0]), float(local.period_s[0])
+    for peak in peaks_deg[1:]:
+        rate = (amplitude / law.amplitude) ** law.beta / law.time_constant_s
+        amplitude *= (1.0 + law.beta * rate * period) ** (-1.0 / law.beta)
+        assert math.degrees(amplitude) == pytest.approx(peak, abs=within_deg)
+
+
 def test_release_of_the_roll_test_is_found() -> None:
     part = roll("model_test_21337.csv.gz", "time")
     assert 23.0 < part.series.start_s < 28.0
