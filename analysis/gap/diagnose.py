@@ -129,7 +129,7 @@ def diagnose(
     problem = _problem(rig, runs, settings, free)
     progress("walking along the chain")
     walked = walk(problem)
-    weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress)
+    weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress, free)
     found = _with_coefficients(probabilities(weighed), problem, free)
     return _concluded(problem, walked, weighed, found, settings, free, progress)
 
@@ -172,8 +172,10 @@ def _concluded(
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
-    best, rival = _best(weighed, found)
     fits = [one.fit for one in weighed.looked if one.fit is not None]
+    best, ranked = _best(weighed, found)
+    classes = {} if best is None else _classes(problem, best.fit, fits)
+    rival = _rival(best, ranked, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
     after = before if best is None else predict_withheld(problem, best.fit, withheld)
@@ -188,7 +190,7 @@ def _concluded(
         stage_probabilities(found, settings.catalogue, _unknown_stage(problem, weighed)),
         best,
         rival,
-        {} if best is None else _classes(problem, best.fit, fits),
+        classes,
         coefficient_shift(problem, _explained(problem, best)),
         before,
         after,
@@ -202,16 +204,28 @@ def _explained(problem: Problem, best: Named | None) -> FloatArray:
     return problem.residual if best is None else problem.residual - best.fit.signature
 
 
-def _best(weighed: Weighed, found: Probabilities) -> tuple[Named | None, Named | None]:
-    """Return the most probable named hypothesis, if naming one is right, and its first rival."""
+def _best(weighed: Weighed, found: Probabilities) -> tuple[Named | None, list[Named]]:
+    """Return the most probable named hypothesis, if naming one is right, and all of them in order.
+
+    Where a pair counts for one of its effects alone, that is what is named.
+    """
     ranked = sorted(
         (*weighed.singles, *weighed.pairs), key=lambda one: -found.by_answer[answer_of(one.fit)]
     )
-    if found.best in (NONE, COEFFICIENTS) or not ranked:
-        return None, ranked[0] if ranked else None
-    first = ranked[0]
-    rivals = [one for one in ranked[1:] if not set(one.fit.names) & set(first.fit.names)]
-    return first, rivals[0] if rivals else None
+    named = found.best not in (NONE, COEFFICIENTS) and bool(ranked)
+    return ranked[0] if named else None, ranked
+
+
+def _rival(
+    best: Named | None,
+    ranked: Sequence[Named],
+    classes: Mapping[str, tuple[tuple[str, float], ...]],
+) -> Named | None:
+    """Return the wrong-effect control: the next best of which none passes for the best's."""
+    if best is None:
+        return ranked[0] if ranked else None
+    alike = {*best.fit.names, *(name for own in classes.values() for name, _ in own)}
+    return next((one for one in ranked if not set(one.fit.names) & alike), None)
 
 
 def _classes(

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.candidate import Candidate
+from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.gaussian import Nuisances, Posterior, misfit, posterior
 from hardware.description.errors import PmmError
@@ -16,6 +18,7 @@ FloatArray = NDArray[np.float64]
 
 _STEP = 0.02  # of a prior deviation, at least
 _STEPS = 6
+_STEPS_IN_TIME = 3  # for what has to be simulated in time, a hundred times as costly
 _FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
 _SETTLED = 0.05  # change of the log posterior at which a fit ends
 
@@ -38,10 +41,18 @@ class Problem:
     nuisances: Nuisances
     free: tuple[str, ...]
 
-    @property
+    @cached_property
     def residual(self) -> FloatArray:
-        """Measured minus nominal in sigma, shape ``(observations,)``."""
-        return self.whitened(self.simulator.stack.values - self.simulator.nominal)
+        """Measured minus nominal in sigma, shape ``(observations,)``.
+
+        Pulses that scatter less than is believed of any rig are no gap.
+        """
+        stack = self.simulator.stack
+        found = self.whitened(stack.values - self.simulator.nominal)
+        pulses = np.array([one.part is Part.PERIOD_SCATTER for one in stack.components])
+        if pulses.any() and found[pulses].mean() < 0.0:
+            found[pulses] = 0.0
+        return found
 
     def whitened(self, change: FloatArray) -> FloatArray:
         """Return a change of the observations in sigma."""
@@ -133,8 +144,15 @@ def most_probable(fit: Fit) -> FloatArray:
     return np.asarray(np.clip(units, low, high), np.float64)
 
 
-def at(problem: Problem, parts: tuple[Candidate, ...], units: FloatArray) -> Fit:
+def at(
+    problem: Problem, parts: tuple[Candidate, ...], units: FloatArray, *, roughly: bool = False
+) -> Fit:
     """Linearise a hypothesis at some parameters and weigh it.
+
+    Parameters
+    ----------
+    roughly
+        Take an effect of one size as proportional to it: no further simulation for the slope.
 
     Raises
     ------
@@ -144,18 +162,30 @@ def at(problem: Problem, parts: tuple[Candidate, ...], units: FloatArray) -> Fit
     simulator = problem.simulator
     base = simulator.predict(built(parts, units))
     signature = problem.whitened(base - simulator.nominal)
-    slopes = [_slope(problem, parts, units, base, axis) for axis in range(len(units))]
+    slopes = (
+        [signature / units[0]]
+        if roughly and is_sized(parts, units)
+        else [_slope(problem, parts, units, base, axis) for axis in range(len(units))]
+    )
     columns = np.column_stack(slopes) if slopes else np.zeros((len(base), 0))
-    return _weighed(problem, parts, units, columns, signature)
+    return weighed_at(problem, parts, units, columns, signature)
 
 
-def _weighed(
+def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
+    """Tell whether a hypothesis has one parameter, and that one is the size of its signature."""
+    axes = [axis for one in parts for axis in one.axes]
+    sized = len(axes) == 1 and axes[0].centre == 0.0 and not axes[0].is_log
+    return sized and parts[0].kind.repeats and abs(float(units[0])) > _STEP
+
+
+def weighed_at(
     problem: Problem,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     columns: FloatArray,
     signature: FloatArray,
 ) -> Fit:
+    """Weigh a hypothesis whose columns and signature are known."""
     left = problem.residual - signature
     found = posterior(left + columns @ units, columns, problem.nuisances)
     cost = misfit(left, problem.nuisances) + float(units @ units)
@@ -165,7 +195,7 @@ def _weighed(
 
 def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
     """Put two linearised hypotheses together as if their effects did not act on each other."""
-    return _weighed(
+    return weighed_at(
         problem,
         first.candidates + second.candidates,
         np.concatenate((first.units, second.units)),
@@ -197,13 +227,15 @@ def expected_evidence(problem: Problem, fit: Fit) -> float:
     return -0.5 * (cost + fit.shared) + fit.posterior.log_volume
 
 
-def refine(problem: Problem, fit: Fit, steps: int = _STEPS) -> Fit:
+def refine(problem: Problem, fit: Fit) -> Fit:
     """Improve a fit by damped Gauss-Newton steps through the simulator.
 
-    The slopes are kept as long as a step brings most of what they promise.
+    The slopes are kept as long as a step brings most of what they promise, and for what does not
+    repeat with the shaft to the end.
     """
+    repeats = all(one.kind.repeats for one in fit.candidates)
     best, stale = fit, False
-    for _ in range(steps):
+    for _ in range(_STEPS if repeats else _STEPS_IN_TIME):
         better, fulfilled = _step(problem, best)
         if better is None:
             if not stale:
@@ -215,7 +247,7 @@ def refine(problem: Problem, fit: Fit, steps: int = _STEPS) -> Fit:
             break
         if fulfilled < _FULFILLED:
             best, stale = at(problem, best.candidates, best.units), False
-    return at(problem, best.candidates, best.units) if stale else best
+    return at(problem, best.candidates, best.units) if stale and repeats else best
 
 
 def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
@@ -242,4 +274,4 @@ def _moved(problem: Problem, fit: Fit, units: FloatArray) -> Fit:
     """Return the fit at other parameters, with the slopes that it has."""
     values = problem.simulator.predict(built(fit.candidates, units))
     signature = problem.whitened(values - problem.simulator.nominal)
-    return _weighed(problem, fit.candidates, units, fit.columns, signature)
+    return weighed_at(problem, fit.candidates, units, fit.columns, signature)

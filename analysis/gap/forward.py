@@ -83,15 +83,15 @@ class Simulator:
         run = self.stack.runs[number]
         steady = self._steady(run, (*self.on, *effects))
         repeats = run.observed.layout.steady
-        return steady if repeats.all() else np.where(repeats, steady, self._quiet(number))
+        return steady if repeats.all() else np.where(repeats, steady, self._record(number))
 
     def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
+        """Return what repeats with the effects that do, and on it what the others change alone."""
         run = self.stack.runs[number]
-        quiet = tuple(one for one in effects if one.repeats)
-        changed = self._in_time(run, (*self.on, *effects))
-        base = self._in_time(run, (*self.on, *quiet)) if quiet else self._quiet(number)
-        steady = self._steady(run, (*self.on, *effects)) + changed - base
-        return np.where(run.observed.layout.steady, steady, changed)
+        moving = tuple(one for one in effects if not one.repeats)
+        alone, base = self._record(number, moving), self._record(number)
+        steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
+        return np.where(run.observed.layout.steady, steady + alone - base, alone)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
@@ -99,14 +99,15 @@ class Simulator:
         return np.concatenate([self._steady(run, on) for run in self.stack.runs])
 
     @cached_property
-    def _records(self) -> dict[int, FloatArray]:
-        """Runs simulated in time without any further effect, as they are asked for."""
+    def _records(self) -> dict[tuple[int, tuple[Effect, ...]], FloatArray]:
+        """Runs that were simulated in time, by number and by what does not repeat."""
         return {}
 
-    def _quiet(self, number: int) -> FloatArray:
-        if number not in self._records:
-            self._records[number] = self._in_time(self.stack.runs[number], self.on)
-        return self._records[number]
+    def _record(self, number: int, moving: tuple[Effect, ...] = ()) -> FloatArray:
+        key = (number, moving)
+        if key not in self._records:
+            self._records[key] = self._in_time(self.stack.runs[number], (*self.on, *moving))
+        return self._records[key]
 
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         told = replace(

@@ -33,6 +33,7 @@ FloatArray = NDArray[np.float64]
 Change = Callable[[SimulatedRig, float], SimulatedRig]
 
 _TERMS: Final = {"added_mass": "a", "damping": "b", "restoring": "c"}
+_SOUGHT: Final = tuple(f"{term}{row}{column}" for term in "ab" for row in "12" for column in "12")
 _STEP = 0.1  # of a prior deviation
 
 
@@ -59,6 +60,11 @@ class Free:
     def is_coefficient(self) -> bool:
         """Whether it belongs to the model and the water."""
         return self.change is not None
+
+    @property
+    def is_sought(self) -> bool:
+        """Whether such a test is made to find it: added mass or damping, not what was weighed."""
+        return self.is_coefficient and self.name in _SOUGHT
 
     def steady(self, simulator: Simulator, units: float) -> FloatArray:
         """Return what repeats with the shaft when it is off by some prior deviations."""

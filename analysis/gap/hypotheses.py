@@ -3,16 +3,18 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.fit import Fit, Problem
+from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.search import Looked, fitted, looked_at, paired
+from analysis.gap.together import together
 from analysis.gap.unknown import Deviation, find_deviation
 from sim.effects.effect import Effect
 
@@ -60,12 +62,15 @@ class Named:
         With the remainder.
     remainder
         Its size over that of the effect's own signature, after the nuisances have taken their part.
+    balance
+        Of a pair: the smaller effect's signature over the larger one's; 1 for a single effect.
     """
 
     fit: Fit
     log_evidence: float
     remainder: float
     deviation: Deviation
+    balance: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +116,7 @@ def weigh(
     executor: Executor | None = None,
     odds: Odds = Odds(),
     progress: Callable[[str], None] = lambda _: None,
+    free: Sequence[Free] = (),
 ) -> Weighed:
     """Fit and weigh every hypothesis.
 
@@ -120,6 +126,8 @@ def weigh(
         Where effects are looked at side by side; ``None`` does them one by one.
     progress
         Told what is being done.
+    free
+        The coefficients and settings of the problem, to be moved together with the effects.
     """
     kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
     parts = shown(problem)
@@ -129,25 +137,45 @@ def weigh(
     none = null_evidence(problem.residual, problem.nuisances)
     seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
     progress("fitting the best")
-    singles = fitted(problem, seen, none, executor)
+    singles = _together(problem, free, fitted(problem, seen, none, executor))
     progress("fitting pairs")
-    pairs = paired(problem, singles, seen, none, executor)
+    pairs = _together(problem, free, paired(problem, singles, seen, none, executor))
     unknown = find_deviation(problem.simulator.stack, problem.residual, problem.nuisances)
     ones, twos = (_named_all(problem, fits, none) for fits in (singles, pairs))
     skipped = tuple(kind.name for kind in kinds if kind not in worth)
     return Weighed(problem, none, ones, twos, unknown, tuple(looked), odds, skipped)
 
 
+def _together(problem: Problem, free: Sequence[Free], fits: Sequence[Fit]) -> list[Fit]:
+    """Let the leading fits move together with the coefficients; the most probable comes first."""
+    moved = [together(problem, free, one) for one in fits[:_NAMED]]
+    return sorted([*moved, *fits[_NAMED:]], key=lambda one: -one.log_evidence)
+
+
 def _named_all(problem: Problem, fits: Sequence[Fit], none: float) -> tuple[Named, ...]:
     """Allow the leading hypotheses a remainder; the others are worth what they are without."""
     floor = none - _HOPELESS
     found = [
-        with_remainder(problem, fit)
+        replace(with_remainder(problem, fit), balance=balance(problem, fit))
         if number < _NAMED
         else Named(fit, max(fit.log_evidence, floor), 0.0, _NOTHING)
         for number, fit in enumerate(fits)
     ]
     return tuple(sorted(found, key=lambda one: -one.log_evidence))
+
+
+def balance(problem: Problem, fit: Fit) -> float:
+    """Return the smaller effect's signature over the larger one's, each by itself.
+
+    1 for a single effect, and where one does not repeat with the shaft: it cannot pass for the form
+    of one that does.
+    """
+    if len(fit.candidates) < 2 or not all(one.kind.repeats for one in fit.candidates):
+        return 1.0
+    nominal = problem.simulator.nominal
+    alone = [problem.simulator.predict((one,)) - nominal for one in fit.effects]
+    sizes = [left_over(problem.whitened(one), problem.nuisances) for one in alone]
+    return min(sizes) / max(*sizes, 1e-12)
 
 
 def with_remainder(problem: Problem, fit: Fit) -> Named:

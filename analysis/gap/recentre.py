@@ -3,6 +3,9 @@
 The diagnosis is linear in the free coefficients about what the campaign states. Where a campaign
 says 40 kg of added mass and the water says 75, that no longer holds; so the rig is moved to what
 fits best, by steps, and the diagnosis begins there. How far it was moved is part of the answer.
+
+Only added mass and damping are moved. Mass, inertia and restoring are known beforehand: where they
+seem to be many tolerances off, something else is there, and moving them would hide it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -60,7 +63,7 @@ def recentred(
     free = free_numbers(rig, priors)
     stack = Stack.of([repeating_only(one) for one in pooled(runs)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
-    owned = np.array([one.is_coefficient for one in free])
+    owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))
     for number in range(_STEPS):
         step = np.where(owned, _step(simulator, free, priors), 0.0)

@@ -17,7 +17,7 @@ from sim.effects.effect import Effect
 
 BEYOND: Final = 3.0  # standard deviations of a kind's chi-square
 _LONE: Final = 4.0  # sigma of a single component
-_BESIDE: Final = frozenset({Part.BETWEEN, Part.LINE, Part.CYCLE_SCATTER, Part.TREND})
+_BESIDE: Final = frozenset({Part.BETWEEN, Part.LINE, Part.CYCLE_SCATTER})
 _TRACES: Final[Mapping[str, frozenset[Part]]] = {
     "trigger-jitter": frozenset({Part.PERIOD_SCATTER, Part.CYCLE_SCATTER}),
     "missed-pulse": frozenset({Part.PULSES, Part.PERIOD_SCATTER}),

@@ -22,7 +22,8 @@ R = TypeVar("R")
 LEADERS: Final = 8  # effects that are fitted in full, at most
 PARTNERS: Final = 6  # pairs that are, at most
 _LEAST: Final = 2  # effects that are fitted in any case: an answer and its rival
-_BELOW: Final = 1.0  # log evidence under "no gap" down to which an effect is fitted
+_PROMISING: Final = 0.5  # log evidence above "no gap" from which an effect is fitted
+_TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred times longer
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
 _STARTS: Final = 3  # effects to which partners are sought
 
@@ -36,7 +37,8 @@ class Looked:
     expected
         Log evidence that the first step promises.
     visible
-        Size of the typical signature in sigma, after the nuisances have taken their part.
+        Size of the signature in sigma, after the nuisances have taken their part: as it typically
+        is, or as these recordings ask for, whichever is larger.
     """
 
     name: str
@@ -67,7 +69,7 @@ def fitted(
     leaders = [
         one.fit
         for number, one in enumerate(ranked)
-        if one.fit is not None and (number < _LEAST or one.expected > none - _BELOW)
+        if one.fit is not None and (number < _LEAST or one.expected > none + _PROMISING)
     ]
     found = _each(executor, _refined, problem, leaders)
     return sorted(found, key=lambda one: -one.log_evidence)
@@ -94,7 +96,7 @@ def paired(
                 if key not in chances or score > chances[key][0]:
                     chances[key] = (score, both)
     best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
-    least = max([none, *(one.log_evidence for one in singles)]) - _WORSE
+    least = max([none + _TWICE, *(one.log_evidence - _WORSE for one in singles)])
     worth = [both for score, both in best if score > least]
     found = _each(executor, _refined_pair, problem, worth)
     return sorted(found, key=lambda one: -one.log_evidence)
@@ -117,7 +119,7 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
     best, most, reason = None, -math.inf, ""
     for one in candidates(kind, sorted(set(frequencies))):
         try:
-            fit = at(problem, (one,), one.start)
+            fit = at(problem, (one,), one.start, roughly=True)
         except PmmError as error:
             reason = str(error)
             continue
@@ -126,7 +128,8 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
             best, most = fit, expected
     if best is None:
         return Looked(kind.name, None, reason=reason)
-    visible = left_over(best.signature, problem.nuisances)
+    steps = (best.signature, best.columns @ most_probable(best))
+    visible = max(left_over(one, problem.nuisances) for one in steps)
     return Looked(kind.name, best, most, visible)
 
 

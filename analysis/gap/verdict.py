@@ -18,6 +18,7 @@ UNKNOWN: Final = "unknown"
 COEFFICIENTS: Final = "coefficients"
 TOLERATED: Final = 0.45  # remainder over signature at which a name is worth half
 _STEEP = 6.0
+SLIGHT: Final = 0.02  # of its partner's signature: as likely the partner's own form
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
 
@@ -47,13 +48,16 @@ def probabilities(weighed: Weighed) -> Probabilities:
     """Turn evidence and prior odds into probabilities.
 
     A named hypothesis that leaves much beside what it explains counts for its name only in part:
-    the rest of its weight goes to ``"unknown"``, something with that effect's signature.
+    the rest of its weight goes to ``"unknown"``, something with that effect's signature. Effects
+    that these runs cannot show, or do not, are as good as none.
     """
-    odds, seen = weighed.odds, max(len(weighed.looked) - len(weighed.hidden), 1)
-    logs = {NONE: weighed.none + math.log(odds.none)}
+    odds, count = weighed.odds, max(len(weighed.looked) + len(weighed.skipped), 1)
+    concealed = (len(weighed.hidden) + len(weighed.skipped)) / count
+    invisible = odds.single * concealed + odds.pair * concealed**2
+    logs = {NONE: weighed.none + math.log(odds.none + invisible)}
     logs[UNKNOWN] = weighed.unknown.log_evidence + math.log(odds.unknown)
-    single = math.log(odds.single / seen)
-    pair = math.log(odds.pair / max(seen * (seen - 1) / 2, 1))
+    single = math.log(odds.single / count)
+    pair = math.log(odds.pair / max(count * (count - 1) / 2, 1))
     shares = {NONE: 1.0, UNKNOWN: 1.0}
     for prior, ones in ((single, weighed.singles), (pair, weighed.pairs)):
         for one in ones:
@@ -61,10 +65,23 @@ def probabilities(weighed: Weighed) -> Probabilities:
             shares[answer_of(one.fit)] = deserved(one)
     top = max(logs.values())
     weights = {name: math.exp(value - top) for name, value in logs.items()}
+    _to_the_larger(weighed.pairs, weights)
     total = sum(weights.values())
     found = {name: shares[name] * value / total for name, value in weights.items()}
     found[UNKNOWN] += sum((1.0 - shares[name]) * value / total for name, value in weights.items())
     return Probabilities(found)
+
+
+def _to_the_larger(pairs: Sequence[Named], weights: dict[str, float]) -> None:
+    """Let a pair with a slight partner count for the other effect alone, in a form of its own."""
+    for pair in pairs:
+        alone = [name for name in pair.fit.names if name in weights]
+        if alone and pair.balance < 1.0:
+            name = max(alone, key=lambda one: weights[one])
+            whole = weights[answer_of(pair.fit)]
+            kept = whole / (1.0 + (SLIGHT / pair.balance) ** 3)
+            weights[answer_of(pair.fit)] = kept
+            weights[name] += whole - kept
 
 
 def deserved(one: Named) -> float:

@@ -106,15 +106,22 @@ def _evidence(
     return -0.5 * (cost + part.log_determinant) + found.log_volume
 
 
-def gap_of(left: FloatArray) -> float:
-    """Return a gap in u: the root mean square with the noise's own 1 taken off."""
-    return math.sqrt(max(float(np.mean(left**2)) - 1.0, 0.0))
+def gap_of(left: FloatArray, noise: float = 0.0) -> float:
+    """Return a gap in u: the root mean square with the noise's own 1 taken off.
+
+    Parameters
+    ----------
+    noise
+        What the mean square may be off by.
+    """
+    return math.sqrt(max(float(np.mean(left**2)) - 1.0 + noise, 0.0))
 
 
 def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrinkage:
     """Return how far the gap shrinks, with an interval from drawing the withheld runs anew.
 
-    What repeats is the run: all components of a run are drawn together.
+    What repeats is the run: all components of a run are drawn together. A mean square of n numbers
+    is known to its own noise only, so that a gap of 0 is 0 within that.
     """
     pairs = [(one.left, two.left) for one, two in zip(before, after, strict=True)]
     first, second = (np.concatenate([pair[at] for pair in pairs]) for at in (0, 1))
@@ -124,7 +131,8 @@ def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrink
         chosen = generator.integers(0, len(pairs), len(pairs))
         old = np.concatenate([pairs[at][0] for at in chosen])
         new = np.concatenate([pairs[at][1] for at in chosen])
-        shares.append(_share(gap_of(old), gap_of(new)))
+        noise = generator.standard_normal() * math.sqrt(2.0 / len(new))
+        shares.append(_share(gap_of(old), gap_of(new, noise)))
     low, high = np.quantile(shares, (0.025, 0.975))
     old_gap, new_gap = gap_of(first), gap_of(second)
     return Shrinkage(old_gap, new_gap, _share(old_gap, new_gap), float(low), float(high))

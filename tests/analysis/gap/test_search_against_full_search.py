@@ -1,0 +1,159 @@
+"""What the search leaves out or reuses to be quick changes no number that it should not."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.gap.candidate import Candidate, candidates
+from analysis.gap.components import GapRun, Part, Stack
+from analysis.gap.fit import Problem, at
+from analysis.gap.forward import Simulator
+from analysis.gap.free import columns, free_numbers, with_coefficients
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.hypotheses import Named, Odds, Weighed, balance
+from analysis.gap.noise import pooled
+from analysis.gap.prefix import Solved
+from analysis.gap.priors import Priors
+from analysis.gap.regimes import Regime
+from analysis.gap.screen import shown, worth_a_look
+from analysis.gap.search import look
+from analysis.gap.together import together
+from analysis.gap.unknown import Deviation
+from analysis.gap.verdict import probabilities
+from analysis.gap.withheld import Predicted, shrinkage
+from sim.effects.applied import switch_on
+from sim.effects.catalogue import build, find
+from sim.period import Period
+from sim.periodic import steady_run
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import POINTS, problem_of, record
+
+NOTHING = Deviation({}, np.zeros(0), 0.0)
+
+
+@pytest.mark.parametrize("said", ["coulomb-friction", "amplifier-lag", "speed-ripple", "cable"])
+def test_stages_solved_once_give_the_whole_chain(said: str, rig: SimulatedRig) -> None:
+    solved = Solved()
+    for effects in ((), (build(said),), (), (build(said),)):
+        for point in POINTS:
+            changed, really = switch_on(effects, rig, point)
+            period = Period(really.frequency_hz, 8, 64)
+            whole = steady_run(changed, really, orders=8, points=64).spectra
+            found = solved.steady_state(changed.chain(really), period).spectra
+            assert found.keys() == whole.keys()
+            for name, harmonics in whole.items():
+                np.testing.assert_array_equal(found[name], harmonics)
+
+
+def test_nothing_costly_is_looked_at_where_nothing_shows(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    parts = shown(_scattering(rig, clean))
+    assert Part.BETWEEN not in parts
+    assert not worth_a_look(find("hum"), parts)
+    assert worth_a_look(find("coulomb-friction"), parts)
+
+
+def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
+    runs = record(rig, [build("hum:amplitude_n=1,frequency_hz=7.3")], 31)
+    parts = shown(_scattering(rig, runs))
+    assert {Part.BETWEEN, Part.LINE} & parts
+    assert worth_a_look(find("hum"), parts)
+
+
+@pytest.mark.parametrize("name", ["coulomb-friction", "viscous-guides", "strut-phase-error"])
+def test_a_rough_slope_is_near_the_slope(
+    name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    problem = problem_of(rig, clean)
+    chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
+    exact = at(problem, chosen, chosen[0].start).columns
+    rough = at(problem, chosen, chosen[0].start, roughly=True).columns
+    assert np.linalg.norm(rough - exact) < 0.05 * np.linalg.norm(exact)
+
+
+def test_an_effect_acts_on_the_rig_as_its_coefficients_are(rig: SimulatedRig) -> None:
+    """A photocell turned by 0.03 rad turns what 20 % more added mass changes as well."""
+    free = free_numbers(rig, Priors())
+    off = with_coefficients(rig, free, [1.0 if one.name == "a11" else 0.0 for one in free])
+    problem = _scattering(rig, record(off, [build("photocell-angle:late_rad=0.03")], 32))
+    fit = look(problem, find("photocell-angle")).fit
+    assert fit is not None
+    alone = at(problem, fit.candidates, np.array([_units(fit.candidates[0], 0.03)]))
+    moved = together(problem, free, alone)
+    assert moved.log_evidence > alone.log_evidence + 10.0
+    assert moved.cost < 1.3 * len(problem.residual)
+
+
+def test_pulses_quieter_than_believed_are_no_gap(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    problem = _scattering(rig, clean)
+    stack = problem.simulator.stack
+    pulses = np.array([one.part is Part.PERIOD_SCATTER for one in stack.components])
+    for change, zero in ((-3.0, True), (3.0, False)):
+        values = stack.values + np.where(pulses, change, 0.0)
+        simulator = replace(problem.simulator, stack=replace(stack, values=values))
+        residual = Problem(simulator, problem.nuisances, problem.free).residual
+        assert (not residual[pulses].any()) is zero
+
+
+def test_a_slight_partner_counts_for_the_other_effect(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    problem = problem_of(rig, clean)
+    names = ("coulomb-friction", "cross-talk")
+    one, other = (look(problem, find(name)).fit for name in names)
+    assert one is not None
+    assert other is not None
+    both = at(problem, one.candidates + other.candidates, np.r_[one.units, other.units])
+    for share, best in ((0.01, "coulomb-friction"), (0.8, "coulomb-friction+cross-talk")):
+        weighed = Weighed(
+            problem,
+            0.0,
+            (Named(one, 50.0, 0.0, NOTHING), Named(other, 10.0, 0.0, NOTHING)),
+            (Named(both, 80.0, 0.0, NOTHING, share),),
+            NOTHING,
+            (),
+            Odds(),
+        )
+        found = probabilities(weighed)
+        assert found.best == best
+        assert sum(found.by_answer.values()) == pytest.approx(1.0)
+    assert 0.0 < balance(problem, both) <= 1.0
+
+
+def test_a_gap_of_nothing_is_nothing_within_its_noise() -> None:
+    generator = np.random.default_rng(7)
+    rows = np.ones(200, dtype=bool)
+    pairs = [
+        [
+            Predicted(Regime("chosen", str(run), (run,)), rows, size * noise, 0.0)
+            for size, noise in ((5.0, drawn), (0.9, drawn))
+        ]
+        for run in range(4)
+        for drawn in [generator.standard_normal(200)]
+    ]
+    found = shrinkage([one[0] for one in pairs], [one[1] for one in pairs])
+    assert found.share == 1.0
+    assert found.after == 0.0
+    noisy = [replace(one[1], left=one[1].left / 0.9) for one in pairs]
+    found = shrinkage([one[0] for one in pairs], noisy)
+    assert found.low < 1.0 - 0.5 * math.sqrt(math.sqrt(2.0 / 800)) / found.before
+
+
+def _scattering(rig: SimulatedRig, runs: tuple[GapRun, ...]) -> Problem:
+    """Return the problem of a rig whose pulses scatter as the campaign's do."""
+    priors = Priors()
+    on = (build(f"trigger-jitter:jitter_rad={priors.pulse_scatter_rad}"),)
+    simulator = Simulator(rig, Stack.of(pooled(runs)), on)
+    free = free_numbers(rig, priors)
+    nuisances = Nuisances(columns(simulator, free, priors))
+    return Problem(simulator, nuisances, tuple(one.name for one in free))
+
+
+def _units(candidate: Candidate, value: float) -> float:
+    axis = candidate.axes[0]
+    return float(axis.unit(value))
