@@ -33,6 +33,7 @@ from sim.mechanism import Setting
 from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.rig import SimulatedRig
+from sim.surge import SurgeForces
 
 CAMPAIGN_FILE = "campaign.toml"
 RUN_FILE = "run.nc"  # a recording in its run's own folder
@@ -169,7 +170,7 @@ class Campaign:
         ``None`` where the file does not say; a simulation needs them, an analysis does not.
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
-    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow
+    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge
         More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
     effects
         What is switched on besides, in this order.
@@ -199,6 +200,7 @@ class Campaign:
     mounting: Mounting = field(default_factory=Mounting)
     forces: tuple[Acting, ...] = ()
     cross_flow: CrossFlow | None = None
+    surge: SurgeForces | None = None
     effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: Settings = field(default_factory=Settings)
@@ -243,6 +245,7 @@ class Campaign:
             mounting=self.mounting,
             forces=self.forces,
             cross_flow=self.cross_flow,
+            surge=self.surge,
         )
 
     def effects_on(self, more: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:

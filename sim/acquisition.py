@@ -128,6 +128,7 @@ _SOURCES = {
     channels.DISPLACEMENT_FORE: signals.DISPLACEMENT_FORE,
     channels.FORCE_AFT: signals.DYNAMOMETER_FORCE_AFT,
     channels.FORCE_FORE: signals.DYNAMOMETER_FORCE_FORE,
+    channels.FORCE_X: signals.FORCE_X,
     channels.CARRIAGE_SPEED: signals.CARRIAGE_SPEED,
 }
 
@@ -145,6 +146,7 @@ class Acquisition:
     force_aft: Digitiser | None = Digitiser()
     force_fore: Digitiser | None = Digitiser()
     carriage_speed: Digitiser | None = None
+    force_x: Digitiser | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
     name: ClassVar[str] = "acquisition"

@@ -90,4 +90,5 @@ def _with_swept_laws(hull: Stage[Any]) -> Hull | None:
     """Return the model if the balance of its laws and mounting can be part of the sweeps."""
     if type(hull) is not Hull or hull.mounting.joint is not None or not hull.system.elastic_count:
         return None
-    return hull if hull.laws or hull.cross_flow is not None else None
+    loaded = hull.laws or hull.cross_flow is not None or hull.system.drifts
+    return hull if loaded else None

@@ -1,5 +1,6 @@
 """Model, water and mounting: from the motion of the struts to the forces that they exert."""
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import ClassVar
@@ -7,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
 from sim import signals
@@ -43,6 +45,10 @@ class Hull:
     water. Loads at rest, weight less buoyancy at zero displacement, are left out: dynamometers are
     tared with the model in place. U is taken as steady within v'.
 
+    A model that is set at a drift angle beta (trim, in the vertical plane) is moved by the struts
+    across its heading: v = q' + s U (cos(beta) rotation + sin(beta)). Of the steady part the memory
+    of the water knows nothing.
+
     On a rigid mounting q is the motion of the struts. Else gauges and frame give way, and model,
     water and mounting are solved together: the linear part exactly between the samples (see
     :mod:`sim.hull_system`), the laws by sweeps over the block until nothing changes any more.
@@ -59,6 +65,13 @@ class Hull:
         speed itself is a signal.
     flow_factor
         Speed of the flow past the model over the carriage's.
+    drift_rad
+        Steady heading of the model against the carriage's way, bow to starboard or up.
+
+    Raises
+    ------
+    ConfigurationError
+        If a model at a drift angle hangs in gauges with a clearance, which is not simulated.
     """
 
     plane: Plane
@@ -71,6 +84,7 @@ class Hull:
     cross_flow: CrossFlow | None = None
     carriage_speed_m_s: float = 0.0
     flow_factor: float = 1.0
+    drift_rad: float = 0.0
 
     name: ClassVar[str] = "hull"
     reads: ClassVar[tuple[Signal, ...]] = (
@@ -83,6 +97,13 @@ class Hull:
         signals.CARRIAGE_SPEED,
     )
     writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
+
+    def __post_init__(self) -> None:
+        if self.drift_rad and self.mounting.joint is not None:
+            raise ConfigurationError(
+                f"drift_rad = {self.drift_rad:g}: gauges with a clearance are simulated without a "
+                "drift angle only; leave one of both out"
+            )
 
     @property
     def system(self) -> HullSystem:
@@ -197,7 +218,9 @@ def _system(hull: Hull) -> HullSystem:
     added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
     damping = np.array(hull.water.damping)
     restoring = np.array(hull.water.restoring) + np.array(weight_matrix(hull.body, hull.plane))
-    turn = np.array([[0.0, 1.0 if hull.plane is Plane.VERTICAL else -1.0], [0.0, 0.0]]) @ to
+    side = 1.0 if hull.plane is Plane.VERTICAL else -1.0
+    turn = math.cos(hull.drift_rad) * np.array([[0.0, side], [0.0, 0.0]]) @ to
+    drift = np.array([side * math.sin(hull.drift_rad), 0.0])
     incidence = hull.carriage_speed_m_s * turn
     return HullSystem(
         mass=to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to,
@@ -206,6 +229,8 @@ def _system(hull: Hull) -> HullSystem:
         speed_m_s=hull.carriage_speed_m_s,
         turn=turn,
         speed_loads=(to.T @ damping @ turn, to.T @ added @ turn),
+        drift=drift,
+        drift_load=to.T @ damping @ drift,
         to_motion=to,
         radiation=radiation,
         elastic=hull.mounting.elastic,

@@ -99,8 +99,12 @@ class BlockForces:
     @property
     def acts_back(self) -> bool:
         """Whether loads depend on what they do: on how the mounting gives way to them."""
-        loaded = self.laws or self.cross_flow is not None or self.system.joint is not None
+        loaded = self._loaded or self.system.joint is not None
         return bool(self.system.elastic_count and (loaded or self._extra.any()))
+
+    @property
+    def _loaded(self) -> bool:
+        return bool(self.laws) or self.cross_flow is not None or self.system.drifts
 
     @property
     def _extra(self) -> FloatArray:
@@ -185,7 +189,7 @@ class BlockForces:
         """Return what is no part of the linear system, at this motion of the model."""
         loads = np.zeros((len(motion), 4))
         position, velocity, acceleration = motion[:, :2], motion[:, 2:4], motion[:, 4:]
-        if self.laws or self.cross_flow is not None:
+        if self._loaded:
             at_struts = ModelMotion(position, velocity, acceleration, linear)
             loads[:, :2] = law_forces(
                 self.laws, self.cross_flow, self.system, at_struts, self.instants

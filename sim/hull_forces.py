@@ -1,6 +1,6 @@
 """The forces on the model that its linear system does not have: laws, and a varying speed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -72,16 +72,17 @@ def law_forces(
     motion: ModelMotion,
     instants: Instants,
 ) -> FloatArray:
-    """Return the force of each strut that the laws ask for, shape ``(samples, 2)``."""
+    """Return the force of each strut that the laws and a drift angle ask for, ``(samples, 2)``."""
     total = np.zeros_like(motion.position)
     for acting in laws:
         along, at_point = at(acting.point, system, motion, instants)
         total += acting.law.force(at_point)[:, np.newaxis] * along
+    flow = instants.speed_m_s[:, np.newaxis]
     if cross_flow is not None:
-        incidence = motion.position @ system.incidence.T
+        incidence = motion.position @ system.incidence.T + flow * system.drift
         velocity = motion.velocity @ system.to_motion.T + incidence
         total += cross_flow.loads(velocity.T).T @ system.to_motion
-    return total
+    return total + flow * system.drift_load
 
 
 def at(
@@ -92,6 +93,7 @@ def at(
     velocity, acceleration = motion.velocity @ along, motion.acceleration @ along
     if point is Point.THROUGH_WATER:
         velocity = velocity + motion.position @ system.incidence[0]
+        velocity = velocity + instants.speed_m_s * system.drift[0]
         acceleration = acceleration + motion.velocity @ system.incidence[0]
     return along, Motion(
         motion.position @ along, velocity, acceleration, motion.load @ load, *instants
@@ -127,6 +129,7 @@ def law_harmonics(
     jumping = tuple(one for one in taking_part if one.law.jumps)
     found = period.harmonics(law_forces(smooth, cross_flow, system, motion, instants))
     if jumping:
-        means = period.harmonics(law_forces(jumping, None, system, motion, instants))
+        alone = replace(system, drift_load=np.zeros(2))
+        means = period.harmonics(law_forces(jumping, None, alone, motion, instants))
         found += means / period.mean_over_step[:, np.newaxis]
     return found

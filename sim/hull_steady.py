@@ -38,7 +38,8 @@ class HullSteady:
     @property
     def has_laws(self) -> bool:
         """Whether anything is not linear."""
-        return bool(self.hull.laws) or self.hull.cross_flow is not None
+        hull = self.hull
+        return bool(hull.laws) or hull.cross_flow is not None or hull.system.drifts
 
     def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return the force of each strut where the laws ask for ``laws``."""

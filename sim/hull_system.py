@@ -39,6 +39,9 @@ class HullSystem:
         The velocity through the water that a displacement gives per unit of speed: S T.
     speed_loads
         Forces per unit of speed beyond the mean, and per displacement and velocity.
+    drift, drift_load
+        The steady velocity through the water that a drift angle gives per unit of speed, and the
+        force of each strut that it asks for, shape ``(2,)``.
     to_motion
         T: from the struts to translation and rotation.
     joint
@@ -51,6 +54,8 @@ class HullSystem:
     speed_m_s: float
     turn: FloatArray
     speed_loads: tuple[FloatArray, FloatArray]
+    drift: FloatArray
+    drift_load: FloatArray
     to_motion: FloatArray
     radiation: Radiation
     elastic: Elastic
@@ -65,6 +70,11 @@ class HullSystem:
     def states(self) -> int:
         """Number of states: 2 r and those of the memory."""
         return 2 * self.elastic_count + self.radiation.states
+
+    @cached_property
+    def drifts(self) -> bool:
+        """Whether the model is set at a drift angle."""
+        return bool(self.drift.any())
 
     @cached_property
     def incidence(self) -> FloatArray:

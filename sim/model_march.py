@@ -33,9 +33,14 @@ class Marching(NamedTuple):
 
 @lru_cache(maxsize=64)
 def periodic_laws(hull: "Hull") -> LawTable | None:
-    """Return the laws that repeat as a table; ``None`` without numba or where one has no number."""
+    """Return the laws that repeat as a table; ``None`` where they cannot be in one.
+
+    That is without numba, where a law has no number, and for a model at a drift angle, whose steady
+    velocity the table does not hold.
+    """
     laws = tuple(one for one in hull.laws if one.law.periodic)
-    if not (available() and all(has_number(one.law) for one in laws)):
+    known = all(has_number(one.law) for one in laws) and not hull.drift_rad
+    if not (available() and known):
         return None
     return table_of(laws, hull.cross_flow, hull.system)
 
@@ -44,15 +49,15 @@ def periodic_laws(hull: "Hull") -> LawTable | None:
 def marching_of(hull: "Hull", step_s: float, needed: bool = False) -> Marching | None:
     """Return model and laws for the march; ``None`` where sweeps do instead.
 
-    Sweeps do without numba. A clearance needs the march, compiled or not. Laws that have no number
-    are left out of the table; they are swept around the march.
+    Sweeps do without numba, and for a model at a drift angle. A clearance needs the march, compiled
+    or not. Laws that have no number are left out of the table; they are swept around the march.
 
     Parameters
     ----------
     needed
         True where something else than the model needs the march.
     """
-    if not (available() or needed or hull.mounting.joint):
+    if hull.drift_rad or not (available() or needed or hull.mounting.joint):
         return None
     laws = tuple(one for one in hull.laws if has_number(one.law))
     table = table_of(laws, hull.cross_flow, hull.system)

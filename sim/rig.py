@@ -21,6 +21,7 @@ from sim.mechanism import Mechanism, Setting
 from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
+from sim.surge import Surge, SurgeForces
 from sim.water.radiation import Radiation
 
 
@@ -50,6 +51,8 @@ class SimulatedRig:
         (:func:`sim.water.tank.blockage_speed_factor`).
     photocell
         ``None`` for a rig without one.
+    surge
+        Forces along the model; they are there to be measured where ``acquisition.force_x`` is.
     """
 
     oscillator: Oscillator
@@ -67,11 +70,17 @@ class SimulatedRig:
     dynamometers: Dynamometers = field(default_factory=Dynamometers)
     acquisition: Acquisition = field(default_factory=Acquisition)
     photocell: Photocell | None = field(default_factory=Photocell)
+    surge: SurgeForces | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
-    def chain(self, set_point: SetPoint) -> Chain:
+    def chain(self, set_point: SetPoint, *, drift_rad: float = 0.0) -> Chain:
         """Return the stages of this rig, set for one run.
+
+        Parameters
+        ----------
+        drift_rad
+            Steady heading of the model against the carriage's way, bow to starboard or up.
 
         Raises
         ------
@@ -87,7 +96,7 @@ class SimulatedRig:
             self.linkage_aft,
             self.linkage_fore,
         )
-        hull = self._hull(set_point.medium, carriage.mean_m_s)
+        hull = self._hull(set_point.medium, carriage.mean_m_s, drift_rad)
         stages: tuple[Stage[Any], ...]
         if self.drive.motor is None and self.drive.gear is None:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
@@ -100,11 +109,22 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        behind = (self.dynamometers, self.acquisition)
+        along = () if self.acquisition.force_x is None else (self._surge(hull, set_point.medium),)
+        behind = (*along, self.dynamometers, self.acquisition)
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
-    def _hull(self, medium: Medium, carriage_speed_m_s: float) -> Hull:
+    def _surge(self, hull: Hull, medium: Medium) -> Surge:
+        return Surge(
+            hull.plane,
+            hull.half_spacing_m,
+            hull.body,
+            self.surge if medium is Medium.WATER else None,
+            hull.drift_rad,
+            hull.flow_factor,
+        )
+
+    def _hull(self, medium: Medium, carriage_speed_m_s: float, drift_rad: float) -> Hull:
         in_water = medium is Medium.WATER
         return Hull(
             self.oscillator.plane,
@@ -117,6 +137,7 @@ class SimulatedRig:
             self.cross_flow if in_water else None,
             carriage_speed_m_s * self.flow_factor,
             self.flow_factor,
+            drift_rad,
         )
 
     def ideal(self) -> "SimulatedRig":

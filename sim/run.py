@@ -28,6 +28,7 @@ def simulate(
     sample_rate_hz: float = 200.0,
     seed: int,
     name: str = "simulated",
+    drift_rad: float = 0.0,
 ) -> "xr.Dataset":
     """Simulate one run and return its record.
 
@@ -40,6 +41,8 @@ def simulate(
         Periods that pass before the record begins.
     seed
         Of all noise: the same seed gives the same record.
+    drift_rad
+        Steady heading of the model against the carriage's way, bow to starboard or up.
 
     Returns
     -------
@@ -53,7 +56,7 @@ def simulate(
         or if another argument is out of range.
     """
     _check_arguments(set_point, periods, settling_periods, sample_rate_hz, seed)
-    chain = rig.chain(set_point)
+    chain = rig.chain(set_point, drift_rad=drift_rad)
     samples_per_period = sample_rate_hz / set_point.frequency_hz
     skipped = math.ceil(settling_periods * samples_per_period)
     count = math.ceil((periods + 1) * samples_per_period) + 1

@@ -70,6 +70,9 @@ LOAD_TORQUE = Signal("load_torque", "N m")  # of both struts and their guides, a
 FORCE_AFT = of_channel(channels.FORCE_AFT)
 FORCE_FORE = of_channel(channels.FORCE_FORE)
 
+# Force of the strut on the model along it, positive ahead.
+FORCE_X = of_channel(channels.FORCE_X)
+
 # Dynamometers: what the gauges make of those forces.
 DYNAMOMETER_FORCE_AFT = Signal("dynamometer_force_aft", "N")
 DYNAMOMETER_FORCE_FORE = Signal("dynamometer_force_fore", "N")

@@ -17,9 +17,9 @@ _DIALS: Final = ("eccentricity", "phase", "shaft")
 class SimulatedOperator:
     """Answers questions and does what they ask for, at once.
 
-    Carriage, medium, masses and loads need no person. A dial is read by the person, if there is
-    one who answers; what was read is then where the linkage stands. Whatever else is to be done and
-    confirmed is taken for done where nobody is there to confirm it.
+    Carriage, medium, drift angle, masses and loads need no person. A dial is read by the person, if
+    there is one who answers; what was read is then where the linkage stands. Whatever else is to be
+    done and confirmed is taken for done where nobody is there to confirm it.
 
     Parameters
     ----------
@@ -86,6 +86,10 @@ def _immerse(world: World, question: Demand) -> None:
     world.plant.surround(medium=Medium(str(question.value)))
 
 
+def _turn_model(world: World, question: Demand) -> None:
+    world.plant.surround(drift_rad=float(question.value or 0.0))
+
+
 def _load(world: World, question: Demand) -> None:
     inject(world, f"push {question.channel} {question.value}")
 
@@ -99,4 +103,5 @@ _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
     "medium": _immerse,
     "load": _load,
     "mass": _ballast,
+    "drift": _turn_model,
 }

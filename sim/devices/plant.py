@@ -21,11 +21,12 @@ _LARGEST_BLOCK: Final = 256
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What the rig does not decide: carriage speed, medium, seed of all noise."""
+    """What the rig does not decide: carriage speed, medium, seed of all noise, drift angle."""
 
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     seed: int = 1
+    drift_rad: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -140,9 +141,12 @@ class Plant:
         return self._linkage
 
     def surround(
-        self, carriage_speed_m_s: float | None = None, medium: Medium | None = None
+        self,
+        carriage_speed_m_s: float | None = None,
+        medium: Medium | None = None,
+        drift_rad: float | None = None,
     ) -> None:
-        """Tow at another speed, or put the model into another medium, from the next sample on."""
+        """Change speed, medium or the model's heading on the carriage, from the next sample on."""
         before, one = self._around, self._around
         self._around = replace(
             one,
@@ -150,6 +154,7 @@ class Plant:
                 one.carriage_speed_m_s if carriage_speed_m_s is None else carriage_speed_m_s
             ),
             medium=one.medium if medium is None else medium,
+            drift_rad=one.drift_rad if drift_rad is None else drift_rad,
         )
         self._changed = self._changed or self._around != before
 
@@ -201,7 +206,8 @@ class Plant:
         around = self._around
         any_hz = self._rig.oscillator.frequency_hz.high
         return rig.chain(
-            SetPoint(any_hz, eccentricity, phase, around.carriage_speed_m_s, around.medium)
+            SetPoint(any_hz, eccentricity, phase, around.carriage_speed_m_s, around.medium),
+            drift_rad=around.drift_rad,
         )
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:
