@@ -8,6 +8,7 @@ of it (:meth:`UncertainValues.gtc_numbers`), and Monte Carlo stands beside it wh
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -77,10 +78,15 @@ class UncertainValues:
         return total
 
     def variances(self) -> FloatArray:
-        """Return each input's part of each variance, shape ``(inputs, n)``."""
+        """Return each input's part of each variance, shape ``(inputs, n)``, not to be changed."""
+        return self._variances
+
+    @cached_property
+    def _variances(self) -> FloatArray:
         found = np.zeros((len(self.contributions), len(self)))
         for k, one in enumerate(self.contributions):
             found[k, one.rows] = (one.parts**2).sum(axis=1)
+        found.flags.writeable = False
         return found
 
     @property
@@ -121,12 +127,21 @@ class UncertainValues:
         place[chosen] = np.arange(len(chosen))
         if len(np.unique(chosen)) != len(chosen):
             return self.mapped(np.eye(len(self))[chosen])
+        acting = sorted({k for row in chosen for k in self._inputs_of[row]})
         found = []
-        for one in self.contributions:
+        for one in (self.contributions[k] for k in acting):
             keep = place[one.rows] >= 0
-            if keep.any():
-                found.append(replace(one, rows=place[one.rows[keep]], parts=one.parts[keep]))
+            found.append(replace(one, rows=place[one.rows[keep]], parts=one.parts[keep]))
         return UncertainValues(self.values[chosen], tuple(found))
+
+    @cached_property
+    def _inputs_of(self) -> list[list[int]]:
+        """Which inputs act on each value."""
+        found: list[list[int]] = [[] for _ in range(len(self))]
+        for k, one in enumerate(self.contributions):
+            for row in one.rows:
+                found[row].append(k)
+        return found
 
     def mapped(self, matrix: FloatArray) -> "UncertainValues":
         """Return ``matrix @ values``, uncertainties and all; ``matrix`` has the shape (m, n)."""

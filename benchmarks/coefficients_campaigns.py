@@ -72,7 +72,9 @@ def made_up(point: SetPoint, made: Made, name: str) -> Cycle:
         loads[term.row] -= value * waves_of([term], through, through_rate)[0]
     rows = [*position, *loads]
     if made.surge is not None:
-        force = -made.body.mass_kg * (through[0] * pace[1] + made.body.cg_x_m * pace[1] ** 2)
+        side = 1.0 if made.plane is Plane.VERTICAL else -1.0
+        force = -side * rate[0] * position[1] - made.body.cg_x_m * pace[1] ** 2
+        force *= made.body.mass_kg
         for key, value in made.surge.items():
             force = force - value * waves_of([term_of(key, made.plane)], through, through_rate)[0]
         rows.append(force)

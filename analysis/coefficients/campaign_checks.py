@@ -55,11 +55,15 @@ def _static(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
 
 def _single(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
     """Each run alone against all runs together."""
+    by_run: dict[tuple[str, str], list[int]] = {}
+    for k in found.rows(method=HIGHER_ORDER):
+        whole = found.entries[k]
+        for run in whole.runs if len(whole.runs) > 1 else ():
+            by_run.setdefault((whole.name, run), []).append(k)
     for row in found.rows(method=SINGLE_RUN):
         entry = found.entries[row]
-        for k in found.rows(entry.name, method=HIGHER_ORDER, speed_m_s=entry.speed_m_s):
-            if set(entry.runs) < set(found.entries[k].runs):
-                yield SINGLE, row, k
+        for k in by_run.get((entry.name, entry.runs[0]), ()):
+            yield SINGLE, row, k
 
 
 def _compared(found: CampaignCoefficients, kind: str, first: int, second: int) -> Check:

@@ -121,19 +121,28 @@ def _surge(
     cross: bool,
     request: Request,
 ) -> None:
-    """X forces: even terms, at the mean and the second harmonic."""
+    """X forces: even terms, at the mean and the second harmonic.
+
+    Terms of both motions show at the first harmonic too where one of them is steady. In the
+    vertical plane the weight's part along the pitching model stands there, so it is left out.
+    """
     v, r = tuple(VELOCITY_LETTERS[cycles[0].plane])
     means = all(cycle.mean_known for cycle in cycles)
     names = ["X_0"] if means else []
     names += [f"X_{letter}{letter}" for letter, own in ((v, "v"), (r, "r")) if own in motions]
     names += [f"X_{v}{r}"] if cross else []
     even = (0, 2) if means else (2,)
-    orders = (0, 1, 2) if cross and means else even
+    odd = cross and means and cycles[0].plane is Plane.HORIZONTAL
+    orders = (0, 1, 2) if odd else even
     _try(fits, missing, SURGE_FORCES, cycles, names, orders, request)
 
 
 def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
-    """Return force and moment over drift (or trim) angles: linear, cubic from four angles on."""
+    """Return the loads over drift (or trim) angles, straight tows among them.
+
+    Force and moment are linear, cubic from four angles on; X is the resistance and, where the model
+    was turned, quadratic.
+    """
     plane = cycles[0].plane
     letter = VELOCITY_LETTERS[plane][0]
     angles = {round(cycle.drift_rad, 6) for cycle in cycles}
@@ -143,4 +152,7 @@ def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
         names = [f"{load}_0", f"{load}_{letter}"]
         names += [f"{load}_{letter * 3}"] if len(angles) >= _STATIC_FOR_CUBIC else []
         _try(fits, missing, STATIC_DRIFT, cycles, names, STATIC, request)
+    if all(cycle.has_surge for cycle in cycles):
+        names = ["X_0"] if angles == {0.0} else ["X_0", f"X_{letter * 2}"]
+        _try(fits, missing, SURGE_FORCES, cycles, names, STATIC, request)
     return fits, [], missing

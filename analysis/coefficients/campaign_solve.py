@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER, nonlinear_fits, static_fits
+from analysis.coefficients.campaign_nonlinear import SINGLE_RUN, nonlinear_fits, static_fits
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, Entry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
 from analysis.coefficients.cycle import CHANNELS, Cycle, at_order
-from analysis.coefficients.cycle_fit import CycleFit, root_of
+from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.coefficients.phasors import FloatArray, real_form
+from analysis.coefficients.phasors import parts_of
 from analysis.coefficients.result import Coefficients
 from analysis.coefficients.solve import problem_of, solve
 from analysis.coefficients.stated import STATED
@@ -101,20 +101,14 @@ def _contributions(cycles: Sequence[Cycle], request: Request) -> list[Contributi
     rows, found = np.arange(len(by_phasor)), []
     for k, cycle in enumerate(cycles):
         slope = by_phasor[:, 2 * k * len(CHANNELS) : 2 * (k + 1) * len(CHANNELS)]
-        pick = _fundamental(cycle)
+        places = parts_of([cycle.phasors.index(at_order(name, 1)) for name in CHANNELS])
         for source in cycle.phasors.sources:
-            parts = slope @ pick @ root_of(source)
+            parts = slope @ source.root[places]
             found.append(Contribution(source.label, source.degrees_of_freedom, rows, parts))
     for k, (name, spread) in enumerate(zip(STATED, request.stated.vector, strict=True)):
         if spread > 0.0:
             found.append(Contribution(name, np.inf, rows, by_stated[:, k, None] * spread))
     return found
-
-
-def _fundamental(cycle: Cycle) -> FloatArray:
-    """Return what picks the fundamental's numbers out of a cycle's."""
-    places = [cycle.phasors.index(at_order(name, 1)) for name in CHANNELS]
-    return real_form(np.eye(len(cycle.phasors.names))[places])
 
 
 def _fits_block(
@@ -133,10 +127,10 @@ def _fits_block(
 
 
 def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> TrialColumns:
-    """Monte Carlo of the fits of all runs with all harmonics; the others are checks on them."""
+    """Monte Carlo of the fits of several runs; single runs are checks on them."""
     columns = [
         cycle_trials(fit, request.trials, request.seed, request.level)
-        if request.trials and method == HIGHER_ORDER
+        if request.trials and method != SINGLE_RUN
         else no_trials(len(fit.names))
         for method, fit in fits
     ]

@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_model import CycleProblem
-from analysis.coefficients.stated import STATED
+from analysis.coefficients.phasors import ComplexArray
 from analysis.coefficients.terms import SURGE, Term, name_of_term
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
@@ -53,15 +53,19 @@ def _unfit(cycle: Cycle, first: Cycle) -> Iterator[str]:
         yield f"{cycle.name} has values that are not finite; leave the run out"
 
 
-def check_determined(problem: CycleProblem) -> None:
+def check_determined(problem: CycleProblem, design: ComplexArray) -> None:
     """Refuse terms that the cycles cannot tell apart.
+
+    Parameters
+    ----------
+    design
+        The terms' phasors, shape ``(cycles, orders, terms)``.
 
     Raises
     ------
     DataError
         Naming the terms of each load that go together and what run would tell them apart.
     """
-    design, _ = problem.design(problem.parts()[None], np.zeros((1, len(STATED))))
     for row in sorted({term.row for term in problem.terms}):
         columns = [k for k, term in enumerate(problem.terms) if term.row == row]
         if row == SURGE and not all(cycle.has_surge for cycle in problem.cycles):
@@ -69,7 +73,7 @@ def check_determined(problem: CycleProblem) -> None:
             raise DataError(
                 f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
             )
-        flat = design[0][..., columns].reshape(-1, len(columns))
+        flat = design[..., columns].reshape(-1, len(columns))
         matrix = np.concatenate((flat.real, flat.imag))
         _check_apart(problem, matrix, [problem.terms[k] for k in columns])
 
@@ -84,7 +88,7 @@ def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -
             f"{names} cannot be determined from {runs}: nothing there moves in that way; add "
             f"{_remedy(still, problem)}"
         )
-    _, singular, right = np.linalg.svd(matrix / size)
+    _, singular, right = np.linalg.svd(np.linalg.qr(matrix / size, mode="r"))
     least = singular[-1] if len(singular) == len(terms) else 0.0
     if least > _APART * singular[0]:
         return
@@ -107,6 +111,8 @@ def _typical(term: Term, problem: CycleProblem) -> float:
 
 def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
     """Return which run would tell terms apart, or from nothing."""
+    if not any(cycle.frequency_hz > 0.0 for cycle in problem.cycles):
+        return "static runs at another drift angle"
     letters = {f.replace("dot", "").strip("|") for term in terms for f in term.factors}
     mixed = [t for t in terms if {"v", "r"} <= {f.replace("dot", "").strip("|") for f in t.factors}]
     vertical = problem.cycles[0].plane.value == "vertical"

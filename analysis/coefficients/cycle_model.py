@@ -7,18 +7,27 @@ third; nothing of this is written down by hand, so mixed motions, drift and cran
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.model import Problem
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import ComplexArray, FloatArray, from_interleaved, interleaved
+from analysis.coefficients.phasors import (
+    ComplexArray,
+    FloatArray,
+    from_interleaved,
+    interleaved,
+    parts_of,
+)
 from analysis.coefficients.stated import STATED
 from analysis.coefficients.terms import SURGE, Term, waves_of
+from hardware.description.oscillator import Plane
 
+DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB
 _INSTANTS = 64  # |v|v folds back 1e-5 of itself, cubic terms nothing
 
 
@@ -49,15 +58,10 @@ class CycleProblem:
         """Real numbers of each cycle, surge force included."""
         return 2 * (len(CHANNELS) + 1) * (self.highest + 1)
 
-    @cached_property
+    @property
     def linear(self) -> Problem:
         """Every harmonic of every cycle as a run: corrections and what is taken off."""
-        runs = [cycle.run(n) for cycle in self.cycles for n in range(self.highest + 1)]
-        return Problem(tuple(runs), Form.MANOEUVRING, (0, 1), np.ones((len(runs), 2)))
-
-    def alone(self, k: int) -> "CycleProblem":
-        """Return the problem of one cycle, whose design is that cycle's part of this one's."""
-        return replace(self, cycles=self.cycles[k : k + 1], weights=self.weights[k : k + 1])
+        return _linear(self.cycles, self.highest)
 
     def places(self, cycle: Cycle) -> list[int]:
         """Where the fit's phasors stand among a cycle's; -1 for a surge force not measured."""
@@ -66,6 +70,12 @@ class CycleProblem:
         ]
         known = {name: k for k, name in enumerate(cycle.phasors.names)}
         return [known.get(name, -1) for name in names]
+
+    def measured(self, cycle: Cycle) -> tuple[list[int], list[int]]:
+        """Return which numbers of the fit a cycle has, and where they stand among its own."""
+        places = self.places(cycle)
+        have = [k for k, place in enumerate(places) if place >= 0]
+        return parts_of(have), parts_of([places[k] for k in have])
 
     def parts(self) -> FloatArray:
         """Return the cycles' phasors as real numbers, shape ``(cycles, per_cycle)``."""
@@ -87,18 +97,55 @@ class CycleProblem:
         """
         return self.fit(*self.design(parts, deviations))
 
+    def nominal_design(self) -> tuple[ComplexArray, ComplexArray]:
+        """Return :meth:`design` of the cycles as they are, with one trial."""
+        return self.design(self.parts()[None], np.zeros((1, len(STATED))))
+
     def fit(self, design: ComplexArray, loads: ComplexArray) -> FloatArray:
         """Return the coefficients that fit loads best, by trial; shapes as :meth:`design`."""
         found = np.empty((len(design), len(self.terms)))
         for row in sorted({term.row for term in self.terms}):
             columns = [k for k, term in enumerate(self.terms) if term.row == row]
-            weighted = self.weights[..., row, None] * design[..., columns]
-            matrix = _stack(weighted)
+            matrix = _stack(self.weights[..., row, None] * design[..., columns])
             target = _stack((self.weights[..., row] * loads[..., row])[..., None])
-            scale = np.sqrt((matrix**2).sum(axis=1, keepdims=True))
-            scale = np.where(scale > 0.0, scale, 1.0)
-            solved = np.linalg.pinv(matrix / scale) @ target
-            found[:, columns] = solved[..., 0] / scale[:, 0]
+            found[:, columns] = least_squares(matrix, target[..., 0])
+        return found
+
+    def followed(
+        self, values: FloatArray, by_design: ComplexArray, by_load: ComplexArray
+    ) -> FloatArray:
+        """Return how fitted coefficients follow their design and loads, cycle by cycle.
+
+        The least squares' own derivative, ``N^-1 (A' (dy - dA x) + dA' r)`` with the normal matrix
+        ``N = A' A`` and the residuals r, of which each cycle has its part of the sum.
+
+        Parameters
+        ----------
+        values
+            What :meth:`fit` found for the cycles as they are.
+        by_design, by_load
+            Changes of the design and of the loads, shapes as :meth:`design`.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(trials, cycles, terms)``: the change by each cycle's part.
+        """
+        design, loads = self.nominal_design()
+        found = np.zeros((*by_design.shape[:2], len(values)))
+        for row in sorted({term.row for term in self.terms}):
+            columns = [k for k, term in enumerate(self.terms) if term.row == row]
+            weight = self.weights[..., row, None]
+            A, dA = weight * design[0][..., columns], weight * by_design[..., columns]
+            dy = weight[..., 0] * by_load[..., row]
+            left = weight[..., 0] * loads[0][..., row] - A @ values[columns]
+            pull = np.einsum("koc,jko->jkc", A.conj(), dy - dA @ values[columns])
+            pull = pull + np.einsum("jkoc,ko->jkc", dA.conj(), left)
+            flat = A.reshape(-1, len(columns))
+            normal = (flat.conj().T @ flat).real
+            scale = 1.0 / np.sqrt(np.diagonal(normal))
+            inverse = np.linalg.inv(normal * np.outer(scale, scale)) * np.outer(scale, scale)
+            found[..., columns] = pull.real @ inverse
         return found
 
     def design(
@@ -122,30 +169,52 @@ class CycleProblem:
         over = _instants(np.stack((velocity, rate), axis=-2))  # ..., (velocity, rate), 2, instants
         waves = waves_of(self.terms, over[..., 0, :, :], over[..., 1, :, :])
         surge = from_interleaved(shaped[..., 2 * len(CHANNELS) :])
-        surge = surge - self._surge_inertia(over, deviations, count)
+        surge = surge - self._surge_inertia(velocity, omega.reshape(*rate.shape[:3], 1), deviations)
         hull = -np.concatenate((load.reshape(trials, cycles, count, 2), surge), axis=-1)
         chosen = list(self.orders)
         return _harmonics(waves, self.orders), hull[:, :, chosen]
 
-    def _surge_inertia(self, over: FloatArray, deviations: FloatArray, count: int) -> ComplexArray:
-        """What the gauge reads of the model's own ``-m (v r + x_G r^2)``."""
+    def _surge_inertia(
+        self, velocity: ComplexArray, omega: FloatArray, deviations: FloatArray
+    ) -> ComplexArray:
+        """What the gauge reads of the model's own ``m (-s a q - x_G q'^2)``.
+
+        With the midpoint's acceleration a across the tank, the rotation q, and s = +1 in the
+        vertical, -1 in the horizontal plane: the component of a along the turned model, which is
+        the ``m (u' - v r - x_G r^2)`` of the equations of motion.
+        """
+        shape = (*velocity.shape[:3], 1)
         if not any(term.row == SURGE for term in self.terms):
-            return np.zeros((len(over), len(self.cycles), count, 1), dtype=np.complex128)
+            return np.zeros(shape, dtype=np.complex128)
         off = dict(zip(STATED, deviations.T, strict=True))
-        bodies = [cycle.body for cycle in self.cycles]
-        mass = np.array([0.0 if body is None else body.mass_kg for body in bodies])
-        arm = np.array(
-            [
-                0.0 if one.body is None else one.body.cg_x_m - one.point_ahead_m
-                for one in self.cycles
-            ]
-        )
-        has = mass > 0.0
-        mass = mass + has * off["mass_kg"][:, None]
-        arm = arm + has * off["cg_x_m"][:, None]
-        sway, yaw = over[..., 0, 0, :], over[..., 0, 1, :]
-        wave = -mass[..., None] * (sway * yaw + arm[..., None] * yaw**2)
-        return _harmonics(wave[..., None, :], tuple(range(count)))
+        has, mass, arm, point, speed, cosine = self._along
+        speed = cosine * (speed + off["speed_m_s"][:, None])
+        side = 1.0 if self.cycles[0].plane is Plane.VERTICAL else -1.0
+        rate = 1j * omega * velocity
+        turn = velocity[..., 1]
+        across = rate[..., 0] - side * (speed[..., None] * turn - point[:, None] * rate[..., 1])
+        angle = turn / np.where(omega > 0.0, 1j * omega, np.inf)[..., 0]
+        waves = _instants(np.stack((across, angle, turn), axis=-1)[..., None, :])[..., 0, :, :]
+        mass = (mass + has * off["mass_kg"][:, None])[..., None]
+        arm = (arm + has * off["cg_x_m"][:, None])[..., None]
+        force = mass * (-side * waves[..., 0, :] * waves[..., 1, :] - arm * waves[..., 2, :] ** 2)
+        return _harmonics(force[..., None, :], tuple(range(shape[2])))
+
+    @property
+    def _along(self) -> FloatArray:
+        """Whether there is a body, m, x_G, point, U and the drift's cosine, ``(6, cycles)``."""
+        rows = []
+        for one in self.cycles:
+            mass, arm = (0.0, 0.0) if one.body is None else (one.body.mass_kg, one.body.cg_x_m)
+            has, cosine = float(one.body is not None), float(np.cos(one.drift_rad))
+            rows.append((has, mass, arm, one.point_ahead_m, one.speed_m_s, cosine))
+        return np.array(rows).T
+
+
+@lru_cache(maxsize=128)  # all forms and methods of a group ask for the same cycles
+def _linear(cycles: tuple[Cycle, ...], highest: int) -> Problem:
+    runs = [cycle.run(n) for cycle in cycles for n in range(highest + 1)]
+    return Problem(tuple(runs), Form.MANOEUVRING, (0, 1), np.ones((len(runs), 2)))
 
 
 def _stack(values: ComplexArray) -> FloatArray:

@@ -4,11 +4,12 @@ import numpy as np
 
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.phasors import FloatArray, real_form
+from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
+from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED
 from analysis.coefficients.uncertainty import draw_source
 
-TRIALS_AT_ONCE = 500  # whole cycles are wide: this many take some 50 MB
+TRIALS_AT_ONCE = 500  # whole cycles are wide
 
 
 def cycle_trials(fit: CycleFit, trials: int, seed: int, level: float = 0.95) -> TrialColumns:
@@ -35,10 +36,9 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     problem = fit.problem
     parts = np.repeat(problem.parts()[None], count, axis=0)
     for k, cycle in enumerate(problem.cycles):
-        places = np.array(problem.places(cycle))
-        pick = real_form(np.eye(len(cycle.phasors.names))[np.maximum(places, 0)])
-        pick[np.repeat(places < 0, 2)] = 0.0
+        to, places = problem.measured(cycle)
         for source in cycle.phasors.sources:
-            parts[:, k] += draw_source(source, count, generator) @ pick.T
+            parts[:, k, to] += draw_source(source, count, generator)[:, places]
     deviations = generator.standard_normal((count, len(STATED))) * fit.stated.vector
-    return problem.solve(parts, deviations)
+    pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
+    return np.concatenate([problem.solve(parts[some], deviations[some]) for some in pieces])

@@ -5,11 +5,18 @@ amplitude, lag ...). Derivatives for the linear budget and Monte Carlo both call
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.names import Form, Place
-from analysis.coefficients.phasors import ComplexArray, FloatArray, from_interleaved
+from analysis.coefficients.phasors import (
+    ComplexArray,
+    FloatArray,
+    from_interleaved,
+    interleaved,
+)
 from analysis.coefficients.run import LOADS, MOTIONS, Run, point_matrix
 from analysis.coefficients.stated import STATED, Stated
 from analysis.motion import incidence
@@ -46,11 +53,15 @@ class Problem:
 
     def phasor_parts(self) -> FloatArray:
         """The runs' phasors as real numbers, shape ``(runs, 8)``."""
-        rows = []
-        for run in self.runs:
-            values = run.phasors.select((*MOTIONS, *LOADS)).values
-            rows.append(np.stack((values.real, values.imag), axis=-1).ravel())
-        return np.stack(rows)
+        return self._parts.copy()
+
+    @cached_property
+    def _parts(self) -> FloatArray:
+        rows = [
+            run.phasors.values[[run.phasors.index(name) for name in (*MOTIONS, *LOADS)]]
+            for run in self.runs
+        ]
+        return interleaved(np.stack(rows))
 
     def nominal(self) -> FloatArray:
         """Return the coefficients of the runs as they are, shape ``(2, columns, 2)``."""
@@ -59,6 +70,10 @@ class Problem:
 
     def velocities(self) -> tuple[ComplexArray, FloatArray]:
         """Return the form's velocities ``(runs, 2)`` and angular frequencies ``(runs,)``."""
+        return self._velocities
+
+    @cached_property
+    def _velocities(self) -> tuple[ComplexArray, FloatArray]:
         velocity, _, omega = self.reduce(self.phasor_parts()[None], np.zeros((1, len(STATED))))
         return velocity[0], omega[0]
 
@@ -100,14 +115,19 @@ class Problem:
         load[..., 1] -= arm * load[..., 0]
         known = self._known(off, omega)
         load = load - np.einsum("trij,trj->tri", known, motion)
-        moves = np.stack([point_matrix(run.point_ahead_m, run.plane) for run in self.runs])
-        carry = np.linalg.inv(moves).transpose(0, 2, 1)
+        moves, carry = self.to_point
         motion = np.einsum("rij,trj->tri", moves, motion)
         load = np.einsum("rij,trj->tri", carry, load)
         velocity = 1j * omega[..., None] * motion
         if self.form is Form.MANOEUVRING:
             velocity = velocity + self._incidence(motion, off)
         return velocity, load, omega
+
+    @cached_property
+    def to_point(self) -> tuple[FloatArray, FloatArray]:
+        """What takes motions and loads to the points wanted, shape ``(runs, 2, 2)`` each."""
+        moves = np.stack([point_matrix(run.point_ahead_m, run.plane) for run in self.runs])
+        return moves, np.asarray(np.linalg.inv(moves).transpose(0, 2, 1))
 
     def _incidence(self, motion: ComplexArray, off: dict[str, FloatArray]) -> ComplexArray:
         """What the carriage's speed adds: by the rotation, and by drift or trim to the mean."""
@@ -146,25 +166,33 @@ class Problem:
 
     def _known(self, off: dict[str, FloatArray], omega: FloatArray) -> FloatArray:
         """``C + G - omega^2 M`` of each trial and run, shape ``(trials, runs, 2, 2)``."""
-        vertical = self.plane is Plane.VERTICAL
+        side = -1.0 if self.plane is Plane.VERTICAL else 1.0
         restoring = np.stack([run.restoring for run in self.runs])
         denser = (1.0 + off["restoring_relative"]) * (1.0 + off["density_relative"])
         known = restoring * denser[..., None, None]
         known = np.broadcast_to(known, (*omega.shape, 2, 2)).copy()
-        for k, run in enumerate(self.runs):
-            if run.body is None:
-                continue
-            body, square = run.body, omega[:, k] ** 2
-            mass = body.mass_kg + off["mass_kg"][:, 0]
-            coupling = mass * (body.cg_x_m + off["cg_x_m"][:, 0]) * (-1.0 if vertical else 1.0)
-            known[:, k, 0, 0] -= square * mass
-            known[:, k, 0, 1] -= square * coupling
-            known[:, k, 1, 0] -= square * coupling
-            known[:, k, 1, 1] -= square * (body.inertia_kg_m2 + off["inertia_kg_m2"][:, 0])
-            if vertical:
-                height = body.cg_z_m + off["cg_z_m"][:, 0]
-                known[:, k, 1, 1] += mass * STANDARD_GRAVITY_M_S2 * height
+        has, own_mass, own_inertia, own_x, own_z = self._bodies
+        square = has * omega**2
+        mass = own_mass + off["mass_kg"]
+        coupling = side * mass * (own_x + off["cg_x_m"])
+        known[..., 0, 0] -= square * mass
+        known[..., 0, 1] -= square * coupling
+        known[..., 1, 0] -= square * coupling
+        known[..., 1, 1] -= square * (own_inertia + off["inertia_kg_m2"])
+        if self.plane is Plane.VERTICAL:
+            known[..., 1, 1] += has * mass * STANDARD_GRAVITY_M_S2 * (own_z + off["cg_z_m"])
         return known
+
+    @cached_property
+    def _bodies(self) -> FloatArray:
+        """Whether there is a body, its mass, inertia, and centre of gravity, ``(5, runs)``."""
+        rows = [
+            (0.0,) * 5
+            if (body := run.body) is None
+            else (1.0, body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_z_m)
+            for run in self.runs
+        ]
+        return np.array(rows).T
 
     def places(self) -> tuple[Place, ...]:
         """The coefficients that are solved for, column by column."""
@@ -204,15 +232,12 @@ def fit(
     pace = omega / omega[:, :1]  # runs at slightly different frequencies share one A
     z = np.stack((1j * pace[..., None] * velocity, velocity), axis=-1)
     z = z.reshape(trials, runs, 2 * columns)
-    scale = np.sqrt((np.abs(z) ** 2).sum(axis=1, keepdims=True))
-    z = z / np.where(scale > 0.0, scale, 1.0)
     found = np.empty((trials, 2, columns, 2))
     for row in (0, 1):
         weight = weights[:, row, None]
         design = np.concatenate(((weight * z).real, (weight * z).imag), axis=1)
         right = weights[:, row] * load[..., row]
         target = np.concatenate((right.real, right.imag), axis=1)
-        solved = np.einsum("tij,tj->ti", np.linalg.pinv(design), target)
-        found[:, row] = (solved / scale[:, 0]).reshape(trials, columns, 2)
+        found[:, row] = least_squares(design, target).reshape(trials, columns, 2)
     found[..., 0] /= omega[:, :1, None]
     return found

@@ -5,7 +5,8 @@ is kept by source, because each source has its own degrees of freedom.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +27,35 @@ class Source:
         Shape ``(2 n, 2 n)``; NaN where no interval can be given.
     degrees_of_freedom
         For Student's t.
+    deviates
+        How the phasors follow the source's own deviates, shape ``(2 n, deviates)``: where one
+        source acts on several runs (a zero run), so that they know what they share.
     """
 
     label: str
     covariance: FloatArray
     degrees_of_freedom: float
+    deviates: FloatArray | None = None
+
+    @cached_property
+    def root(self) -> FloatArray:
+        """A square root of the covariance, ``root @ root.T``; NaN where there is none."""
+        if self.deviates is not None:
+            return self.deviates
+        if not np.isfinite(self.covariance).all():
+            return np.full_like(self.covariance, np.nan)
+        values, vectors = np.linalg.eigh(self.covariance)
+        return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
+
+    def carried(self, slope: FloatArray) -> "Source":
+        """Return what the source does to values that follow the phasors with ``slope``."""
+        deviates = None if self.deviates is None else slope @ self.deviates
+        return replace(self, covariance=slope @ self.covariance @ slope.T, deviates=deviates)
+
+    def taken(self, parts: Sequence[int]) -> "Source":
+        """Return the source of some of the real numbers."""
+        deviates = None if self.deviates is None else self.deviates[parts]
+        return replace(self, covariance=self.covariance[np.ix_(parts, parts)], deviates=deviates)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +129,9 @@ class Phasors:
     def select(self, names: Sequence[str]) -> "Phasors":
         """Return some of the phasors, in this order."""
         rows = [self.index(name) for name in names]
-        return self.mapped(np.eye(len(self.values))[rows], names, [self.units[r] for r in rows])
+        sources = tuple(source.taken(parts_of(rows)) for source in self.sources)
+        units = tuple(self.units[row] for row in rows)
+        return Phasors(tuple(names), units, self.values[rows], sources)
 
     def referred_to(self, name: str) -> "Phasors":
         """Turn all phases so that this phasor's own is zero (fundamentals only).
@@ -141,9 +168,9 @@ class Phasors:
             raise ConfigurationError(
                 f"{', '.join(other.names)} cannot be taken off {', '.join(self.names)}"
             )
-        return Phasors(
-            self.names, self.units, self.values - other.values, self.sources + other.sources
-        )
+        opposite = -np.eye(2 * len(other.values))
+        taken = tuple(source.carried(opposite) for source in other.sources)
+        return Phasors(self.names, self.units, self.values - other.values, self.sources + taken)
 
     def _carried(
         self,
@@ -152,10 +179,7 @@ class Phasors:
         names: tuple[str, ...],
         units: tuple[str, ...],
     ) -> "Phasors":
-        sources = tuple(
-            Source(s.label, slope @ s.covariance @ slope.T, s.degrees_of_freedom)
-            for s in self.sources
-        )
+        sources = tuple(source.carried(slope) for source in self.sources)
         return Phasors(names, units, values, sources)
 
 
@@ -165,9 +189,9 @@ def joined(first: Phasors, second: Phasors) -> Phasors:
     before = np.eye(one + two)[:, :one]
     after = np.eye(one + two)[:, one:]
     sources = [
-        Source(s.label, place @ s.covariance @ place.T, s.degrees_of_freedom)
+        source.carried(place)
         for place, part in ((before, first), (after, second))
-        for s in part.sources
+        for source in part.sources
     ]
     return Phasors(
         first.names + second.names,
@@ -175,6 +199,11 @@ def joined(first: Phasors, second: Phasors) -> Phasors:
         np.concatenate((first.values, second.values)),
         tuple(sources),
     )
+
+
+def parts_of(rows: Sequence[int]) -> list[int]:
+    """Return the places of S and C of some phasors: ``[1, 4]`` to ``[2, 3, 8, 9]``."""
+    return [2 * row + part for row in rows for part in (0, 1)]
 
 
 def interleaved(values: ComplexArray) -> FloatArray:

@@ -1,14 +1,15 @@
 """How far to trust coefficients: weights of the runs, misfit, digits lost, what was left out."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from analysis.coefficients.determined import ALONE, motion_words
 from analysis.coefficients.model import Problem
 from analysis.coefficients.names import Form, Place
-from analysis.coefficients.phasors import ComplexArray, FloatArray
-from analysis.coefficients.run import LOADS, MOTIONS, Run, point_matrix
+from analysis.coefficients.phasors import ComplexArray, FloatArray, real_form
+from analysis.coefficients.run import LOADS, MOTIONS, Run
 from analysis.motion import incidence, mass_matrix, weight_matrix
 from hardware.description.flags import Flag, Severity
 
@@ -47,24 +48,34 @@ def _fewest(run: Run) -> float:
 
 def residual_spread(problem: Problem, matrices: FloatArray) -> FloatArray:
     """Return the standard deviation of ``load - (B + i omega A) velocity``, shape ``(runs, 2)``."""
-    rows = []
+    carry = problem.to_point[1]
+    known = np.stack([run.known() for run in problem.runs])
+    slope = np.concatenate((-carry @ known - asked_load(problem, matrices), carry), axis=2)
+    forms = np.stack([real_form(one) for one in slope])
+    spread = np.einsum("rij,rjk,rik->ri", forms, _covariances(problem.runs), forms)
+    return np.asarray(np.sqrt(spread.reshape(-1, 2, 2).mean(axis=2)))
+
+
+def _covariances(runs: Sequence[Run]) -> FloatArray:
+    """Of motions and loads of each run, shape ``(runs, 8, 8)``."""
+    return np.stack([run.phasors.select((*MOTIONS, *LOADS)).covariance for run in runs])
+
+
+def asked_load(problem: Problem, matrices: FloatArray) -> ComplexArray:
+    """Return ``(B + i omega A)`` times what makes the form's velocities of the motion.
+
+    Of each run, shape ``(runs, 2, 2)``.
+    """
+    turns = []
     for run in problem.runs:
-        carry = np.linalg.inv(point_matrix(run.point_ahead_m, run.plane)).T
-        slope = np.hstack((-carry @ run.known() - asked_load(problem, run, matrices), carry))
-        ordered = run.phasors.select((*MOTIONS, *LOADS))
-        covariance = ordered.mapped(slope.astype(np.complex128), LOADS, ("N", "N m")).covariance
-        rows.append(np.sqrt(np.diagonal(covariance).reshape(2, 2).mean(axis=1)))
-    return np.stack(rows)
-
-
-def asked_load(problem: Problem, run: Run, matrices: FloatArray) -> ComplexArray:
-    """Return ``(B + i omega A)`` times what makes the form's velocities of the motion."""
-    turn = np.asarray(1j * run.omega * np.eye(2), dtype=np.complex128)
-    if problem.form is Form.MANOEUVRING:
-        turn = turn + run.speed_m_s * math.cos(run.drift_rad) * incidence(run.plane)
-    turn = turn @ point_matrix(run.point_ahead_m, run.plane)
-    dynamic = matrices[..., 1] + 1j * run.omega * matrices[..., 0]
-    return np.asarray(dynamic @ turn[list(problem.columns)])
+        turn = 1j * run.omega * np.eye(2)
+        if problem.form is Form.MANOEUVRING:
+            turn = turn + run.speed_m_s * math.cos(run.drift_rad) * incidence(run.plane)
+        turns.append(turn)
+    turned = np.stack(turns) @ problem.to_point[0]
+    omega = np.array([run.omega for run in problem.runs])
+    dynamic = matrices[..., 1] + 1j * omega[:, None, None] * matrices[..., 0]
+    return np.asarray(dynamic @ turned[:, list(problem.columns)])
 
 
 def misfit_of(problem: Problem, matrices: FloatArray) -> float:
@@ -73,10 +84,11 @@ def misfit_of(problem: Problem, matrices: FloatArray) -> float:
     if spare == 0:
         return math.nan
     spread = residual_spread(problem, matrices)
+    asked = asked_load(problem, matrices)
     residuals = np.stack(
         [
-            run.net().values - asked_load(problem, run, matrices) @ run.motion.values
-            for run in problem.runs
+            run.net().values - one @ run.motion.values
+            for run, one in zip(problem.runs, asked, strict=True)
         ]
     )
     floor = 1e-9 * np.abs(np.stack([run.loads.values for run in problem.runs])).max(axis=0)

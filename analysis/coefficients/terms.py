@@ -87,8 +87,6 @@ def term_of(name: str, plane: Plane) -> Term:
             f"underscore and factors of {velocities[0]} and {velocities[1]}; for example {example}"
         )
     row = loads.index(found[1])
-    if row == SURGE and plane is Plane.VERTICAL:
-        raise ConfigurationError(f"{name!r}: surge forces are had in the horizontal plane only")
     common = {velocities[0]: "v", velocities[1]: "r"}
     factors = [
         re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]

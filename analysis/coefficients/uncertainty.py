@@ -17,6 +17,7 @@ from analysis.coefficients.run import LOADS, MOTIONS, Run
 _STEP = 1e-6  # of the run's largest motion or load
 _STATED_STEP = 0.01  # of the stated uncertainty: curvature is the Monte Carlo's to find
 TRIALS_AT_ONCE = 5_000
+_IN_CACHE = 250  # trials solved at once: more wait for memory, and for each other's workers
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +114,17 @@ def draw(problem: Problem, stated: Stated, count: int, seed: tuple[int, int]) ->
         for source in _sources(run):
             parts[:, k] += draw_source(source, count, generator)
     deviations = generator.standard_normal((count, len(STATED))) * stated.vector
-    return problem.flat(problem.solve(parts, deviations))
+    pieces = range(0, count, _IN_CACHE)
+    solved = [
+        problem.solve(parts[k : k + _IN_CACHE], deviations[k : k + _IN_CACHE]) for k in pieces
+    ]
+    return problem.flat(np.concatenate(solved))
 
 
 def draw_source(source: Source, count: int, generator: Generator) -> FloatArray:
     """Return draws of a source's scatter, Student's t where its freedom is finite."""
-    values, vectors = np.linalg.eigh(source.covariance)
-    root = vectors * np.sqrt(np.clip(values, 0.0, None))
-    normal = np.asarray(generator.standard_normal((count, len(root))) @ root.T)
+    root = source.root
+    normal = np.asarray(generator.standard_normal((count, root.shape[1])) @ root.T)
     nu = source.degrees_of_freedom
     if np.isfinite(nu) and nu > 0.0:
         normal *= np.sqrt(nu / generator.chisquare(nu, count))[:, None]

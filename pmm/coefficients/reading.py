@@ -23,7 +23,6 @@ from analysis.resolver.analyse import analyse
 from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from hardware.description.oscillator import Plane
 from pmm.calibrated import calibrated
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
@@ -44,7 +43,7 @@ def read_zero(task: Task) -> Done | Failed:
             task.name,
             _utc_s(recording),
             task.number,
-            zero_reading(part, 0.0, (*FORCES, *_surge(task, part))),
+            zero_reading(part, 0.0, (*FORCES, *_surge(part))),
         )
         return _done(task, recording, None, zero)
     except PmmError as error:
@@ -69,7 +68,7 @@ def _recording(task: Task) -> Recording:
 
 
 def _turning(task: Task, recording: Recording) -> Done:
-    wanted = (*_USED, *_surge(task, recording))
+    wanted = (*_USED, *_surge(recording))
     channels = tuple(name for name in wanted if name in recording.channel_names)
     missing = [name for name in FORCES if name not in channels]
     if missing:
@@ -90,7 +89,7 @@ def _turning(task: Task, recording: Recording) -> Done:
 
 def _towed(task: Task, recording: Recording) -> Done:
     part = _gated(recording, task.path)
-    reading = zero_reading(part, 0.0, (*FORCES, *_surge(task, part)))
+    reading = zero_reading(part, 0.0, (*FORCES, *_surge(part)))
     speed = task.set_point.carriage_speed_m_s
     struts = static_cycle(task.name, reading, task.oscillator, speed)
     struts, flags = _zeroed(struts, task, recording)
@@ -173,10 +172,9 @@ def _utc_s(recording: Recording) -> float | None:
     return datetime.fromisoformat(started).timestamp() + half_s
 
 
-def _surge(task: Task, recording: Recording) -> tuple[str, ...]:
-    """The surge gauge, where it is used: surge forces belong to sway and yaw."""
-    horizontal = task.oscillator.plane is Plane.HORIZONTAL
-    return (FORCE_X.name,) if horizontal and FORCE_X.name in recording.channel_names else ()
+def _surge(recording: Recording) -> tuple[str, ...]:
+    """The surge gauge, where there is one."""
+    return (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
 
 
 def _gated(recording: Recording, path: Path) -> Recording:

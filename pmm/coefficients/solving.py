@@ -33,8 +33,9 @@ class GroupSolver:
     request: Request
 
     def __call__(self, group: Group) -> Block:
-        """Return the group's block, without trials."""
-        return solve_group(group, replace(self.request, trials=0))
+        """Return the group's block; the trials of a linear group are drawn in blocks."""
+        linear = group.kind is GroupKind.LINEAR
+        return solve_group(group, replace(self.request, trials=0) if linear else self.request)
 
 
 @dataclass(frozen=True, eq=False)

@@ -194,6 +194,22 @@ def test_a_phasor_at_rest_has_no_phase() -> None:
     assert Source("x", np.eye(4), 3.0).degrees_of_freedom == 3.0
 
 
+def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
+    """What a zero run adds has one sign and one set of deviates, in a tow and in a heave."""
+    samples = np.random.default_rng(6).standard_normal((2, 400))
+    rest = Recording("zero", (FORCE_AFT, FORCE_FORE), samples, 100.0)
+    offsets = zero_reading(rest, 0.0).offsets
+    few = Phasors(FORCES, ("N", "N"), np.array([5.0, 6.0]))
+    more = Phasors(("a", *FORCES), ("m", "N", "N"), np.array([1.0, 5.0, 6.0]))
+    first = few.minus(offsets).sources[-1].root
+    place = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    taken = offsets.mapped(place, more.names, more.units)
+    other = more.minus(taken).select(FORCES).sources[-1].root
+    np.testing.assert_allclose(first, other, atol=1e-15)
+    np.testing.assert_allclose(first @ other.T, offsets.covariance, atol=1e-15)
+    np.testing.assert_allclose(first, -offsets.sources[0].root, atol=1e-15)
+
+
 def test_coefficients_do_not_depend_on_the_phase_reference() -> None:
     generator = np.random.default_rng(9)
     point = SetPoint(0.8, 0.02, math.pi)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
-from analysis.coefficients.terms import Term, name_of_term, term_of, waves_of
+from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of, waves_of
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
@@ -35,8 +35,12 @@ def test_units(name: str, unit: str) -> None:
 def test_what_is_no_term_is_refused(name: str) -> None:
     with pytest.raises(ConfigurationError, match="is no term in the horizontal plane"):
         term_of(name, Plane.HORIZONTAL)
-    with pytest.raises(ConfigurationError, match="horizontal plane only"):
-        term_of("X_ww", Plane.VERTICAL)
+
+
+def test_x_is_a_load_in_both_planes() -> None:
+    for name, plane in (("X_ww", Plane.VERTICAL), ("X_vr", Plane.HORIZONTAL)):
+        assert term_of(name, plane).row == SURGE
+        assert name_of_term(term_of(name, plane), plane) == name
 
 
 def test_waves_are_products() -> None:

@@ -1,0 +1,125 @@
+"""Drift, tow and yaw with drift: plan, ``pmm run`` on simulated devices, ``pmm coefficients``."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from hardware.description.oscillator import HORIZONTAL_1963
+from tests.pmm.coefficients.test_recorded_campaign_against_known_rig import pmm
+from tests.sim.devices.benches import ROOT
+
+SPEED = 0.8
+PLAN = """
+name = "turned"
+rig = "rig.toml"
+[defaults]
+periods = 4
+settling_periods = 1
+pause_s = 0.5
+duration_s = 5.0
+[zero]
+duration_s = 4.0
+every = 3
+
+[[runs]]
+kind = "static-drift"
+speeds_m_s = 0.8
+drifts_deg = [-8.0, -4.0, 4.0, 8.0]
+[[runs]]
+kind = "straight-tow"
+speeds_m_s = 0.8
+[[runs]]
+motion = "sway"
+frequencies_hz = 0.2
+amplitudes_mm = 150.0
+speeds_m_s = 0.8
+[[runs]]
+motion = "yaw"
+frequencies_hz = 0.2
+amplitudes_mm = 150.0
+speeds_m_s = 0.8
+[[runs]]
+motion = "yaw-drift"
+frequencies_hz = 0.2
+amplitudes_mm = 150.0
+speeds_m_s = 0.8
+drifts_deg = [-6.0, 6.0]
+"""
+SIMULATED = """
+rig = "rig.toml"
+seed = 5
+[simulated]
+oscillator = { preset }
+body = { mass_kg = 70.0, inertia_kg_m2 = 27.5, cg_x_m = -0.02, cg_z_m = 0.02 }
+[simulated.water]
+added_mass = [[62.0, 2.0], [2.0, 18.0]]
+damping = [[120.0, -15.0], [40.0, 35.0]]
+[simulated.surge]
+x_uu = -8.0
+x_vv = -60.0
+x_vr = 45.0
+x_rr = -8.0
+[simulated.acquisition]
+shaft_angle = { resolution = 9.587379924285257e-5 }
+displacement_aft = { noise_rms = 2e-5 }
+displacement_fore = { noise_rms = 2e-5 }
+force_aft = { noise_rms = 0.05 }
+force_fore = { noise_rms = 0.05 }
+force_x = { noise_rms = 0.05 }
+"""
+GAUGE = """
+[[forces]]
+driver = "cia404-amplifier"
+node = 6
+channels = [
+  { name = "force_x", object = "9130:1", scale = 1e-3, full_scale = 200.0, status = "6150:1" },
+]
+"""
+
+
+def folder_of(tmp_path: Path) -> Path:
+    """The example's rig with a surge gauge, a plan with drift, and the truth behind its devices."""
+    rig = (ROOT / "examples" / "horizontal" / "rig.toml").read_text(encoding="utf-8")
+    (tmp_path / "rig.toml").write_text(rig + GAUGE, encoding="utf-8")
+    keys = {k: v for k, v in asdict(HORIZONTAL_1963).items() if v is not None}
+    written = ", ".join(f"{k} = {toml_of(v)}" for k, v in keys.items())
+    text = SIMULATED.replace("{ preset }", f"{{ {written} }}")
+    (tmp_path / "simulated.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "plan.toml").write_text(PLAN, encoding="utf-8")
+    return tmp_path
+
+
+def toml_of(value: object) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {toml_of(v)}" for k, v in value.items()) + " }"
+    return json.dumps(value)
+
+
+@pytest.mark.slow
+def test_drift_tow_and_yaw_with_drift_give_what_was_put_in(tmp_path: Path) -> None:
+    place = folder_of(tmp_path)
+    made = pmm("run", place / "plan.toml", "--output", place / "c", "--json")
+    assert made.returncode == 0, made.stderr
+    done = pmm("coefficients", place / "c", "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    rows = found["coefficients"]["table"]
+    for method, name, put_in in (
+        ("static drift", "Y_v", -120.0),
+        ("static drift", "N_v", -40.0),
+        ("surge", "X_0", -8.0 * SPEED**2),
+        ("surge", "X_vv", -60.0 + 8.0),  # resistance follows U cos(beta)
+        ("higher order, several runs", "Y_v", -120.0),
+        ("higher order, several runs", "N_r", -35.0),
+        ("linear", "Y_vdot", -62.0),
+    ):
+        own = [row for row in rows if (row["name"], row["method"]) == (name, method)]
+        if method == "surge":
+            own = [row for row in own if row["frequency_hz"] == 0.0]
+        assert len(own) == 1, (name, method, own)
+        assert abs(own[0]["value"] - put_in) < 2.0 * own[0]["half_width"] + 1e-3 * abs(put_in), own
+    checks = [one for one in found["coefficients"]["checks"] if one["kind"] == "static drift"]
+    assert {one["name"] for one in checks} >= {"Y_v", "N_v"}
+    assert all(one["agrees"] for one in checks), checks
