@@ -21,7 +21,9 @@ import pytest
 
 from hardware.errors import LimitError, NotReadyError, PhotocellMissedError
 from hardware.rig import Rig
-from hardware.roles import PROTOCOLS, Block, PositionAxis, Role, Sampled, Shaft
+from hardware.roles import PROTOCOLS, Block, PositionAxis, Pulse, Role, Sampled, Shaft
+
+_TRIES = 4  # of what a busy machine has spoilt
 
 
 def _nothing(_value: float) -> None:
@@ -39,9 +41,9 @@ class Bench:
     apply: Callable[[float], None] = _nothing
     within: int = 400
 
-    def cycles(self, count: int) -> None:
-        for _ in range(count):
-            self.rig.cycle()
+    def cycles(self, count: int) -> float:
+        """Run cycles; return by how much the latest of them came late, in seconds."""
+        return max((self.rig.cycle().lateness_s for _ in range(count)), default=0.0)
 
     def until(self, condition: Callable[[], bool], what: str) -> None:
         self.rig.run_until(condition, self.within, what)
@@ -297,8 +299,7 @@ class PhotocellContract(_Contract):
         bench.cycles(round(rate / self.frequency_hz))
         cell.take()
         cell.expect(self.frequency_hz)
-        bench.cycles(round(6.2 * rate / self.frequency_hz))
-        pulses = cell.take()
+        pulses = self._six_turns(bench)
         assert len(pulses) in (6, 7)
         assert np.diff([one.number for one in pulses]) == pytest.approx(1)
         periods = np.diff([one.time_s for one in pulses])
@@ -306,6 +307,21 @@ class PhotocellContract(_Contract):
         angles = [one.shaft_angle_rad for one in pulses if math.isfinite(one.shaft_angle_rad)]
         assert np.diff(angles) == pytest.approx(2.0 * math.pi, abs=0.01)
         assert cell.take() == ()
+
+    def _six_turns(self, bench: Bench) -> tuple[Pulse, ...]:
+        """Return the pulses of six turns.
+
+        In real time a pulse comes by the wall's clock and is stamped by the loop's. Where the
+        machine kept the loop waiting for half a cycle, the two say nothing of the photocell: such
+        turns are looked at again, a few times.
+        """
+        cell, rate = self.device(bench), bench.rig.configuration.sample_rate_hz
+        for _ in range(_TRIES):
+            late_s = bench.cycles(round(6.2 * rate / self.frequency_hz))
+            pulses: tuple[Pulse, ...] = cell.take()
+            if late_s < 0.5 / rate:
+                break
+        return pulses
 
     def test_a_pulse_that_stays_away_is_missed_in_time(self, bench: Bench) -> None:
         cell, rate = self.device(bench), bench.rig.configuration.sample_rate_hz

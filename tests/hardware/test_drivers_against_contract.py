@@ -124,7 +124,7 @@ class _Timestamped(Bench):
     def _turn(self, frequency_hz: float) -> None:
         self._hz = frequency_hz
 
-    def cycles(self, count: int) -> None:
+    def cycles(self, count: int) -> float:
         for _ in range(count):
             now = self.rig.number * 0.01
             if self.rig.number % 50 == 0:
@@ -134,6 +134,7 @@ class _Timestamped(Bench):
                 self._pulses += 1
                 self._talker.say(Kind.PULSE, 100.0 + now, self._pulses)
             self.rig.cycle()
+        return 0.0  # keeps to no clock
 
 
 class TestInclinometer(InclinometerContract):
@@ -157,10 +158,11 @@ class _Tilted(Bench):
     def _tilt(self, angle_rad: float) -> None:
         self._angle = angle_rad
 
-    def cycles(self, count: int) -> None:
+    def cycles(self, count: int) -> float:
         for _ in range(count):
             self._talker.say(Kind.ANGLE, self.rig.number * 0.01, self._angle)
             self.rig.cycle()
+        return 0.0  # keeps to no clock
 
 
 def test_the_double_turns_as_the_settings_say() -> None:
