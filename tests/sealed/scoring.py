@@ -15,7 +15,7 @@ from pmm.gap.scoring.score import CarryOut, score
 from tests.sealed.targets import target_tables, verdicts
 
 INTRO = (
-    "Written by `python -m tests.sealed score BOARD --docs docs/scoreboard.md`; do not edit. "
+    "Written by `python -m tests.sealed whole` or `score BOARD --docs FILE`; do not edit. "
     "[sealed.md](sealed.md) says what a board is, [sealed-scoring.md](sealed-scoring.md) what each "
     "figure counts: value, 95 % interval, number of cases. Seeds 0 to 99 are for development."
 )
