@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from analysis.gap.candidate import Candidate
 from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
+from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, Posterior, misfit, posterior
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -35,11 +36,14 @@ class Problem:
         Free coefficients and noise levels.
     free
         Names of the nuisances' first columns: coefficients and settings.
+    numbers
+        The same to change a rig by, where effects are to act on it as its coefficients are.
     """
 
     simulator: Simulator
     nuisances: Nuisances
     free: tuple[str, ...]
+    numbers: tuple[Free, ...] = ()
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -77,6 +81,8 @@ class Fit:
         Chi-square that is left, coefficients fitted too, and that of the parameters' priors.
     shared
         Log determinant of the nuisances.
+    form
+        By how much of itself the signature may be off: no rig has an effect in a catalogue's form.
     """
 
     candidates: tuple[Candidate, ...]
@@ -86,6 +92,7 @@ class Fit:
     cost: float
     posterior: Posterior
     shared: float
+    form: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +13,14 @@ from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.free import Free, columns
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.priors import Priors
+from analysis.gap.together import signature_on
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 
 FloatArray = NDArray[np.float64]
+
+LEAST_FORM: Final = 0.03  # of itself, by which any effect's signature is off on a real rig
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,16 +66,18 @@ def further(
 ) -> Problem:
     """Return the same problem at further runs."""
     simulator = replace(problem.simulator, stack=Stack.of(runs))
-    return Problem(simulator, Nuisances(columns(simulator, free, priors)), problem.free)
+    nuisances = Nuisances(columns(simulator, free, priors))
+    return Problem(simulator, nuisances, problem.free, tuple(free))
 
 
 def forecast(problem: Problem, there: Problem, fit: Fit | None) -> Forecast:
     """Return what an answer predicts at further runs; ``None`` is the answer "no gap".
 
-    Coefficients and settings are as the campaign fits them; frequency and noise are each run's own.
+    Coefficients and settings are as the campaign fits them; frequency and noise are each run's own,
+    and the effect has a form of its own.
     """
     count = len(problem.free)
-    ahead = _Ahead.of(there, fit)
+    ahead = _Ahead.of(problem, there, fit)
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
     covariance = np.linalg.inv(np.eye(shared.shape[1]) + shared.T @ shared)
@@ -83,7 +89,18 @@ def forecast(problem: Problem, there: Problem, fit: Fit | None) -> Forecast:
     known = np.hstack((wide[:, :count], ahead.columns))
     root = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
     mean = ahead.signature + known @ fitted[kept]
-    return Forecast(mean, np.hstack((known @ root, wide[:, count:])))
+    form = _of_form(there, ahead.signature, 0.0 if fit is None else max(fit.form, LEAST_FORM))
+    return Forecast(mean, np.hstack((known @ root, wide[:, count:], form)))
+
+
+def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:
+    """Return what the effect's own form may change: of each harmonic of a channel some share."""
+    kinds = [(one.channel, one.order) for one in there.simulator.stack.components]
+    own = [
+        share * np.where([one == kind for one in kinds], signature, 0.0)
+        for kind in dict.fromkeys(kinds)
+    ]
+    return np.column_stack([one for one in own if one.any()] or [np.zeros((len(signature), 0))])
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,12 +111,20 @@ class _Ahead:
     columns: FloatArray
 
     @classmethod
-    def of(cls, there: Problem, fit: Fit | None) -> "_Ahead":
+    def of(cls, problem: Problem, there: Problem, fit: Fit | None) -> "_Ahead":
         if fit is not None:
             try:
                 found = at(there, fit.candidates, fit.units)
-                return cls(found.signature, found.columns)
+                return cls(_on_fitted_rig(problem, there, fit, found), found.columns)
             except PmmError:
                 pass
         count = len(there.nuisances.columns)
         return cls(np.zeros(count), np.zeros((count, 0)))
+
+
+def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> FloatArray:
+    """Return the signature at further runs on the rig as the campaign fits its coefficients."""
+    if not all(one.kind.repeats for one in fit.candidates):
+        return found.signature
+    shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
+    return signature_on(there, there.numbers, shared, fit, fit.units)

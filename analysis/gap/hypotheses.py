@@ -209,4 +209,4 @@ def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
     cost = misfit(target - columns @ found.mean, nuisances) + float(found.mean @ found.mean)
     log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
     log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
-    return Named(fit, log_density, share, _NOTHING)
+    return Named(replace(fit, form=share), log_density, share, _NOTHING)

@@ -43,16 +43,24 @@ def _round(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
     units = fit.units
     for _ in range(2):  # once with the parameters as they are, once with those that then fit
-        signature = _signature(problem, free, shared, fit, units)
+        signature = signature_on(problem, free, shared, fit, units)
         found = weighed_at(problem, fit.candidates, units, fit.columns, signature)
         units = most_probable(found)
     return found
 
 
-def _signature(
+def signature_on(
     problem: Problem, free: Sequence[Free], shared: FloatArray, fit: Fit, units: FloatArray
 ) -> FloatArray:
-    """Return what the effects change on the rig as its coefficients are fitted, in sigma."""
+    """Return what the effects change on the rig as its coefficients are fitted, in sigma.
+
+    Parameters
+    ----------
+    shared
+        Coefficients and settings in units of their priors, shape ``(free,)``.
+    units
+        Parameters of the effects, as those of the fit.
+    """
     effects = built(fit.candidates, units)
     values = [float(unit) * one.deviation for unit, one in zip(shared, free, strict=True)]
     settings = tuple(
