@@ -11,7 +11,7 @@ import tempfile
 import time
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import psutil
 
@@ -24,6 +24,7 @@ _TURNS: Final = 3
 _SETTLE_S: Final = 12.0  # until a window of the statistics is free of the start
 _HOUR_S: Final = 3600.0
 _WARM_S: Final = 300.0  # of the rig's time: rings and pools are full by then
+_LEVEL_S: Final = 100.0  # of the rig's time, over which memory is looked at
 _FAST: Final = 1000.0  # as fast as the machine goes
 _MEGA: Final = 1e6
 
@@ -129,7 +130,7 @@ def _memory(folder: Path, rig_s: float) -> list[Row]:
     from tests.pmm.console.chromium import console, plan, rig_in
 
     folder.mkdir(parents=True)
-    text = plan("bench", periods=int(1.2 * (_WARM_S + rig_s)))
+    text = plan("bench", periods=int(1.2 * (_WARM_S + rig_s + _LEVEL_S)))
     with ExitStack() as stack:
         one = stack.enter_context(
             console(rig_in(folder / "rig"), folder / "out", "--speed", f"{_FAST:g}")
@@ -140,18 +141,35 @@ def _memory(folder: Path, rig_s: float) -> list[Row]:
         loop = next(p for p in psutil.Process().children() if "console" in p.cmdline())
         server = max(loop.children(), key=lambda one: one.memory_info().rss)
         processes = {"loop": loop, "server": server}
-        before = {name: process.memory_info().rss for name, process in processes.items()}
+        before = _levels(processes, watcher, _WARM_S + _LEVEL_S)
         watcher.until(_WARM_S + rig_s)
+        after = _levels(processes, watcher, _WARM_S + rig_s + _LEVEL_S)
         return [
             {
                 "process": name,
-                "at first [MB]": round(before[name] / _MEGA, 1),
-                "growth [MB/h]": round(
-                    (process.memory_info().rss - before[name]) / _MEGA * _HOUR_S / rig_s, 2
-                ),
+                "at first [MB]": round(before[name], 1),
+                "growth [MB/h]": round((after[name] - before[name]) * _HOUR_S / rig_s, 2),
             }
-            for name, process in processes.items()
+            for name in processes
         ]
+
+
+def _levels(
+    processes: dict[str, psutil.Process], watcher: Watcher, until_s: float
+) -> dict[str, float]:
+    """Return the median memory of each process until a time of the rig, in MB.
+
+    Buffers fill and are written: a single moment is off by some megabytes.
+    """
+    found: dict[str, list[int]] = {name: [] for name in processes}
+
+    def look(frame: dict[str, Any]) -> bool:
+        for name, process in processes.items():
+            found[name].append(process.memory_info().rss)
+        return bool(frame["time_s"] >= until_s)
+
+    watcher.see(look)
+    return {name: statistics.median(sizes) / _MEGA for name, sizes in found.items()}
 
 
 def _tree(pid: int) -> list[psutil.Process]:
