@@ -257,6 +257,12 @@ def refine(problem: Problem, fit: Fit) -> Fit:
     return at(problem, best.candidates, best.units) if stale and repeats else best
 
 
+def stepped(problem: Problem, fit: Fit) -> Fit:
+    """Return a fit after one step with the slopes that it has; itself if no step betters it."""
+    better, _ = _step(problem, fit)
+    return fit if better is None else better
+
+
 def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
     """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps."""
     towards = most_probable(fit) - fit.units

@@ -11,7 +11,16 @@ from dataclasses import dataclass
 from typing import Final, TypeVar
 
 from analysis.gap.candidate import candidates, turned
-from analysis.gap.fit import Fit, Problem, at, expected_evidence, joined, most_probable, refine
+from analysis.gap.fit import (
+    Fit,
+    Problem,
+    at,
+    expected_evidence,
+    joined,
+    most_probable,
+    refine,
+    stepped,
+)
 from analysis.gap.gaussian import left_over
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -145,6 +154,9 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
 
 
 def _refined_pair(problem: Problem, fit: Fit) -> Fit:
+    """Refine a pair; with what has to be simulated in time by one step, its slopes kept."""
+    if not all(one.kind.repeats for one in fit.candidates):
+        return stepped(problem, fit)
     for units in (most_probable(fit), fit.units):
         try:
             return refine(problem, at(problem, fit.candidates, units))

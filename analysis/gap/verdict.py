@@ -79,7 +79,7 @@ def _to_the_larger(pairs: Sequence[Named], weights: dict[str, float]) -> None:
         if alone and pair.balance < 1.0:
             name = max(alone, key=lambda one: weights[one])
             whole = weights[answer_of(pair.fit)]
-            kept = whole / (1.0 + (SLIGHT / pair.balance) ** 3)
+            kept = whole * pair.balance**3 / (pair.balance**3 + SLIGHT**3)
             weights[answer_of(pair.fit)] = kept
             weights[name] += whole - kept
 

@@ -109,7 +109,8 @@ def test_a_slight_partner_counts_for_the_other_effect(
     assert one is not None
     assert other is not None
     both = at(problem, one.candidates + other.candidates, np.r_[one.units, other.units])
-    for share, best in ((0.01, "coulomb-friction"), (0.8, "coulomb-friction+cross-talk")):
+    alone = "coulomb-friction"
+    for share, best in ((0.0, alone), (0.005, alone), (0.8, "coulomb-friction+cross-talk")):
         weighed = Weighed(
             problem,
             0.0,
