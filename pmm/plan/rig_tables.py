@@ -190,4 +190,5 @@ HANDED_ON = (
     "photocell",
     "radiation",
     "simulation",
+    "surge",
 )
