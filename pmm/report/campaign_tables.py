@@ -214,4 +214,4 @@ def shortened(runs: Sequence[str]) -> str:
 
 
 def _interval(low: float, high: float) -> str:
-    return f"{low:.5g} to {high:.5g}" if math.isfinite(low) else _DASH
+    return f"{low:.5g} to {high:.5g}".replace("-", "−") if math.isfinite(low) else _DASH

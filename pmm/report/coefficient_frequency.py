@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _MOST_PANELS: Final = 8
 _SAME_SIZE: Final = 0.02
 _DASHES: Final = ("--", ":", "-.")
+_MARGIN: Final = 0.04  # of the axis, right of the highest frequency
 
 
 def panels_of(found: CampaignCoefficients, speed_m_s: float) -> dict[str, list[str]]:
@@ -51,8 +52,10 @@ def frequency_figure(
             used += _draw_references(panel, found, name, speed_m_s)
             panel.set_ylabel(axis_label(found, name))
             settle(panel, used)
+        left = min(0.0, *(panel.get_xlim()[0] for panel in panels))
+        right = max(panel.get_xlim()[1] for panel in panels)
         for panel in panels:
-            panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
+            panel.set_xlim(left, right + _MARGIN * (right - left))
         finish(figure, panels, f"frequency (Hz); intervals of {100.0 * found.level:g} %")
     return figure
 
