@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 
 _STEP = 0.02  # of a prior deviation, at least
 _STEPS = 6
-_STEPS_IN_TIME = 3  # for what has to be simulated in time, a hundred times as costly
+_STEPS_IN_TIME = 5  # for what has to be simulated in time, a hundred times as costly
 _FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
 _SETTLED = 0.05  # change of the log posterior at which a fit ends
 
