@@ -6,15 +6,18 @@ with the command that draws it; the commands run here, and what the functions re
 
 import ast
 import os
+import shlex
 import shutil
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import wraps
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -118,33 +121,54 @@ def _draw_all(chosen: list[Entry]) -> Iterator[Entry]:
 
 def _figures_of(command: str) -> dict[str, bytes]:
     """Run a command and return the first figure of each function that drew one."""
-    import shlex
-
     from click.testing import CliRunner
 
     from pmm.cli import cli
 
-    found: dict[str, bytes] = {}
-    names = {one.draws for one in entries()}
-
-    def watch(frame: FrameType, event: str, value: Any) -> None:
-        if event != "return" or type(value).__name__ != "Figure":
-            return
-        name = f"{frame.f_globals.get('__name__', '')}.{frame.f_code.co_name}"
-        if name in names and name not in found:
-            sys.setprofile(None)
-            found[name] = _small(value)
-            sys.setprofile(watch)
-
-    sys.setprofile(watch)
-    try:
+    with _watched([one.draws for one in entries()]) as found:
         done = CliRunner().invoke(cli, shlex.split(command)[1:])
-    finally:
-        sys.setprofile(None)
     sys.stdout.write(f"{command}: {done.exit_code}, {len(found)} figures\n")
     if done.exit_code:
         sys.stdout.write(f"{done.stderr[-500:]}\n{done.exception!r}\n")
     return found
+
+
+@contextmanager
+def _watched(names: list[str]) -> Iterator[dict[str, bytes]]:
+    """Keep what the named functions return, wherever they have been imported already."""
+    found: dict[str, bytes] = {}
+    pairs = []
+    for name in names:
+        module, _, function = name.rpartition(".")
+        original = getattr(import_module(module), function)
+        pairs.append((function, original, _watching(original, name, found)))
+    for function, original, watching in pairs:
+        _replace(function, original, watching)
+    try:
+        yield found
+    finally:
+        for function, original, watching in pairs:
+            _replace(function, watching, original)
+
+
+def _replace(function: str, old: object, new: object) -> None:
+    """Put one function in another's place in every module that has it."""
+    for module in list(sys.modules.values()):
+        if getattr(module, "__dict__", {}).get(function) is old:
+            setattr(module, function, new)
+
+
+def _watching(
+    original: Callable[..., Any], name: str, found: dict[str, bytes]
+) -> Callable[..., Any]:
+    @wraps(original)
+    def drawn(*arguments: Any, **named: Any) -> Any:
+        figure = original(*arguments, **named)
+        if name not in found:
+            found[name] = _small(figure)
+        return figure
+
+    return drawn
 
 
 def _small(figure: "Figure") -> bytes:

@@ -1,7 +1,7 @@
 """Make the README's pictures anew: ``python docs/images/make.py``.
 
-Gate and phasors come from the example recording; the console from a run on the simulated rig, where
-chromium and chromedriver are installed.
+Gate and phasors come from the example recording; console and report from runs on the simulated rig,
+where chromium and chromedriver are installed.
 """
 
 import shutil
@@ -42,6 +42,7 @@ def main() -> None:
             FIGURES[name](analysis, 0).savefig(HERE / f"{name}.png", dpi=90)
     if shutil.which("chromium") and shutil.which("chromedriver"):
         show_console()
+        show_report()
 
 
 def show_console() -> None:
@@ -68,6 +69,26 @@ def show_console() -> None:
                 page.run("document.querySelector('#plan-form details').open = false")
                 sleep(1.0)
                 page.driver.save_screenshot(str(HERE / f"console-{theme}.png"))
+
+
+def show_report() -> None:
+    """Run the demo's vertical campaign and take a picture of the first run in its report."""
+    from click.testing import CliRunner
+    from PIL import Image
+
+    from pmm.cli import cli
+    from tests.pmm.console.chromium import browser
+
+    with TemporaryDirectory() as name:
+        folder, whole = Path(name), Path(name) / "whole.png"
+        CliRunner().invoke(cli, ["demo", "--vertical-only", "--output", str(folder / "demo")])
+        with browser(folder / "profile") as page:
+            page.driver.set_window_size(1100, 1500)
+            page.open((folder / "demo" / "report.html").as_uri())
+            page.run("document.querySelector('h2').scrollIntoView()")
+            page.driver.save_screenshot(str(whole))
+        picture = Image.open(whole).convert("RGB").crop((0, 0, 1100, 990))
+        picture.resize((880, 792)).quantize(64).save(HERE / "report.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,78 @@
+"""Every example is run by its commands, and gives what it was made of."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from pmm.cli import cli
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ELSEWHERE = {
+    "driver-text-amplifier": "tests/hardware/test_example_driver_against_contract.py",
+    "foreign": "tests/examples/test_foreign_campaign_against_what_it_was_made_of.py",
+    "gap": "tests/pmm/gap/test_gap_command_against_its_page.py",
+    "manual": "tests/pmm/plan/test_commands_against_examples.py",
+    "recordings": "tests/analysis/readers/test_examples_against_their_recipe.py",
+}
+HERE = ("horizontal", "inertia", "vertical")
+INERTIA = {
+    "axes": "bifilar",
+    "ballast": "ballast",
+    "combine": "combine",
+    "gates": "pendulum",
+    "guided": "bifilar",
+    "hull": "bifilar",
+    "incline": "incline",
+    "pendulum": "pendulum",
+    "plan": "plan",
+    "swing": "swing",
+    "torsion": "pendulum",
+}
+
+
+def test_no_example_is_forgotten() -> None:
+    folders = {path.name for path in EXAMPLES.iterdir() if path.is_dir()}
+    assert folders == {*ELSEWHERE, *HERE}
+    assert {path.stem for path in (EXAMPLES / "inertia").glob("*.toml")} == set(INERTIA)
+    for name, test in ELSEWHERE.items():
+        text = (EXAMPLES.parent / test).read_text(encoding="utf-8")
+        assert name in text or name == "recordings"
+
+
+@pytest.mark.parametrize(
+    ("plane", "damping", "put_in"), [("vertical", "Z_w", -190.0), ("horizontal", "Y_v", -120.0)]
+)
+def test_a_campaign_gives_the_damping_that_was_put_in(
+    tmp_path: Path, plane: str, damping: str, put_in: float
+) -> None:
+    campaign = EXAMPLES / plane / "campaign.toml"
+    out = str(tmp_path / "out")
+    made = CliRunner().invoke(cli, ["simulate", str(campaign), "--output", out])
+    assert made.exit_code == 0, made.stderr
+    analysed = json.loads(CliRunner().invoke(cli, ["analyse", out, "--json"]).stdout)
+    assert analysed["failed"] == analysed["campaigns"] == []
+    found = CliRunner().invoke(cli, ["coefficients", out, "--json"])
+    rows = json.loads(found.stdout)["coefficients"]["table"]
+    values = [row["value"] for row in rows if (row["name"], row["method"]) == (damping, "linear")]
+    assert values
+    assert values == pytest.approx([put_in] * len(values), rel=5e-3)
+
+
+@pytest.mark.parametrize("name", INERTIA)
+def test_an_inertia_file_gives_its_numbers(name: str) -> None:
+    path = EXAMPLES / "inertia" / f"{name}.toml"
+    done = CliRunner().invoke(cli, ["inertia", INERTIA[name], str(path), "--json"])
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert document["results"] or document["placements"]
+
+
+def test_the_light_gates_give_the_period_of_the_recipe() -> None:
+    path = EXAMPLES / "inertia" / "gates.toml"
+    done = CliRunner().invoke(cli, ["inertia", "pendulum", str(path), "--json"])
+    (found,) = json.loads(done.stdout)["periods"]
+    assert [run for runs in found["runs_s"] for run in runs] == pytest.approx(
+        [1.5252] * 3, rel=1e-5
+    )
