@@ -15,6 +15,7 @@ from pmm.run.calibration import calibrate
 from pmm.run.results import of_kind, read_results
 from pmm.run.rig_tests import known_mass_responses, rung_modes, zero_drifts
 from pmm.run.states import State
+from pmm.run.surroundings import Surroundings
 from tests.pmm.run.harness import absent, at_rest, bench, oscillation
 
 HALF_SPACING_M = 0.5
@@ -136,9 +137,13 @@ def test_the_operator_is_asked_for_what_the_rig_cannot_do_itself(tmp_path: Path)
 
     run = at_rest("tow", RunKind.STATIC_DRIFT, speed_m_s=1.2, drift_rad=0.1, prompts=("look",))
     with bench(tmp_path, [run], prompt=person) as one:
+        one.until(State.GATE_OPEN)
+        assert one.world.plant._around.drift_rad == 0.1, "the simulated operator turned the model"
         one.finish(40000)
         assert one.control.outcomes[0].outcome == "complete"
         assert one.world.plant.value("carriage_speed") == 0.0
-    assert [q.part for q in asked if isinstance(q, Demand)] == ["drift", "prompt"]
-    assert "0.1000 rad" in asked[0]
+    assert [q.part for q in asked if isinstance(q, Demand)] == ["prompt"]
+    turn, look = Surroundings().before(run)  # as a rig that is not simulated asks
+    assert (turn.part, turn.value, look.part) == ("drift", 0.1, "prompt")
+    assert "by 0.1000 rad" in turn
     assert absent("anybody?") is None
