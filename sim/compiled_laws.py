@@ -5,8 +5,6 @@ Loaded when the first such loop runs, because numba is. Without numba the functi
 
 import math
 
-import numpy as np
-
 from sim.compiled import compile_loop
 from sim.laws import CREEP_M_S
 from sim.signals import FloatArray
@@ -134,14 +132,3 @@ def law_force(
                 jumps[into, 1] += force * a1
     if cross_flow.shape[0]:
         _cross_flow(cross_flow, at, line, smooth, into)
-
-
-@compile_loop
-def laws_over_period(
-    laws: FloatArray, cross_flow: FloatArray, values: FloatArray, step_s: float, speed_m_s: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return the forces at the points of a period, ``(points, 2)``: smooth ones, ones that jump."""
-    smooth, jumps = np.zeros((len(values), 2)), np.zeros((len(values), 2))
-    for k in range(len(values)):
-        law_force(laws, cross_flow, values, k, k * step_s, step_s, speed_m_s, smooth, jumps, k)
-    return smooth, jumps

@@ -27,12 +27,6 @@ class GateVoidError(HardwareError):
     reaction = Reaction.PROFILE_STOP
 
 
-class PhaseOverdueError(HardwareError):
-    """A step of the run did not come to its end in its time."""
-
-    reaction = Reaction.PROFILE_STOP
-
-
 class RecordingError(HardwareError):
     """The recorder cannot keep the data any more: disk full, folder gone, permission lost."""
 

@@ -4,7 +4,6 @@
 answer first: no threads, no waiting, and time is counted in SYNCs.
 """
 
-import struct
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -259,10 +258,6 @@ def bench(channel: str) -> Iterator[Network]:
     finally:
         del PumpedBus.networks[channel]
         del can.interface.BACKENDS["pumped"]
-
-
-def real32(value: float) -> bytes:
-    return struct.pack("<f", value)
 
 
 @contextmanager
