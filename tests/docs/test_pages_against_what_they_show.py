@@ -107,12 +107,11 @@ def test_commands_and_options_are_there(block: Block) -> None:
         _parsed(words)
 
 
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
     """A folder with the examples in it, as a clone has them."""
-    folder = tmp_path_factory.mktemp("clone")
-    (folder / "examples").symlink_to(HOUSE / "examples")
-    return folder
+    (tmp_path / "examples").symlink_to(HOUSE / "examples")
+    return tmp_path
 
 
 def _run_here() -> list[Block]:
@@ -132,8 +131,6 @@ def test_commands_run(block: Block, place: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(place)
     for words in _commands(block):
         told = [path for word in words for path in _expanded(word)]
-        if words[0] == "init":
-            told.append("--force")  # README and pages begin alike
         done = CliRunner().invoke(cli, told)
         assert done.exit_code == 0, f"{shlex.join(told)}: {done.stderr}"
 

@@ -155,6 +155,7 @@ def test_a_bus_that_cannot_be_opened_is_named_with_its_cure(tmp_path: Path) -> N
     rig = _copied(tmp_path, 'interface = "pmm-simulated"', 'interface = "no-such-adapter"')
     result = CliRunner().invoke(cli, ["doctor", rig, "--json"])
     assert result.exit_code == 1
-    (fault,) = (one for one in json.loads(result.stdout)["findings"] if one["status"] == "fault")
+    (fault,) = (one for one in json.loads(result.stdout)["findings"] if one["area"] == "devices")
+    assert fault["status"] == "fault"
     assert "no-such-adapter" in fault["found"]
     assert "pmm devices scan" in fault["cure"]
