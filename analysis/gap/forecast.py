@@ -89,8 +89,13 @@ def forecast(problem: Problem, there: Problem, fit: Fit | None) -> Forecast:
     known = np.hstack((wide[:, :count], ahead.columns))
     root = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
     mean = ahead.signature + known @ fitted[kept]
-    form = _of_form(there, ahead.signature, 0.0 if fit is None else max(fit.form, LEAST_FORM))
-    return Forecast(mean, np.hstack((known @ root, wide[:, count:], form)))
+    found = Forecast(mean, np.hstack((known @ root, wide[:, count:])))
+    if fit is None:
+        return found
+    # What the coefficients make up for, they make up for in any form.
+    alone = mean - forecast(problem, there, None).mean
+    form = _of_form(there, alone, max(fit.form, LEAST_FORM))
+    return Forecast(mean, np.hstack((found.root, form)))
 
 
 def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:
