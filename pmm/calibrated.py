@@ -39,7 +39,22 @@ def carried(recording: Recording) -> Calibration | None:
     DataError
         If what it carries cannot be read.
     """
-    text = recording.provenance.get(CARRIED)
+    return _kept(recording, CARRIED)
+
+
+def applied(recording: Recording) -> Calibration | None:
+    """Return the calibration that made a recording's readings forces, if one did.
+
+    Raises
+    ------
+    DataError
+        As :func:`carried`.
+    """
+    return _kept(recording, APPLIED)
+
+
+def _kept(recording: Recording, key: str) -> Calibration | None:
+    text = recording.provenance.get(key)
     if text is None:
         return None
     try:

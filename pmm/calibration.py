@@ -57,6 +57,16 @@ class Calibration:
         """Return the loads behind readings, shape ``(channels, n)`` both."""
         return np.asarray(np.linalg.solve(self.matrix, readings))
 
+    @property
+    def force_uncertainty(self) -> FloatArray:
+        """Standard uncertainty of force i for a newton on gauge j, shape as the matrix.
+
+        Forces are ``K^-1 readings``, so that an error dK of the matrix makes ``-K^-1 dK`` of the
+        forces: a gauge's own gain on the diagonal, cross-talk beside it.
+        """
+        inverse = np.linalg.inv(self.matrix)
+        return np.asarray(np.sqrt(inverse**2 @ self.standard_uncertainty**2))
+
     def is_expired(self, today: date) -> bool:
         """Whether it may no longer be relied on."""
         return today > self.expires

@@ -1,25 +1,32 @@
 """What a campaign's files say beside its recordings: inertia, restoring, chain, uncertainties."""
 
-from dataclasses import fields, replace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.measured import FORCES
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
-from pmm.calibration import read_calibration
-from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.calibration import Calibration, read_calibration
+from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.coefficients.settings import DRY, MODEL, Settings
 from pmm.coefficients.tasks import Chain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.model_uncertainty import ModelUncertainty, take_uncertainty
 
 _BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
+_GAUGES = {
+    (FORCES[0], FORCES[0]): "gauge_aft_relative",
+    (FORCES[0], FORCES[1]): "cross_talk_aft",
+    (FORCES[1], FORCES[0]): "cross_talk_fore",
+    (FORCES[1], FORCES[1]): "gauge_fore_relative",
+}
 
 
 def oscillator_of(campaign: Campaign, folder: Path) -> Oscillator:
@@ -48,25 +55,23 @@ def chain_of(settings: Settings) -> Chain:
     """
     if settings.calibration is not None and settings.calibration_matrix is not None:
         raise ConfigurationError("calibration and calibration_matrix are both given; one is enough")
-    matrix: FloatArray | None = None
-    if settings.calibration_matrix is not None:
-        matrix = np.array(settings.calibration_matrix)
-    elif settings.calibration is not None:
-        matrix = _from_file(Path(settings.calibration))
-    return Chain(matrix, settings.amplifiers)
+    by_hand = settings.calibration_matrix
+    return Chain(
+        None if settings.calibration is None else _of_both(Path(settings.calibration)),
+        None if by_hand is None else np.array(by_hand),
+        settings.amplifiers,
+    )
 
 
-def _from_file(path: Path) -> FloatArray:
-    """Return force for a reading from the reading for a force that ``pmm evaluate`` wrote."""
+def _of_both(path: Path) -> Calibration:
+    """Read a calibration of both struts' gauges."""
     one = read_calibration(path)
-    wanted = ("force_aft", "force_fore")
-    missing = [name for name in wanted if name not in one.channels]
+    missing = [name for name in FORCES if name not in one.channels]
     if missing:
         raise ConfigurationError(
             f"{path}: nothing of {' and '.join(missing)} (channels: {', '.join(one.channels)})"
         )
-    rows = [one.channels.index(name) for name in wanted]
-    return np.asarray(np.linalg.inv(one.matrix[np.ix_(rows, rows)]))
+    return one
 
 
 def body_of(
@@ -119,34 +124,55 @@ def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
 
 
 def stated_of(
-    campaign: Campaign, settings: Settings, model: ModelUncertainty | None, *, motion_asked: bool
+    campaign: Campaign,
+    settings: Settings,
+    model: ModelUncertainty | None,
+    calibrations: Sequence[Calibration],
+    *,
+    motion_asked: bool,
 ) -> Stated:
-    """Return the standard uncertainties: the settings', else the inertia's and the set-points'.
+    """Return the standard uncertainties: the settings', else those of inertia, gauges, set-points.
 
     Parameters
     ----------
+    calibrations
+        That made readings forces; of several the larger counts.
     motion_asked
         Whether set-points stand in for displacements that were not measured: only then does it
         matter how well eccentricity and phase were set.
     """
-    stated = settings.uncertainty
-    found: dict[str, float] = {}
-    if model is not None:
-        found |= {name: getattr(model, name) for name in _BODY}
-    runs = campaign.runs if motion_asked else ()
-    found["amplitude_relative"] = max(
-        (one.u_eccentricity_m / one.eccentricity_m for one in runs if one.eccentricity_m > 0.0),
-        default=0.0,
+    by_files = Stated(
+        **({} if model is None else {name: getattr(model, name) for name in _BODY}),
+        **(_of_set_points(campaign.runs) if motion_asked else {}),
     )
-    found["strut_phase_rad"] = max((one.u_strut_phase_rad for one in runs), default=0.0)
-    known = {one.name for one in fields(Stated)}
-    return replace(
-        stated,
+    by_files = largest([by_files, *(_of_gauges(one) for one in calibrations)])
+    own, other = settings.uncertainty.vector, by_files.vector
+    return Stated(*np.where(own == 0.0, other, own).tolist())
+
+
+def largest(every: Sequence[Stated]) -> Stated:
+    """Return the largest of each standard uncertainty."""
+    return Stated(*np.max([one.vector for one in every], axis=0).tolist())
+
+
+def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
+    relative = [one.u_eccentricity_m / one.eccentricity_m for one in runs if one.eccentricity_m > 0]
+    return {
+        "amplitude_relative": max(relative, default=0.0),
+        "strut_phase_rad": max((one.u_strut_phase_rad for one in runs), default=0.0),
+    }
+
+
+def _of_gauges(one: Calibration) -> Stated:
+    """Return what a calibration leaves open, of the struts' gauges that it was made of."""
+    rows = {name: one.channels.index(name) for name in FORCES if name in one.channels}
+    spread = one.force_uncertainty
+    return Stated(
         **{
-            name: value
-            for name, value in found.items()
-            if name in known and getattr(stated, name) == 0.0
-        },
+            _GAUGES[force, loaded]: float(spread[i, j])
+            for force, i in rows.items()
+            for loaded, j in rows.items()
+        }
     )
 
 

@@ -23,7 +23,7 @@ from analysis.resolver.analyse import analyse
 from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from pmm.calibrated import calibrated
+from pmm.calibrated import applied, calibrated
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.recorder.files import EVENTS
@@ -62,9 +62,16 @@ def read_cycle(task: Task) -> Done | Failed:
 
 
 def _recording(task: Task) -> Recording:
-    """Read a recording, in newtons by its own calibration unless the settings give one."""
+    """Read a recording, in newtons by its own calibration unless the settings give another."""
     recording = replace(read_recording(task.path, task.columns), name=task.name)
-    return recording if task.chain.calibration is not None else calibrated(recording)
+    if task.chain.matrix is None:
+        return calibrated(recording, task.chain.calibration)
+    if applied(recording) is not None:
+        raise DataError(
+            f"{task.name}: a calibration was applied to it already; take calibration_matrix out of "
+            "the settings, or the recording that pmm run made"
+        )
+    return recording
 
 
 def _turning(task: Task, recording: Recording) -> Done:
@@ -103,8 +110,8 @@ def _towed(task: Task, recording: Recording) -> Done:
 
 def _model(task: Task, struts: StrutCycle) -> Cycle:
     chain = task.chain
-    if chain.calibration is not None:
-        struts = struts.calibrated(chain.calibration)
+    if chain.matrix is not None:
+        struts = struts.calibrated(chain.matrix)
     known = set(struts.phasors.names)
     responses = {
         name: response_of(one) for name, one in chain.amplifiers.items() if f"{name} 0" in known
@@ -225,6 +232,7 @@ def _done(
         recording.end_s - recording.start_s,
         (*recording.flags, *flags),
         sha256_of(task.path) if task.hashed else "",
+        applied(recording),
     )
 
 

@@ -13,6 +13,7 @@ from analysis.resolver.choice import ReferenceChoice
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
+from pmm.calibration import Calibration
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.coefficients.settings import Amplifier
 from pmm.plan.kinds import RunKind
@@ -47,12 +48,15 @@ class Chain:
     Attributes
     ----------
     calibration
-        Force for a reading, aft and fore.
+        Used in place of the one that a recording carries.
+    matrix
+        The same by hand: force for a reading, aft and fore.
     amplifiers
         By channel.
     """
 
-    calibration: FloatArray | None = None
+    calibration: Calibration | None = None
+    matrix: FloatArray | None = None
     amplifiers: Mapping[str, Amplifier] = field(default_factory=dict)
 
 
@@ -105,6 +109,8 @@ class Done:
         What the cycle rests on.
     sha256
         Of the file, where it was wanted.
+    calibration
+        What made its readings forces; ``None`` where nothing did, or a matrix by hand.
     """
 
     name: str
@@ -116,6 +122,7 @@ class Done:
     duration_s: float
     flags: tuple[Flag, ...] = ()
     sha256: str = ""
+    calibration: Calibration | None = None
 
 
 @dataclass(frozen=True)

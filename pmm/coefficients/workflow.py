@@ -19,6 +19,7 @@ from pmm.campaign_file import read_campaign
 from pmm.coefficients.given import (
     body_of,
     chain_of,
+    largest,
     oscillator_of,
     restoring_of,
     stated_of,
@@ -116,7 +117,7 @@ def coefficients_of(
     missing = tuple(name for part in parts for name in part.work.not_recorded)
     if not cycles:
         raise DataError(_nothing(folders, failed, missing))
-    stated = parts[0].stated
+    stated = largest([part.stated for part in parts])
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
     runs = tuple(one for part in parts for one in part.runs)
     return Outcome(
@@ -199,13 +200,15 @@ def _read(
     if body is None:
         wet = [without_dry(one, dry) if one.frequency_hz > 0.0 else one for one in wet]
     cycles = [one.without(body, restoring).about(settings.point_ahead_m) for one in wet]
+    done = [one for one in (*zeros, *found) if isinstance(one, Done)]
+    gauges = [one.calibration for one in done if one.calibration is not None]
     return _Read(
         campaign,
         tuple(cycles),
-        tuple(one for one in (*zeros, *found) if isinstance(one, Done)),
+        tuple(done),
         tuple(one for one in (*zeros, *found) if isinstance(one, Failed)),
         work,
-        stated_of(campaign, settings, model, motion_asked=_asked(cycles)),
+        stated_of(campaign, settings, model, gauges, motion_asked=_asked(cycles)),
         body,
     )
 
