@@ -257,10 +257,15 @@ def refine(problem: Problem, fit: Fit) -> Fit:
     return at(problem, best.candidates, best.units) if stale and repeats else best
 
 
-def stepped(problem: Problem, fit: Fit) -> Fit:
-    """Return a fit after one step with the slopes that it has; itself if no step betters it."""
-    better, _ = _step(problem, fit)
-    return fit if better is None else better
+def stepped(problem: Problem, fit: Fit, steps: int) -> Fit:
+    """Return a fit after some steps with the slopes that it has; itself if none betters it."""
+    best = fit
+    for _ in range(steps):
+        better, _ = _step(problem, best)
+        if better is None or best.cost - better.cost < _SETTLED:
+            return best if better is None else better
+        best = better
+    return best
 
 
 def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:

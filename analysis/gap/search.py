@@ -35,6 +35,7 @@ _PROMISING: Final = 0.5  # log evidence above "no gap" from which an effect is f
 _TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred times longer
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
 _STARTS: Final = 3  # effects to which partners are sought
+_STEPS_IN_TIME: Final = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +97,10 @@ def paired(
     Fitted in full are those that promise to do better than one effect alone.
     """
     chances: dict[frozenset[str], tuple[float, Fit]] = {}
+    partners = {one.fit.names: one.fit for one in seen if one.fit is not None}
+    partners |= {one.names: one for one in singles}
     for first in singles[:_STARTS]:
-        for second in (one.fit for one in seen if one.fit is not None):
+        for second in partners.values():
             if second.names != first.names:
                 key = frozenset((*first.names, *second.names))
                 both = joined(problem, first, second)
@@ -154,9 +157,9 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
 
 
 def _refined_pair(problem: Problem, fit: Fit) -> Fit:
-    """Refine a pair; with what has to be simulated in time by one step, its slopes kept."""
+    """Refine a pair; with what has to be simulated in time by few steps, its slopes kept."""
     if not all(one.kind.repeats for one in fit.candidates):
-        return stepped(problem, fit)
+        return stepped(problem, fit, _STEPS_IN_TIME)
     for units in (most_probable(fit), fit.units):
         try:
             return refine(problem, at(problem, fit.candidates, units))
