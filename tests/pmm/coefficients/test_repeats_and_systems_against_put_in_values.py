@@ -1,17 +1,21 @@
-"""Through the command: a repeat that stands off is named; the MMG system; Capytaine's tables."""
+"""Through the command: a repeat that stands off; KVLCC2; restoring; Capytaine's tables."""
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER
 from analysis.coefficients.normalisation import mmg
 from hardware.description.setpoint import SetPoint
 from sim.rig import horizontal_rig, vertical_rig
+from tests.analysis.coefficients.test_nonlinear_against_put_in_values import KVLCC2, put_in_prime
 from tests.pmm.coefficients.campaigns import head, pair, record
-from tests.pmm.coefficients.test_command_against_put_in_values import done, linear, run
+from tests.pmm.coefficients.test_command_against_put_in_values import done, run
 
 
 def test_a_repeat_with_another_load_is_named(tmp_path: Path) -> None:
@@ -33,28 +37,61 @@ def test_a_repeat_with_another_load_is_named(tmp_path: Path) -> None:
     assert done(tmp_path, "--leave-out", "heave-3")["coefficients"]["outliers"] == []
 
 
-def test_the_mmg_system_divides_by_length_and_draught(tmp_path: Path) -> None:
-    """KVLCC2's way of writing, at the model's size: rho/2 L^2 d and rho/2 L d U."""
-    rig = horizontal_rig()
+def test_kvlcc2_comes_back_in_the_mmg_system(tmp_path: Path) -> None:
+    """Published derivatives, linear and cubic, of a 2.9 m model on a rig with noise."""
+    length_m, speed_m_s = 2.9091, 0.76
+    draught_m = 20.8 * length_m / 320.0
+    system = mmg(length_m, draught_m, speed_m_s, 1000.0)
+    hull = put_in_prime(KVLCC2, system.term_factor)
+    rig = replace(horizontal_rig(), water=hull.water, cross_flow=hull.cross_flow)
+    motions = ((0.05, 0.0), (0.15, 0.0), (0.05, math.pi), (0.1, math.pi), (0.12, 2.0))
     text = head(rig)
-    for k, (name, point) in enumerate(pair(0.4, eccentricity_m=0.1)):
-        text += record(tmp_path, rig, name, point, seed=k)
+    for k, (eccentricity_m, phase_rad) in enumerate(motions):
+        point = SetPoint(0.2, eccentricity_m, phase_rad, speed_m_s)
+        text += record(tmp_path, rig, f"run-{k}", point, seed=k)
     (tmp_path / "campaign.toml").write_text(text)
-    ship = tmp_path / "ship.toml"
-    ship.write_text("[ship]\nlength_m = 2.5\ndraught_m = 0.13\ndensity_kg_m3 = 1000.0\n")
-    found = done(tmp_path, "--system", "mmg", "--settings", ship)
-    assert "MMG" in found["coefficients"]["normalisation"]
-    system = mmg(2.5, 0.13, 1.2, 1000.0)
-    put_in = {
-        "Y_vdot": -62.0 / system.mass_kg,
-        "Y_v": -120.0 / system.mass_per_second,
-        "N_v": -40.0 / (system.mass_per_second * 2.5),
-        "N_r": -35.0 / (system.mass_per_second * 2.5**2),
-        "N_rdot": -18.0 / (system.mass_kg * 2.5**2),
-    }
-    rows = {row["name"]: row for row in linear(found)}
-    for name, value in put_in.items():
-        assert rows[name]["value"] == pytest.approx(value, abs=1.5 * rows[name]["half_width"])
+    ship = f"length_m = {length_m}\ndraught_m = {draught_m}\ndensity_kg_m3 = 1000.0\n"
+    (tmp_path / "coefficients.toml").write_text(f'system = "mmg"\n[ship]\n{ship}')
+    found = done(tmp_path)["coefficients"]
+    assert "MMG" in found["normalisation"]
+    assert {one["verdict"] for one in found["choices"]} == {"cubic"}
+    rows = {row["name"]: row for row in found["table"] if row["method"] == HIGHER_ORDER}
+    assert set(rows) == {*KVLCC2, "Y_rdot", "N_vdot"}
+    for name, row in rows.items():
+        assert abs(row["value"] - KVLCC2.get(name, 0.0)) <= row["half_width"], row
+
+
+def test_measured_restoring_is_held_against_hydrostatics(tmp_path: Path) -> None:
+    """Heave and pitch at rest, three frequencies: what is left at none is what was put in."""
+    rig = vertical_rig()
+    text = head(rig)
+    for k, frequency_hz in enumerate((0.2, 0.35, 0.5)):
+        for name, point in pair(frequency_hz, 0.0):
+            text += record(tmp_path, rig, name, point, seed=k)
+    (tmp_path / "campaign.toml").write_text(text)
+    checks = restoring_checks(tmp_path)
+    assert set(checks) == {"C33", "C35", "C53", "C55"}
+    for name, one in checks.items():
+        row, column = ("35".index(letter) for letter in name[1:])
+        assert one["agrees"], one
+        assert one["second_value"] == rig.water.restoring[row][column]
+        assert (
+            abs(one["first_value"] - one["second_value"])
+            < 1e-3 * rig.water.restoring[column][column]
+        )
+    wrong = tmp_path / "wrong.toml"
+    stiffer = [[1.02 * value for value in row] for row in rig.water.restoring]
+    wrong.write_text(f"restoring = {stiffer}\n")
+    held = restoring_checks(tmp_path, "--settings", wrong)
+    assert {name for name, one in held.items() if not one["agrees"]} >= {"C33", "C55"}
+    shown = " ".join(run(tmp_path, "--settings", wrong).output.split())
+    assert "hydrostatics" in shown
+    assert "DIFFER" in shown
+
+
+def restoring_checks(*words: object) -> dict[str, dict[str, Any]]:
+    checks = done(*words)["coefficients"]["checks"]
+    return {one["name"]: one for one in checks if one["kind"] == "restoring"}
 
 
 def test_a_table_of_capytaine_stands_beside_the_values(tmp_path: Path) -> None:
