@@ -18,6 +18,7 @@ UNKNOWN: Final = "unknown"
 COEFFICIENTS: Final = "coefficients"
 TOLERATED: Final = 0.45  # remainder over signature at which a name is worth half
 _STEEP = 6.0
+_EARNEST: Final = 0.8  # of pairs: the best of some thousand imitates what no catalogue has
 SLIGHT: Final = 0.02  # of its partner's signature: as likely the partner's own form
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
@@ -86,7 +87,8 @@ def _to_the_larger(pairs: Sequence[Named], weights: dict[str, float]) -> None:
 
 def deserved(one: Named) -> float:
     """Return how much of a named hypothesis's weight its name deserves, by what it leaves."""
-    return 1.0 / (1.0 + math.pow(one.remainder / TOLERATED, _STEEP))
+    clean = 1.0 / (1.0 + math.pow(one.remainder / TOLERATED, _STEEP))
+    return clean if len(one.fit.names) < 2 else _EARNEST * clean
 
 
 def answer_of(fit: Fit) -> str:
