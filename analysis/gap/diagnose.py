@@ -137,7 +137,7 @@ def diagnose(
 def _problem(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
-    stack = Stack.of(pooled(runs))
+    stack = Stack.of(pooled(runs, rig))
     on = (*settings.on, *_always(rig, settings.priors))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = Nuisances(columns(simulator, free, settings.priors))

@@ -16,26 +16,32 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, GapRun, Part
 from hardware.description.channels import SHAFT_ANGLE
+from sim.acquisition import Digitiser
+from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]
 
 # Of the first harmonic of the channel: what a simulation by harmonics does not promise to hold.
 SIMULATION: Final = 2e-5
-# An encoder's steps do not average out of a shaft that turns evenly.
+# Of an encoder whose steps nobody stated: they do not average out of a shaft that turns evenly.
 ENCODER_RAD: Final = 3e-5
 _POOLED_FREEDOM = 12.0
 # What is simulated in time has noise of its own, as large as the record's.
 TWO_RECORDS: Final = 2.0**0.5
 
 
-def pooled(runs: Sequence[GapRun]) -> tuple[GapRun, ...]:
-    """Return the runs with uncertainties that borrow strength from each other."""
+def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
+    """Return the runs with uncertainties that borrow strength from each other.
+
+    The rig's encoder says what its steps leave in the shaft's harmonics.
+    """
+    encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
     densities: dict[tuple[str, int], list[float]] = defaultdict(list)
     for run in runs:
         for key, density in _densities(run):
             densities[key].append(density)
     usual = {key: float(np.median(values)) for key, values in densities.items()}
-    return tuple(_with(run, usual) for run in runs)
+    return tuple(_with(run, usual, encoder_rad) for run in runs)
 
 
 def _kind(part: Part, order: int) -> int:
@@ -53,7 +59,7 @@ def _densities(run: GapRun) -> list[tuple[tuple[str, int], float]]:
     ]
 
 
-def _with(run: GapRun, usual: dict[tuple[str, int], float]) -> GapRun:
+def _with(run: GapRun, usual: dict[tuple[str, int], float], encoder_rad: float) -> GapRun:
     seen = run.observed
     duration_s = run.periods / run.set_point.frequency_hz
     own_freedom = max(run.periods - 2.0, 0.0)
@@ -69,13 +75,26 @@ def _with(run: GapRun, usual: dict[tuple[str, int], float]) -> GapRun:
             variance = (freedom * own + _POOLED_FREEDOM * usual[key] / duration_s) / (
                 freedom + _POOLED_FREEDOM
             )
-            uncertainty[at] = np.sqrt(variance + _floor(run, one.channel) ** 2)
+            uncertainty[at] = np.sqrt(variance + _floor(run, one.channel, encoder_rad) ** 2)
     return replace(run, observed=replace(seen, uncertainty=uncertainty))
 
 
-def _floor(run: GapRun, channel: str) -> float:
+def _floor(run: GapRun, channel: str, encoder_rad: float) -> float:
     if channel == SHAFT_ANGLE.name:
-        return ENCODER_RAD
+        return encoder_rad
     seen = run.observed
     parts = [seen.value(channel, part, 1) for part in (Part.IN_PHASE, Part.QUADRATURE)]
     return SIMULATION * math.hypot(*parts) if np.isfinite(parts).all() else 0.0
+
+
+def encoder_floor_rad(encoder: Digitiser | None) -> float:
+    """Return the largest line that an encoder's steps leave in an even turn, in rad.
+
+    The error of rounding to steps of q is a saw of first amplitude q / pi; noise of standard
+    deviation s ahead of it leaves exp(-2 pi² s² / q²) of it (Widrow and Kollár 2008, the
+    characteristic function of the quantiser's input at 2 pi / q).
+    """
+    if encoder is None or not encoder.resolution:
+        return ENCODER_RAD
+    dither = encoder.noise_rms / encoder.resolution
+    return encoder.resolution / math.pi * math.exp(-2.0 * (math.pi * dither) ** 2)

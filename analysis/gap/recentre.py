@@ -61,7 +61,7 @@ def recentred(
 ) -> Recentred:
     """Move a rig to the coefficients that fit, if any of them is far from what was stated."""
     free = free_numbers(rig, priors)
-    stack = Stack.of([repeating_only(one) for one in pooled(runs)])
+    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))

@@ -190,7 +190,7 @@ def _joint(
     priors: Priors,
 ) -> Problem:
     """Return the problem over fitting and withheld runs, of what repeats with the shaft."""
-    runs = [repeating_only(run) for run in pooled([*fitted, *withheld])]
+    runs = [repeating_only(run) for run in pooled([*fitted, *withheld], problem.simulator.rig)]
     old = problem.simulator
     simulator = Simulator(old.rig, Stack.of(runs), old.on, old.reference_channel)
     return Problem(simulator, Nuisances(columns(simulator, free, priors)), problem.free)

@@ -61,6 +61,6 @@ def problem_of(rig: SimulatedRig, runs: Sequence[GapRun]) -> Problem:
     """Return the problem that a diagnosis holds its hypotheses against."""
     priors = Priors()
     free = free_numbers(rig, priors)
-    simulator = Simulator(rig, Stack.of(pooled(runs)))
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig)))
     nuisances = Nuisances(columns(simulator, free, priors))
     return Problem(simulator, nuisances, tuple(one.name for one in free))

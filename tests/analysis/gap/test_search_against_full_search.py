@@ -149,7 +149,7 @@ def _scattering(rig: SimulatedRig, runs: tuple[GapRun, ...]) -> Problem:
     """Return the problem of a rig whose pulses scatter as the campaign's do."""
     priors = Priors()
     on = (build(f"trigger-jitter:jitter_rad={priors.pulse_scatter_rad}"),)
-    simulator = Simulator(rig, Stack.of(pooled(runs)), on)
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), on)
     free = free_numbers(rig, priors)
     nuisances = Nuisances(columns(simulator, free, priors))
     return Problem(simulator, nuisances, tuple(one.name for one in free))

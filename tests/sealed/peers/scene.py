@@ -79,7 +79,7 @@ def _as_stack(one: Remainder) -> Stack:
 def scene(folder: Path) -> Scene:
     """Return what a peer sees of a case; the last one is kept, as peers answer in turn."""
     loaded, case = load_campaign(folder), read_case(folder)
-    stack = Stack.of(pooled(loaded.runs))
+    stack = Stack.of(pooled(loaded.runs, loaded.rig))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
     free = free_numbers(loaded.rig, case.priors)
     nuisances = Nuisances(columns(simulator, free, case.priors))

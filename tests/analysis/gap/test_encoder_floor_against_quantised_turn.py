@@ -1,0 +1,40 @@
+"""What an encoder's steps leave of an even turn, against a turn that is rounded."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from analysis.gap.noise import ENCODER_RAD, encoder_floor_rad
+from sim.acquisition import Digitiser
+
+STEP = 1e-4
+SAMPLES = 20_000
+
+FloatArray = NDArray[np.float64]
+
+
+@pytest.mark.parametrize("dither", [0.0, 0.1, 0.3])
+def test_the_largest_line_of_the_rounding_error(dither: float) -> None:
+    within = (np.arange(SAMPLES) + 0.5) / SAMPLES  # of a step, seen evenly
+    error = (_rounded(within, dither) - within) * STEP
+    line = 2.0 * abs(np.mean(error * np.exp(-2j * np.pi * within)))
+    floor = encoder_floor_rad(Digitiser(noise_rms=dither * STEP, resolution=STEP))
+    assert line == pytest.approx(floor, rel=1e-3)
+
+
+def _rounded(values: FloatArray, dither: float) -> FloatArray:
+    """Return what rounding to whole numbers gives on average under normal noise."""
+    if not dither:
+        return np.round(values)
+    passed = [
+        0.5 * (1.0 + np.vectorize(math.erf)((values - step - 0.5) / (dither * math.sqrt(2.0))))
+        for step in range(-4, 5)
+    ]
+    return np.sum(passed, axis=0) - 4.0
+
+
+def test_steps_that_nobody_stated_are_taken_as_usual_ones() -> None:
+    assert encoder_floor_rad(None) == ENCODER_RAD
+    assert encoder_floor_rad(Digitiser(noise_rms=1e-5)) == ENCODER_RAD
