@@ -1,53 +1,45 @@
 """How period and decay change with amplitude, and the period at none.
 
-The record is cut into parts of some periods; each gives amplitude and period. Constant, linear and
-quadratic laws are fitted to period over amplitude; they are averaged with Akaike's weights, so that
-the choice of the law is part of the extrapolation's uncertainty.
+With a frequency that changes with the amplitude A as ``2 pi/T = (2 pi/T_0) (1 - slope A^p)``, the
+oscillation's phase is
+
+    phi(t) = phi_0 + (2 pi/T_0) (t - slope int_0^t A^p dt')
+
+linear in phi_0, 2 pi/T_0 and their products with the slope. It is fitted to the phases and
+frequencies of successive parts of a record (:mod:`analysis.inertia.local`) at once: phases that
+count through know a period by the record's whole length, periods by that of a part. Constant,
+linear and quadratic laws (p = 0, 1, 2) are averaged with Akaike's weights, so that the choice of
+the law is part of the extrapolation's uncertainty.
 """
 
 import math
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.damped import DampedFit, fit_damped
 from analysis.inertia.estimate import Estimate
+from analysis.inertia.local import FEWEST_PARTS, LocalPeriods
 from analysis.inertia.numeric import FloatArray
+from analysis.inertia.projection import inverse_gram
 from hardware.description.errors import DataError
 
-FEWEST_PARTS = 4
-MOST_PARTS = 16
-FEWEST_SWINGS = 1.5  # in a part
-STRAYED = 0.1  # relative difference from the whole record's period: another oscillation
-
-
-@dataclass(frozen=True)
-class LocalPeriods:
-    """Period and amplitude of successive parts of a record.
-
-    Attributes
-    ----------
-    time_s, amplitude, period_s, uncertainty_s
-        Of each part, shape ``(parts,)``: its middle, the amplitude there, its period and that
-        fit's standard uncertainty.
-    """
-
-    time_s: FloatArray
-    amplitude: FloatArray
-    period_s: FloatArray
-    uncertainty_s: FloatArray
+POWERS = (0, 1, 2)
+_EXACT_RAD, _EXACT = 1e-10, 1e-11  # of a phase, and relative of a frequency: below are roundings
 
 
 @dataclass(frozen=True)
 class AmplitudeLaw:
-    """One law: ``T = T_0 (1 + slope A^power)``; power 0 is no dependence."""
+    """One law: ``T = T_0/(1 - slope A^power)``; power 0 is no dependence."""
 
     power: int
     period_s: float
     uncertainty_s: float
     slope: float
     weight: float
+
+    def at(self, amplitude: FloatArray) -> FloatArray:
+        """Return the period at some amplitudes."""
+        return np.asarray(self.period_s / (1.0 - self.slope * amplitude**self.power))
 
 
 @dataclass(frozen=True)
@@ -93,71 +85,6 @@ class PowerDecay:
         return float(np.sqrt(self.covariance[2, 2]))
 
 
-def local_periods(
-    time_s: FloatArray,
-    values: FloatArray,
-    fit: DampedFit,
-    *,
-    mode: int = 0,
-    parts: int | None = None,
-    where: str = "record",
-) -> LocalPeriods:
-    """Cut a record into parts and fit each; parts that show another oscillation are left out.
-
-    Parameters
-    ----------
-    fit
-        The whole record's fit; its other modes are taken off first.
-    parts
-        How many; by default as many as leave three periods in each, 4 to 16.
-
-    Raises
-    ------
-    DataError
-        If the record has not six periods (too few swings), or under four parts are left.
-    """
-    chosen = fit.modes[mode]
-    swings = (time_s[-1] - time_s[0]) / chosen.period_s
-    count = parts or int(np.clip(swings // 3, FEWEST_PARTS, MOST_PARTS))
-    if swings / count < FEWEST_SWINGS:
-        raise DataError(
-            f"{where}: too few swings: {swings:.3g} of {chosen.period_s:.3g} s are usable, at "
-            f"least {FEWEST_SWINGS * count:g} are needed to see how the period changes with the "
-            "amplitude; record longer or release from further out"
-        )
-    rest = values - _others(fit, mode, time_s)
-    edges = np.linspace(time_s[0], time_s[-1], count + 1)
-    rows = []
-    for low, high in pairwise(edges):
-        inside = (time_s >= low) & (time_s <= high)
-        if np.isfinite(rest[inside]).mean() < 0.5:
-            continue
-        own = fit_damped(time_s[inside], rest[inside], start_periods_s=(chosen.period_s,))
-        best = own.modes[0]
-        if not own.converged or abs(best.period_s / chosen.period_s - 1.0) > STRAYED:
-            continue
-        middle = 0.5 * (low + high)
-        there = best.amplitude * math.exp(-best.decay_1_s * (middle - own.start_s))
-        rows.append((middle, there, best.period_s, own.period_uncertainty_s()))
-    if len(rows) < FEWEST_PARTS:
-        raise DataError(
-            f"{where}: {len(rows)} of {count} parts show the oscillation of {chosen.period_s:.4g} "
-            f"s; at least {FEWEST_PARTS} are needed: a record with fewer gaps, or less of other "
-            "motions"
-        )
-    return LocalPeriods(*np.array(rows).T)
-
-
-def _others(fit: DampedFit, mode: int, time_s: FloatArray) -> FloatArray:
-    total = np.zeros(time_s.shape)
-    t = time_s - fit.start_s
-    for k, other in enumerate(fit.modes):
-        if k != mode:
-            angle = 2.0 * np.pi * t / other.period_s + other.phase_rad
-            total += other.amplitude * np.exp(-other.decay_1_s * t) * np.cos(angle)
-    return total
-
-
 def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
     """Extrapolate the period to zero amplitude.
 
@@ -166,47 +93,82 @@ def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
     DataError
         Under four parts.
     """
-    if local.period_s.size < FEWEST_PARTS:
-        raise DataError(
-            f"{local.period_s.size} parts; at least {FEWEST_PARTS} are needed to extrapolate"
-        )
-    fits = [_law(local, power) for power in (0, 1, 2)]
-    # the common misfit of the best law scales all uncertainties (Birge)
-    best = min(chi2 / freedom for _, chi2, freedom in fits)
-    scale = max(best, 1.0)
     size = local.period_s.size
-    scores = []
-    for law, chi2, _ in fits:
-        k = 1 + (law.power > 0)
-        correction = 2.0 * k * (k + 1) / max(size - k - 1, 1)
-        scores.append(chi2 / scale + 2.0 * k + correction)
+    if size < FEWEST_PARTS:
+        raise DataError(f"{size} parts; at least {FEWEST_PARTS} are needed to extrapolate")
+    fits = [_law(local, power) for power in POWERS]
+    # the common misfit of the best law scales all uncertainties (Birge)
+    scale = max(min(chi2 / freedom for _, chi2, freedom in fits), 1.0)
+    scores = [chi2 / scale + _penalty(2 * size, freedom) for _, chi2, freedom in fits]
     weights = np.exp(-0.5 * (np.array(scores) - min(scores)))
     weights /= weights.sum()
     laws = tuple(
-        AmplitudeLaw(law.power, law.period_s, law.uncertainty_s * math.sqrt(scale), law.slope, w)
-        for (law, _, _), w in zip(fits, weights.tolist(), strict=True)
+        replace(law, uncertainty_s=law.uncertainty_s * math.sqrt(scale), weight=weight)
+        for (law, _, _), weight in zip(fits, weights.tolist(), strict=True)
     )
     mean = sum(law.weight * law.period_s for law in laws)
     variance = sum(law.weight * (law.uncertainty_s**2 + (law.period_s - mean) ** 2) for law in laws)
     likeliest = max(laws, key=lambda law: law.weight)
-    change = likeliest.slope * float(local.amplitude.max()) ** likeliest.power
-    period = Estimate(mean, math.sqrt(variance), "s", float(size - 2))
-    return ZeroAmplitude(period, laws, change if likeliest.power else 0.0)
+    change = likeliest.at(local.amplitude.max(keepdims=True))[0] / likeliest.period_s - 1.0
+    freedom = float(min(freedom for _, _, freedom in fits))
+    return ZeroAmplitude(Estimate(mean, math.sqrt(variance), "s", freedom), laws, float(change))
+
+
+def _penalty(size: int, freedom: int) -> float:
+    """Return Akaike's for the unknowns, with Hurvich and Tsai's correction for few data."""
+    unknown = size - freedom
+    return 2.0 * unknown * size / max(freedom - 1, 1)
 
 
 def _law(local: LocalPeriods, power: int) -> tuple[AmplitudeLaw, float, int]:
     """Fit one law; return it with its chi-squared and degrees of freedom."""
-    weight = 1.0 / np.maximum(local.uncertainty_s, 1e-12 * local.period_s)
-    parts = [np.ones(local.period_s.size)]
+    rounding = np.zeros_like(local.covariance)
+    rounding[:, 0, 0], rounding[:, 1, 1] = _EXACT_RAD**2, (_EXACT * local.omega_rad_s) ** 2
+    whiten = np.linalg.inv(np.linalg.cholesky(local.covariance + rounding))
+    rows = _rows(local, power)
+    matrix = (whiten @ rows).reshape(-1, rows.shape[2])
+    seen = np.stack([local.phase_rad, local.omega_rad_s], axis=1)[:, :, np.newaxis]
+    data = (whiten @ seen).ravel()
+    covariance = inverse_gram(matrix)
+    solved = covariance @ (matrix.T @ data)
+    chi2 = float(((data - matrix @ solved) ** 2).sum())
+    omega, period = float(solved[0]), 2.0 * math.pi / float(solved[0])
+    slope = -float(solved[1]) / omega if power else 0.0
+    uncertainty = period / omega * math.sqrt(float(covariance[0, 0]))
+    law = AmplitudeLaw(power, period, uncertainty, slope, 0.0)
+    return law, chi2, data.size - matrix.shape[1]
+
+
+def _rows(local: LocalPeriods, power: int) -> FloatArray:
+    """Derivative of each part's (phase, frequency) by the unknowns, shape ``(parts, 2, unknowns)``.
+
+    The unknowns are the frequency at no amplitude, its change with ``A^power`` (not for power 0),
+    and the phase of each stretch.
+    """
+    ones = np.ones(local.time_s.size)
+    columns = [np.stack([local.time_s - local.time_s[0], ones])]
     if power:
-        parts.append(local.amplitude**power)
-    matrix = np.column_stack(parts) * weight[:, None]
-    covariance = np.linalg.pinv(matrix.T @ matrix, hermitian=True)
-    solved = covariance @ (matrix.T @ (local.period_s * weight))
-    chi2 = float((((local.period_s * weight) - matrix @ solved) ** 2).sum())
-    slope = float(solved[1] / solved[0]) if power else 0.0
-    law = AmplitudeLaw(power, float(solved[0]), float(np.sqrt(covariance[0, 0])), slope, 0.0)
-    return law, chi2, local.period_s.size - len(parts)
+        columns.append(np.stack([_integral(local, power), local.amplitude**power]))
+    columns += [
+        np.stack([local.stretch == number, 0.0 * ones])
+        for number in range(int(local.stretch[-1]) + 1)
+    ]
+    return np.asarray(np.stack(columns).transpose(2, 1, 0))
+
+
+def _integral(local: LocalPeriods, power: int) -> FloatArray:
+    """Integrate ``A^power`` from the first middle to each, by Gauss and Legendre.
+
+    Between the middles the logarithm of the amplitude is Fritsch and Carlson's monotone cubic:
+    a decay by friction or drag bends across a gap.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    log = PchipInterpolator(local.time_s, np.log(np.maximum(local.amplitude, 1e-300)))
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    half = 0.5 * np.diff(local.time_s)
+    inside = (local.time_s[:-1] + half)[:, np.newaxis] + half[:, np.newaxis] * nodes
+    return np.concatenate([[0.0], np.cumsum(half * (np.exp(power * log(inside)) @ weights))])
 
 
 def fit_power_decay(time_s: FloatArray, amplitude: FloatArray) -> PowerDecay:

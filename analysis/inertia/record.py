@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from analysis.inertia.amplitude import (
-    LocalPeriods,
     PowerDecay,
     ZeroAmplitude,
     fit_power_decay,
-    local_periods,
     zero_amplitude_period,
 )
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped import DampedFit, fit_damped
 from analysis.inertia.estimate import Estimate
+from analysis.inertia.local import LocalPeriods, local_periods
 from analysis.inertia.repeats import Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from hardware.description.errors import DataError
@@ -86,6 +85,7 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
     found = []
     for mode in range(modes):
         local = local_periods(time_s, values, fit, mode=mode, where=series.where)
+        flags += local.flags
         decay = fit_power_decay(local.time_s, local.amplitude)
         if not decay.converged:
             message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.amplitude import LocalPeriods
 from analysis.inertia.estimate import Estimate
+from analysis.inertia.local import LocalPeriods
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

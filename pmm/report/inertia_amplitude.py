@@ -66,8 +66,7 @@ def _draw_run(axes: "Axes", run: RecordAnalysis, mode: ModeAnalysis, color: str)
     along = np.linspace(0.0, float(local.amplitude.max()), 80)
     for law in zero.laws:
         if law.weight >= _SEEN:
-            period = law.period_s * (1.0 + law.slope * along**law.power)
-            axes.plot(factor * along, period, _DASHES[law.power], color=color, lw=0.9)
+            axes.plot(factor * along, law.at(along), _DASHES[law.power], color=color, lw=0.9)
     axes.errorbar(
         [0.0],
         [zero.period.value],

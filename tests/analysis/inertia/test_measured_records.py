@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.inertia.amplitude import fit_power_decay, local_periods, zero_amplitude_period
+from analysis.inertia.amplitude import fit_power_decay, zero_amplitude_period
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.budget import linear_budget
 from analysis.inertia.compound import (
@@ -18,6 +18,7 @@ from analysis.inertia.compound import (
 from analysis.inertia.damped import fit_damped
 from analysis.inertia.estimate import Estimate, within
 from analysis.inertia.gates import passages, read_gate_events
+from analysis.inertia.local import local_periods
 from analysis.inertia.passage_fit import fit_passages
 from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.repeats import single_run

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.inertia.amplitude import LocalPeriods, fit_power_decay, zero_amplitude_period
+from analysis.inertia.amplitude import fit_power_decay
 from analysis.inertia.checks import (
     check_amplitude_effect,
     check_record,
@@ -237,22 +237,6 @@ def test_stopwatch() -> None:
         stopwatch_period((StopwatchReading(2, 5.0),))
     with pytest.raises(DataError, match="miscounted"):
         stopwatch_period(tuple(StopwatchReading(20, s) for s in (56.9, 56.8, 59.8)))
-
-
-def test_extrapolation_covers_whichever_law_holds() -> None:
-    rng = np.random.default_rng(6)
-    for power in (0, 1, 2):
-        inside = 0
-        for _ in range(200):
-            amplitude = np.geomspace(0.1, 0.04, 12)
-            true = 3.0 * (1.0 + (0.02 if power == 1 else 0.2) * amplitude**power * (power > 0))
-            error = np.full(12, 2e-4)
-            local = LocalPeriods(
-                np.arange(12.0), amplitude, true + error * rng.standard_normal(12), error
-            )
-            low, high = zero_amplitude_period(local).period.interval()
-            inside += low <= 3.0 <= high
-        assert inside / 200 > 0.90, power
 
 
 def test_decay_needs_amplitudes() -> None:
