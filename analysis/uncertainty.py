@@ -6,7 +6,7 @@ coefficients, or a curve through many, knows what cancels. All is linear; GTC ma
 of it (:meth:`UncertainValues.gtc_numbers`), and Monte Carlo stands beside it where it is made.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -193,6 +193,15 @@ class UncertainValues:
                 for part, deviate in zip(parts, deviates, strict=True):
                     totals[row] = totals[row] + float(part) * deviate
         return totals
+
+
+def added(contributions: Iterable[Contribution]) -> tuple[Contribution, ...]:
+    """Return what each input does in all: contributions of one label to the same rows added up."""
+    found: dict[str, Contribution] = {}
+    for one in contributions:
+        before = found.get(one.label)
+        found[one.label] = one if before is None else replace(one, parts=before.parts + one.parts)
+    return tuple(found.values())
 
 
 def stacked(several: Sequence[UncertainValues]) -> UncertainValues:

@@ -20,6 +20,7 @@ SINGLE = "single and multiple runs"
 RESTORING = "restoring"
 
 _PURE = 1e-2
+_NAMED = 2  # runs that a check names
 
 
 def consistency(found: CampaignCoefficients, cycles: Sequence[Cycle]) -> tuple[Check, ...]:
@@ -104,7 +105,8 @@ def _check(
 
 
 def _where(entry: Entry) -> str:
-    names = ", ".join(entry.runs[:3]) + (" ..." if len(entry.runs) > 3 else "")
+    more = len(entry.runs) - _NAMED
+    names = ", ".join(entry.runs[:_NAMED]) + (f" and {more} more" if more > 0 else "")
     return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"
 
 

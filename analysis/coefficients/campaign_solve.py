@@ -18,7 +18,7 @@ from analysis.coefficients.result import Coefficients
 from analysis.coefficients.solve import problem_of, solve
 from analysis.coefficients.stated import STATED
 from analysis.coefficients.uncertainty import monte_carlo, slopes
-from analysis.uncertainty import Contribution, UncertainValues, stacked
+from analysis.uncertainty import Contribution, UncertainValues, added, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 
@@ -52,7 +52,7 @@ def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
         names = [name_of(place, cycles[0].plane, request.form) for place in PLACES]
         missing = tuple(Missing(name, str(error)) for name in names)
         return Block((), UncertainValues(np.zeros(0)), no_trials(0), missing=missing)
-    uncertain = UncertainValues(result.values, tuple(_contributions(cycles, request)))
+    uncertain = UncertainValues(result.values, _contributions(cycles, request))
     entries = tuple(_entry(result, k) for k in range(len(result.names)))
     trials = no_trials(len(entries))
     if request.trials:
@@ -94,7 +94,7 @@ def _entry(result: Coefficients, k: int) -> Entry:
     )
 
 
-def _contributions(cycles: Sequence[Cycle], request: Request) -> list[Contribution]:
+def _contributions(cycles: Sequence[Cycle], request: Request) -> tuple[Contribution, ...]:
     """What every input adds, on the deviates of whole cycles, as non-linear fits use them too."""
     problem = problem_of([cycle.run() for cycle in cycles], request.form)
     by_phasor, by_stated = slopes(problem, request.stated)
@@ -108,7 +108,7 @@ def _contributions(cycles: Sequence[Cycle], request: Request) -> list[Contributi
     for k, (name, spread) in enumerate(zip(STATED, request.stated.vector, strict=True)):
         if spread > 0.0:
             found.append(Contribution(name, np.inf, rows, by_stated[:, k, None] * spread))
-    return found
+    return added(found)
 
 
 def _fits_block(

@@ -199,8 +199,7 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
     )
     units = tuple(recording.channels[recording.index(name)].unit for name in names)
     means: ComplexArray = values.mean(axis=1).astype(np.complex128)
-    source = replace(source, deviates=source.root)  # all runs that take it off share these
-    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)))
+    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)).shared)
 
 
 def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:

@@ -124,7 +124,7 @@ class Cycle:
                 place = self.phasors.names.index(at_order(name, n))
                 turn = abs(ratio) * np.exp(1j * n * np.angle(ratio))
                 scale[place, dry.phasors.index(at_order(name, n))] = turn
-        taken = dry.phasors.mapped(scale, self.phasors.names, self.phasors.units)
+        taken = dry.phasors.shared.mapped(scale, self.phasors.names, self.phasors.units)
         return replace(self, phasors=self.phasors.minus(taken), flags=flags)
 
     def about(self, ahead_m: float) -> "Cycle":

@@ -24,7 +24,7 @@ from analysis.coefficients.phasors import ComplexArray, FloatArray
 from analysis.coefficients.quality import residual_spread, trusted
 from analysis.coefficients.stated import STATED, Stated
 from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty import Contribution, UncertainValues, added
 
 HIGHER = (1, 2, 3)
 FIRST = (1,)
@@ -60,7 +60,7 @@ class CycleFit:
     @cached_property
     def uncertain(self) -> UncertainValues:
         """The values with what scatter and stated uncertainties add."""
-        return UncertainValues(self.values, tuple(_contributions(self)))
+        return UncertainValues(self.values, _contributions(self))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""
@@ -175,8 +175,8 @@ def _squares(
     return squares, data
 
 
-def _contributions(fit: CycleFit) -> list[Contribution]:
-    """Scatter by source of each cycle, then each stated uncertainty that is not zero."""
+def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
+    """Scatter by source, of all cycles that share it, then each stated uncertainty."""
     problem, stated = fit.problem, fit.stated
     by_part, by_stated = _slopes(problem, fit.values, stated)
     everywhere, found = np.arange(len(problem.terms)), []
@@ -190,7 +190,7 @@ def _contributions(fit: CycleFit) -> list[Contribution]:
         if spread > 0.0:
             column = by_stated[:, k, None] * spread
             found.append(Contribution(name, np.inf, everywhere, column))
-    return found
+    return added(found)
 
 
 def _slopes(

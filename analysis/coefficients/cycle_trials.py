@@ -7,7 +7,7 @@ from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED
-from analysis.coefficients.uncertainty import draw_source
+from analysis.coefficients.uncertainty import Scatter
 
 TRIALS_AT_ONCE = 500  # whole cycles are wide
 
@@ -35,10 +35,11 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
     problem = fit.problem
     parts = np.repeat(problem.parts()[None], count, axis=0)
+    scatter = Scatter(count, generator)
     for k, cycle in enumerate(problem.cycles):
         to, places = problem.measured(cycle)
         for source in cycle.phasors.sources:
-            parts[:, k, to] += draw_source(source, count, generator)[:, places]
+            parts[:, k, to] += scatter.of(source)[:, places]
     deviations = generator.standard_normal((count, len(STATED))) * fit.stated.vector
     pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
     return np.concatenate([problem.solve(parts[some], deviations[some]) for some in pieces])

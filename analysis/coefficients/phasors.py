@@ -29,7 +29,7 @@ class Source:
         For Student's t.
     deviates
         How the phasors follow the source's own deviates, shape ``(2 n, deviates)``: where one
-        source acts on several runs (a zero run), so that they know what they share.
+        source acts on several runs (a zero run, a dry run), so that they know what they share.
     """
 
     label: str
@@ -46,6 +46,11 @@ class Source:
             return np.full_like(self.covariance, np.nan)
         values, vectors = np.linalg.eigh(self.covariance)
         return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
+
+    @property
+    def shared(self) -> "Source":
+        """The same with deviates of its own, for several runs to take."""
+        return replace(self, deviates=self.root)
 
     def carried(self, slope: FloatArray) -> "Source":
         """Return what the source does to values that follow the phasors with ``slope``."""
@@ -171,6 +176,11 @@ class Phasors:
         opposite = -np.eye(2 * len(other.values))
         taken = tuple(source.carried(opposite) for source in other.sources)
         return Phasors(self.names, self.units, self.values - other.values, self.sources + taken)
+
+    @property
+    def shared(self) -> "Phasors":
+        """The same for several runs to take: what they have of its scatter is one and the same."""
+        return replace(self, sources=tuple(source.shared for source in self.sources))
 
     def _carried(
         self,

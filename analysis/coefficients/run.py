@@ -151,7 +151,7 @@ class Run:
         scale = np.diag([0.0, 0.0, ratio, ratio])
         text = f"the loads of dry run {dry.name} were taken off"
         flag = Flag("dry_run_taken_off", Severity.NOTE, text)
-        ordered = dry.phasors.select((*MOTIONS, *LOADS)).mapped(scale)
+        ordered = dry.phasors.shared.select((*MOTIONS, *LOADS)).mapped(scale)
         mine = self.phasors.select((*MOTIONS, *LOADS))
         return replace(self, phasors=mine.minus(ordered), flags=(*self.flags, flag))
 

@@ -13,6 +13,7 @@ from analysis.coefficients.model import PER_RUN, STATED, Problem, Stated
 from analysis.coefficients.phasors import FloatArray, Source
 from analysis.coefficients.result import Share
 from analysis.coefficients.run import LOADS, MOTIONS, Run
+from analysis.uncertainty import Contribution, added
 
 _STEP = 1e-6  # of the run's largest motion or load
 _STATED_STEP = 0.01  # of the stated uncertainty: curvature is the Monte Carlo's to find
@@ -51,19 +52,21 @@ def linear_shares(problem: Problem, stated: Stated) -> tuple[FloatArray, tuple[S
         Scatter by source, then each stated uncertainty that is not zero.
     """
     by_phasor, by_stated = slopes(problem, stated)
-    covariance = np.zeros((len(by_phasor), len(by_phasor)))
-    shares = []
+    rows, parts = np.arange(len(by_phasor)), []
     for k, run in enumerate(problem.runs):
         slope = by_phasor[:, k * PER_RUN : (k + 1) * PER_RUN]
         for source in _sources(run):
-            part = slope @ source.covariance @ slope.T
-            covariance += part
-            shares.append(Share(source.label, np.diagonal(part), source.degrees_of_freedom))
+            own = slope @ source.root
+            parts.append(Contribution(source.label, source.degrees_of_freedom, rows, own))
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
-            part = np.outer(by_stated[:, k], by_stated[:, k]) * spread**2
-            covariance += part
-            shares.append(Share(name, np.diagonal(part), np.inf))
+            parts.append(Contribution(name, np.inf, rows, by_stated[:, k, None] * spread))
+    covariance = np.zeros((len(rows), len(rows)))
+    shares = []
+    for one in added(parts):
+        product = one.parts @ one.parts.T
+        covariance += product
+        shares.append(Share(one.label, np.diagonal(product), one.degrees_of_freedom))
     return covariance, tuple(shares)
 
 
@@ -110,9 +113,10 @@ def draw(problem: Problem, stated: Stated, count: int, seed: tuple[int, int]) ->
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
     parts = np.broadcast_to(problem.phasor_parts(), (count, len(problem.runs), PER_RUN)).copy()
+    scatter = Scatter(count, generator)
     for k, run in enumerate(problem.runs):
         for source in _sources(run):
-            parts[:, k] += draw_source(source, count, generator)
+            parts[:, k] += scatter.of(source)
     deviations = generator.standard_normal((count, len(STATED))) * stated.vector
     pieces = range(0, count, _IN_CACHE)
     solved = [
@@ -121,14 +125,25 @@ def draw(problem: Problem, stated: Stated, count: int, seed: tuple[int, int]) ->
     return problem.flat(np.concatenate(solved))
 
 
-def draw_source(source: Source, count: int, generator: Generator) -> FloatArray:
-    """Return draws of a source's scatter, Student's t where its freedom is finite."""
-    root = source.root
-    normal = np.asarray(generator.standard_normal((count, root.shape[1])) @ root.T)
-    nu = source.degrees_of_freedom
-    if np.isfinite(nu) and nu > 0.0:
-        normal *= np.sqrt(nu / generator.chisquare(nu, count))[:, None]
-    return normal
+class Scatter:
+    """Draws of the sources' scatter: runs that share a source get the same ones of it."""
+
+    def __init__(self, count: int, generator: Generator) -> None:
+        self._count, self._generator = count, generator
+        self._deviates: dict[str, FloatArray] = {}
+
+    def of(self, source: Source) -> FloatArray:
+        """Return what a source adds, shape ``(count, 2 n)``: Student's t where that is known."""
+        if source.label not in self._deviates:
+            self._deviates[source.label] = self._drawn(source)
+        return np.asarray(self._deviates[source.label] @ source.root.T)
+
+    def _drawn(self, source: Source) -> FloatArray:
+        normal = self._generator.standard_normal((self._count, source.root.shape[1]))
+        nu = source.degrees_of_freedom
+        if np.isfinite(nu) and nu > 0.0:
+            normal *= np.sqrt(nu / self._generator.chisquare(nu, self._count))[:, None]
+        return normal
 
 
 def _sources(run: Run) -> tuple[Source, ...]:

@@ -3,7 +3,9 @@
 import json
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -11,6 +13,12 @@ from tests.pmm.coefficients.test_recorded_campaign_against_known_rig import pmm
 from tests.sim.devices.benches import ROOT
 
 SPEED = 0.8
+RATE = 0.93  # of intervals that are to hold 95 %; seeds 1 to 8 together: 372 of 398 (93.5 %)
+PUT_IN = {
+    "Y_vdot": -62.0, "Y_rdot": -2.0, "N_vdot": -2.0, "N_rdot": -18.0,
+    "Y_v": -120.0, "Y_r": 15.0, "N_v": -40.0, "N_r": -35.0,
+    "X_0": -8.0 * SPEED**2, "X_vv": -60.0, "X_vr": 45.0,
+}  # fmt: skip
 PLAN = """
 name = "turned"
 rig = "rig.toml"
@@ -97,6 +105,18 @@ def toml_of(value: object) -> str:
     return json.dumps(value)
 
 
+def put_in(row: dict[str, Any]) -> float:
+    """What was simulated; resistance follows U cos(beta), so that drift alone finds it in X_vv."""
+    if row["name"] == "X_vv" and row["frequency_hz"] == 0.0:
+        return PUT_IN["X_vv"] + 8.0
+    return PUT_IN.get(row["name"], 0.0)
+
+
+def holds_resistance(row: dict[str, Any]) -> bool:
+    """Oscillation under drift: what the drift takes off the resistance goes to X_0 and X_rr."""
+    return row["name"] in ("X_0", "X_rr") and row["frequency_hz"] > 0.0
+
+
 @pytest.mark.slow
 def test_drift_tow_and_yaw_with_drift_give_what_was_put_in(tmp_path: Path) -> None:
     place = folder_of(tmp_path)
@@ -105,21 +125,16 @@ def test_drift_tow_and_yaw_with_drift_give_what_was_put_in(tmp_path: Path) -> No
     done = pmm("coefficients", place / "c", "--json")
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    rows = found["coefficients"]["table"]
-    for method, name, put_in in (
-        ("static drift", "Y_v", -120.0),
-        ("static drift", "N_v", -40.0),
-        ("surge", "X_0", -8.0 * SPEED**2),
-        ("surge", "X_vv", -60.0 + 8.0),  # resistance follows U cos(beta)
-        ("higher order, several runs", "Y_v", -120.0),
-        ("higher order, several runs", "N_r", -35.0),
-        ("linear", "Y_vdot", -62.0),
-    ):
-        own = [row for row in rows if (row["name"], row["method"]) == (name, method)]
-        if method == "surge":
-            own = [row for row in own if row["frequency_hz"] == 0.0]
-        assert len(own) == 1, (name, method, own)
-        assert abs(own[0]["value"] - put_in) < 2.0 * own[0]["half_width"] + 1e-3 * abs(put_in), own
+    rows = [row for row in found["coefficients"]["table"] if not holds_resistance(row)]
+    ways = {(row["method"], row["name"]) for row in rows}
+    assert ways >= {("static drift", "Y_v"), ("surge", "X_vr"), ("linear", "N_rdot")}
+    off = {
+        (row["method"], row["name"], row["frequency_hz"]): abs(row["value"] - put_in(row))
+        / row["half_width"]
+        for row in rows
+    }
+    assert max(off.values()) < 2.0, off
+    assert np.mean([ratio <= 1.0 for ratio in off.values()]) >= RATE, off
     checks = [one for one in found["coefficients"]["checks"] if one["kind"] == "static drift"]
     assert {one["name"] for one in checks} >= {"Y_v", "N_v"}
     assert all(one["agrees"] for one in checks), checks
