@@ -13,6 +13,7 @@ _FEW_DIGITS = 0.1
 _DASH = "–"
 _MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution
 _LITTLE = 0.005
+_NOTHING = 0.0005  # 0.0 % as it is written
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Grid:
     numbers
         Columns that are set to the right.
     note
-        Below it.
+        What it says about all rows.
     """
 
     title: str
@@ -100,17 +101,20 @@ def _freedom(value: float) -> str:
 def _shares(one: CoefficientBudget) -> str:
     """Return what each kind of input adds; those that add next to nothing are put together."""
     told = [line for line in one.lines if line.share >= _LITTLE]
-    words = [f"{line.source} {100.0 * line.share:.1f} %" for line in told]
+    words = [f"{line.source} {_percent(line.share)}" for line in told]
     left = sum(line.share for line in one.lines) - sum(line.share for line in told)
-    if len(told) < len(one.lines):
-        words.append(f"others {100.0 * left:.1f} %")
+    if left >= _NOTHING:
+        words.append(f"others {_percent(left)}")
     return ", ".join(words)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.1f}\N{NO-BREAK SPACE}%"
 
 
 def finding_tables(found: CampaignCoefficients) -> Iterator[Grid]:
     """Yield checks, forms, outliers, what is missing and reference tables, where there are any."""
-    if found.checks:
-        yield _checks(found)
+    yield from _checks(found)
     if found.choices:
         choices = [
             (one.load, one.verdict, ", ".join(one.forms), f"{one.evidence_ratio:.3g}", one.message)
@@ -132,15 +136,17 @@ def finding_tables(found: CampaignCoefficients) -> Iterator[Grid]:
         yield _references(found)
 
 
-def _checks(found: CampaignCoefficients) -> Grid:
-    rows = [
-        (c.name, c.kind, f"{c.first_value:.5g}", f"{c.second_value:.5g}",
-         f"{c.difference:+.2g} ± {c.standard_uncertainty:.2g}", c.unit,
-         "agree" if c.agrees else "DIFFER", f"{c.first}; {c.second}")
-        for c in found.checks
-    ]  # fmt: skip
-    heads = ("coefficient", "check", "first", "second", "difference ± u", "unit", "", "of")
-    return Grid("Checks between runs, in SI units", heads, (2, 3, 4), tuple(rows))
+def _checks(found: CampaignCoefficients) -> Iterator[Grid]:
+    """Yield a table for each kind of check."""
+    heads = ("coefficient", "unit", "first", "second", "difference ± u", "", "of")
+    for kind in dict.fromkeys(one.kind for one in found.checks):
+        rows = [
+            (c.name, c.unit, f"{c.first_value:.5g}", f"{c.second_value:.5g}",
+             f"{c.difference:+.2g} ± {c.standard_uncertainty:.2g}",
+             "agree" if c.agrees else "DIFFER", f"{c.first}; {c.second}")
+            for c in found.checks if c.kind == kind
+        ]  # fmt: skip
+        yield Grid(f"Checks in SI units: {kind}", heads, (2, 3, 4), tuple(rows))
 
 
 def _references(found: CampaignCoefficients) -> Grid:
@@ -178,7 +184,7 @@ def run_table(outcome: Outcome) -> Grid:
         )
     heads = ("run", "medium", "f (Hz)", "U (m/s)", "motion", "periods", "record (s)", "rate (Hz)",
              "SHA-256 begins")  # fmt: skip
-    return Grid("Recordings", heads, (2, 3, 4, 5, 6, 7), tuple(rows))
+    return Grid("Recordings", heads, (2, 3, 4, 5, 6, 7, 8), tuple(rows))
 
 
 def given_table(outcome: Outcome) -> Grid:
@@ -209,8 +215,9 @@ def amplitudes(way_m: float, turn_rad: float) -> str:
 
 
 def shortened(runs: Sequence[str]) -> str:
-    """Return the names of runs, of many the first three."""
-    return ", ".join(runs[:3]) + (f" and {len(runs) - 3} more" if len(runs) > 3 else "")
+    """Return the names of runs, of many the first two."""
+    more = len(runs) - 2
+    return ", ".join(runs[:2]) + (f" and {more} more" if more > 0 else "")
 
 
 def _interval(low: float, high: float) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from analysis.coefficients.campaign_records import LINEAR
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of, place_of
-from pmm.report.coefficient_panels import axis_label, finish, grid, points, settle
+from pmm.report.coefficient_panels import axis_label, beside, finish, grid, points, settle
 from pmm.report.style import drawing
 
 if TYPE_CHECKING:
@@ -25,19 +25,24 @@ def amplitude_figure(found: CampaignCoefficients, speed_m_s: float) -> "Figure":
     names = _names(found, speed_m_s)
     with drawing():
         title = f"Over amplitude at {speed_m_s:g} m/s; {found.normalisation}"
-        figure, panels = grid(names, title)
+        figure, panels = grid(names, title, one_axis=False)
         shown = sorted({f for name in names for f, _ in _series(found, name, speed_m_s)})
         for name, panel in zip(names, panels, strict=True):
             used = []
-            for frequency, rows in _series(found, name, speed_m_s):
-                at = [1e3 * _lever(found, k) for k in rows]
+            series = list(_series(found, name, speed_m_s))
+            largest = 1e3 * max(_lever(found, k) for _, rows in series for k in rows)
+            for frequency, rows in series:
                 number = shown.index(frequency)
+                aside = largest * beside(number, len(shown))
+                at = [1e3 * _lever(found, k) + aside for k in rows]
                 points(panel, found, rows, at, f"{frequency:.3g} Hz", number)
                 used += found.values[rows].tolist()
+            panel.set_xlim(0.0, 1.1 * largest)
             panel.set_ylabel(axis_label(found, name))
             settle(panel, used)
-        level = f"intervals of {100.0 * found.level:g} %"
-        finish(figure, panels, f"amplitude: translation (mm), or rotation (mrad); {level}")
+        level = f"series side by side; intervals of {100.0 * found.level:g} %"
+        motions = [("translation (mm)", "rotation (mrad)")[_column(found, name)] for name in names]
+        finish(figure, panels, [f"amplitude of {motion}, {level}" for motion in motions])
     return figure
 
 
@@ -61,5 +66,10 @@ def _series(
 def _lever(found: CampaignCoefficients, row: int) -> float:
     """Return the amplitude of the motion that the coefficient is of: m or rad."""
     entry = found.entries[row]
-    column = place_of(entry.name, found.plane, found.form).column
+    column = _column(found, entry.name)
     return (entry.translation_amplitude_m, entry.rotation_amplitude_rad)[column]
+
+
+def _column(found: CampaignCoefficients, name: str) -> int:
+    """Return the motion that a coefficient is of: 0 translation, 1 rotation."""
+    return place_of(name, found.plane, found.form).column

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from analysis.coefficients.campaign_records import LINEAR
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
-from pmm.report.coefficient_panels import axis_label, finish, grid, points, settle
+from pmm.report.coefficient_panels import axis_label, beside, finish, grid, points, settle
 from pmm.report.style import TRACE, drawing
 
 if TYPE_CHECKING:
@@ -42,10 +42,12 @@ def frequency_figure(
         figure, panels = grid(names, title)
         labels = [label for label, _ in _series(found, names, speed_m_s)]
         numbers = {label: k for k, label in enumerate(dict.fromkeys(labels))}
+        widest = max(_place(found.entries[k].frequency_hz) for k in found.rows(speed_m_s=speed_m_s))
         for name, panel in zip(names, panels, strict=True):
             used = []
             for label, rows in _series(found, [name], speed_m_s):
-                at = [_place(found.entries[k].frequency_hz) for k in rows]
+                aside = widest * beside(numbers[label], len(numbers))
+                at = [_place(found.entries[k].frequency_hz) + aside for k in rows]
                 joined = found.entries[rows[0]].method == LINEAR
                 points(panel, found, rows, at, label, numbers[label], joined=joined)
                 used += found.values[rows].tolist()
@@ -56,7 +58,8 @@ def frequency_figure(
         right = max(panel.get_xlim()[1] for panel in panels)
         for panel in panels:
             panel.set_xlim(left, right + _MARGIN * (right - left))
-        finish(figure, panels, f"frequency (Hz); intervals of {100.0 * found.level:g} %")
+        label = f"frequency (Hz), series side by side; intervals of {100.0 * found.level:g} %"
+        finish(figure, panels, [label] * len(panels))
     return figure
 
 

@@ -18,26 +18,42 @@ if TYPE_CHECKING:
 MARKS: Final = "osD^vP*X"
 _COLUMNS: Final = 2
 _WIDTH, _HEIGHT = 10.5, 2.1
+_ASIDE: Final = 0.01
 
 
-def grid(names: Sequence[str], title: str) -> tuple["Figure", list["Axes"]]:
+def grid(
+    names: Sequence[str], title: str, *, one_axis: bool = True
+) -> tuple["Figure", list["Axes"]]:
     """Return a figure with a panel for each name, in two columns."""
     from matplotlib.figure import Figure
 
     rows = math.ceil(len(names) / _COLUMNS)
     figure = Figure(figsize=(_WIDTH, _HEIGHT * rows + 1.1), layout="constrained")
     figure.suptitle(plain(title))
-    panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=True).ravel().tolist()
+    panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=one_axis).ravel().tolist()
     for panel in panels[len(names) :]:
         panel.set_visible(False)
     return figure, panels[: len(names)]
 
 
-def finish(figure: "Figure", panels: Sequence["Axes"], label: str) -> None:
-    """Label the lowest panel of each column, and put one legend below all of them."""
-    for panel in panels[-_COLUMNS:]:
-        panel.set_xlabel(label)
-        panel.tick_params(labelbottom=True)
+def beside(number: int, count: int) -> float:
+    """Return by what part of the axis a series stands aside, so that none hides another."""
+    return _ASIDE * (number - (count - 1) / 2.0)
+
+
+def finish(figure: "Figure", panels: Sequence["Axes"], labels: Sequence[str]) -> None:
+    """Label the lowest panel of each kind in its column, and put one legend below all of them.
+
+    Parameters
+    ----------
+    labels
+        Of each panel's horizontal axis.
+    """
+    for k, (panel, label) in enumerate(zip(panels, labels, strict=True)):
+        lowest = label not in labels[k + _COLUMNS :: _COLUMNS]
+        panel.tick_params(labelbottom=lowest)
+        if lowest:
+            panel.set_xlabel(label)
     handles: dict[str, Artist] = {}
     for panel in panels:
         for handle, text in zip(*panel.get_legend_handles_labels(), strict=True):
