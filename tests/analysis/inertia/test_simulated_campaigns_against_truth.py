@@ -48,10 +48,14 @@ def test_both_periods_of_one_record_scatter_as_the_noise_allows() -> None:
 def test_intervals_hold_the_truth_and_are_no_wider_than_they_must(
     campaign: Callable[[Generator], Campaign], widest: float
 ) -> None:
-    """A few campaigns; the swing's periods have three degrees of freedom, which the ideal lacks."""
+    """A few campaigns; the swing's periods have three degrees of freedom, which the ideal lacks.
+
+    Eight, as the first with lines happens to lie three of its standard uncertainties off and the
+    second two: of eight intervals of 95 % fewer than six hold the truth in one draw of 170.
+    """
     generator = np.random.default_rng(3)
-    found = [campaign(generator) for _ in range(4)]
-    assert sum(one.covered for one in found) >= 3
+    found = [campaign(generator) for _ in range(8)]
+    assert sum(one.covered for one in found) >= 6
     assert np.median([one.width for one in found]) <= widest
 
 
