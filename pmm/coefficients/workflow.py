@@ -189,28 +189,36 @@ def _read(
         hashed=hashed,
     )
     body, model = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
-    tasks = (*work.runs, *(work.dry if body is None else ()))
-    zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
-    by_name = {one.name: one.zero for one in zeros if isinstance(one, Done) and one.zero}
-    found = _all(
-        read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
-    )
+    found = _recordings(work, executor, progress, with_dry=body is None)
     wet, dry = _sorted(found, {task.name for task in work.dry})
-    restoring = restoring_of(campaign, settings)
     if body is None:
         wet = [without_dry(one, dry) if one.frequency_hz > 0.0 else one for one in wet]
+    restoring = restoring_of(campaign, settings)
     cycles = [one.without(body, restoring).about(settings.point_ahead_m) for one in wet]
-    done = [one for one in (*zeros, *found) if isinstance(one, Done)]
+    done = [one for one in found if isinstance(one, Done)]
     gauges = [one.calibration for one in done if one.calibration is not None]
     return _Read(
         campaign,
         tuple(cycles),
         tuple(done),
-        tuple(one for one in (*zeros, *found) if isinstance(one, Failed)),
+        tuple(one for one in found if isinstance(one, Failed)),
         work,
         stated_of(campaign, settings, model, gauges, motion_asked=_asked(cycles)),
         body,
     )
+
+
+def _recordings(
+    work: Work, executor: Executor, progress: Progress, *, with_dry: bool
+) -> list[Done | Failed]:
+    """Read the zero runs, and then all that they are taken off."""
+    zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
+    by_name = {one.name: one.zero for one in zeros if isinstance(one, Done) and one.zero}
+    tasks = (*work.runs, *(work.dry if with_dry else ()))
+    found = _all(
+        read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
+    )
+    return [*zeros, *found]
 
 
 def _asked(cycles: Sequence[Cycle]) -> bool:

@@ -46,30 +46,33 @@ def value_tables(found: CampaignCoefficients) -> Iterator[Grid]:
         if drawn:
             heads.insert(6, f"Monte Carlo, {found.trials.count}")
             numbers = (*numbers, 6)
-        cells = []
-        for k in rows:
-            entry = found.entries[k]
-            small = " !" if entry.retained < _FEW_DIGITS else ""
-            row = [
-                entry.name,
-                entry.unit,
-                frequency(entry.frequency_hz),
-                f"{entry.speed_m_s:g}",
-                amplitudes(entry.translation_amplitude_m, entry.rotation_amplitude_rad),
-                rounded(float(found.values[k]), float(half[k])) + small,
-                shortened(entry.runs),
-            ]
-            if drawn:
-                row.insert(6, _interval(float(found.trials.low[k]), float(found.trials.high[k])))
-            cells.append(tuple(row))
         yield Grid(
             f"{method}: {found.normalisation}",
             tuple(heads),
             numbers,
-            tuple(cells),
+            tuple(_value_row(found, k, float(half[k]), drawn=drawn) for k in rows),
             f"Intervals hold the value with {100.0 * found.level:g} %. "
             "An exclamation mark: a small difference of large loads, see the budget.",
         )
+
+
+def _value_row(
+    found: CampaignCoefficients, k: int, half_width: float, *, drawn: bool
+) -> tuple[str, ...]:
+    entry = found.entries[k]
+    small = " !" if entry.retained < _FEW_DIGITS else ""
+    row = [
+        entry.name,
+        entry.unit,
+        frequency(entry.frequency_hz),
+        f"{entry.speed_m_s:g}",
+        amplitudes(entry.translation_amplitude_m, entry.rotation_amplitude_rad),
+        rounded(float(found.values[k]), half_width) + small,
+        shortened(entry.runs),
+    ]
+    if drawn:
+        row.insert(6, _interval(float(found.trials.low[k]), float(found.trials.high[k])))
+    return tuple(row)
 
 
 def budget_table(found: CampaignCoefficients) -> Grid:
