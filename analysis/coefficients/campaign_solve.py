@@ -107,7 +107,8 @@ def _contributions(cycles: Sequence[Cycle], request: Request) -> tuple[Contribut
             found.append(Contribution(source.label, source.degrees_of_freedom, rows, parts))
     for k, (name, spread) in enumerate(zip(STATED, request.stated.vector, strict=True)):
         if spread > 0.0:
-            found.append(Contribution(name, np.inf, rows, by_stated[:, k, None] * spread))
+            column = by_stated[:, k, None] * spread
+            found.append(Contribution(name, request.stated.freedom(name), rows, column))
     return added(found)
 
 

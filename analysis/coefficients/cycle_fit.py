@@ -189,7 +189,7 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
             column = by_stated[:, k, None] * spread
-            found.append(Contribution(name, np.inf, everywhere, column))
+            found.append(Contribution(name, stated.freedom(name), everywhere, column))
     return added(found)
 
 

@@ -6,7 +6,6 @@ from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
 from analysis.coefficients.phasors import FloatArray
-from analysis.coefficients.stated import STATED
 from analysis.coefficients.uncertainty import Scatter
 
 TRIALS_AT_ONCE = 500  # whole cycles are wide
@@ -40,6 +39,6 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
         to, places = problem.measured(cycle)
         for source in cycle.phasors.sources:
             parts[:, k, to] += scatter.of(source)[:, places]
-    deviations = generator.standard_normal((count, len(STATED))) * fit.stated.vector
+    deviations = fit.stated.drawn(count, generator)
     pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
     return np.concatenate([problem.solve(parts[some], deviations[some]) for some in pieces])

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.random import Generator
 
 from analysis.coefficients.phasors import FloatArray
 
@@ -40,6 +41,8 @@ class Stated:
     density_relative
         Of the water; acts on the restoring, and again where a system without dimensions divides
         by it.
+    inertia_degrees_of_freedom
+        Of the repeats behind ``inertia_kg_m2``; 0 where it does not rest on any.
     """
 
     mass_kg: float = 0.0
@@ -63,11 +66,25 @@ class Stated:
     midpoint_x_m: float = 0.0
     alignment_rad: float = 0.0
     density_relative: float = 0.0
+    inertia_degrees_of_freedom: float = 0.0
 
     @property
     def vector(self) -> FloatArray:
-        """All of them, in the order of :data:`STATED`."""
+        """All standard uncertainties, in the order of :data:`STATED`."""
         return np.array([getattr(self, name) for name in STATED])
 
+    def freedom(self, name: str) -> float:
+        """Return the degrees of freedom of a standard uncertainty; infinite but for repeats."""
+        of_inertia = self.inertia_degrees_of_freedom if name == "inertia_kg_m2" else 0.0
+        return of_inertia if of_inertia > 0.0 else np.inf
 
-STATED = tuple(one.name for one in fields(Stated))
+    def drawn(self, count: int, generator: Generator) -> FloatArray:
+        """Draw deviations, shape ``(count, len(STATED))``: Student's t where repeats are behind."""
+        found = generator.standard_normal((count, len(STATED))) * self.vector
+        for k, name in enumerate(STATED):
+            if np.isfinite(nu := self.freedom(name)):
+                found[:, k] *= np.sqrt(nu / generator.chisquare(nu, count))
+        return found
+
+
+STATED = tuple(one.name for one in fields(Stated) if one.name != "inertia_degrees_of_freedom")

@@ -60,7 +60,8 @@ def linear_shares(problem: Problem, stated: Stated) -> tuple[FloatArray, tuple[S
             parts.append(Contribution(source.label, source.degrees_of_freedom, rows, own))
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
-            parts.append(Contribution(name, np.inf, rows, by_stated[:, k, None] * spread))
+            column = by_stated[:, k, None] * spread
+            parts.append(Contribution(name, stated.freedom(name), rows, column))
     covariance = np.zeros((len(rows), len(rows)))
     shares = []
     for one in added(parts):
@@ -117,7 +118,7 @@ def draw(problem: Problem, stated: Stated, count: int, seed: tuple[int, int]) ->
     for k, run in enumerate(problem.runs):
         for source in _sources(run):
             parts[:, k] += scatter.of(source)
-    deviations = generator.standard_normal((count, len(STATED))) * stated.vector
+    deviations = stated.drawn(count, generator)
     pieces = range(0, count, _IN_CACHE)
     solved = [
         problem.solve(parts[k : k + _IN_CACHE], deviations[k : k + _IN_CACHE]) for k in pieces

@@ -9,7 +9,7 @@ import numpy as np
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.measured import FORCES
 from analysis.coefficients.phasors import FloatArray
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import STATED, Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
@@ -142,17 +142,31 @@ def stated_of(
         matter how well eccentricity and phase were set.
     """
     by_files = Stated(
-        **({} if model is None else {name: getattr(model, name) for name in _BODY}),
+        **({} if model is None else _of_model(model)),
         **(_of_set_points(campaign.runs) if motion_asked else {}),
     )
     by_files = largest([by_files, *(_of_gauges(one) for one in calibrations)])
-    own, other = settings.uncertainty.vector, by_files.vector
-    return Stated(*np.where(own == 0.0, other, own).tolist())
+    own, other = settings.uncertainty, by_files
+    freedom = (other if own.inertia_kg_m2 == 0.0 else own).inertia_degrees_of_freedom
+    return _stated(np.where(own.vector == 0.0, other.vector, own.vector), freedom)
 
 
 def largest(every: Sequence[Stated]) -> Stated:
     """Return the largest of each standard uncertainty."""
-    return Stated(*np.max([one.vector for one in every], axis=0).tolist())
+    inertia = max(every, key=lambda one: one.inertia_kg_m2)
+    vector = np.max([one.vector for one in every], axis=0)
+    return _stated(vector, inertia.inertia_degrees_of_freedom)
+
+
+def _stated(vector: FloatArray, freedom: float) -> Stated:
+    found = dict(zip(STATED, vector.tolist(), strict=True))
+    return Stated(**found, inertia_degrees_of_freedom=freedom)
+
+
+def _of_model(model: ModelUncertainty) -> dict[str, float]:
+    freedom = model.inertia_degrees_of_freedom
+    found = {name: getattr(model, name) for name in _BODY}
+    return found | {"inertia_degrees_of_freedom": freedom if np.isfinite(freedom) else 0.0}
 
 
 def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:

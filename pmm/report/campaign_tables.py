@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.stated import STATED
 from pmm.coefficients.workflow import Outcome
 from pmm.report.rounding import rounded
 
@@ -195,8 +196,8 @@ def given_table(outcome: Outcome) -> Grid:
     rows = []
     if outcome.body is not None:
         rows += [(f"model: {key}", f"{value:.6g}") for key, value in asdict(outcome.body).items()]
-    stated = {key: value for key, value in asdict(outcome.stated).items() if value > 0.0}
-    rows += [(f"u of {key}", f"{value:.3g}") for key, value in stated.items()]
+    stated = zip(STATED, outcome.stated.vector, strict=True)
+    rows += [(f"u of {key}", f"{value:.3g}") for key, value in stated if value > 0.0]
     if not rows:
         rows = [("inertia", "taken off by dry runs")]
     return Grid("Given", ("what", "value"), (1,), tuple(rows))

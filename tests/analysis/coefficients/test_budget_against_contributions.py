@@ -1,7 +1,5 @@
 """The budget of a coefficient against its contributions, and correlations against closed forms."""
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 
@@ -9,6 +7,7 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget, correlation
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
+from analysis.coefficients.stated import STATED as NAMES
 from analysis.coefficients.stated import Stated
 from benchmarks.coefficients_campaigns import (
     RESTORING,
@@ -50,6 +49,23 @@ def test_lines_add_up_to_gtcs_uncertainty(name: str) -> None:
     assert "harmonic scatter" in {line.source for line in own.lines}
 
 
+def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
+    """Of the inertia alone: u is its own, and Student's t of four degrees of freedom around it."""
+    stated = Stated(inertia_kg_m2=0.2, inertia_degrees_of_freedom=4.0)
+    cycles = [made_up(p, MADE, name) for name, p in
+              zip(("heave", "pitch"), pure_pair(0.8, 0.02, 0.0), strict=True)]  # fmt: skip
+    request = Request(Form.SEAKEEPING, stated, trials=40_000, seed=2, nonlinear=False)
+    found = campaign_coefficients(cycles, request)
+    row = found.row("a55")
+    assert found.uncertain.standard_uncertainty[row] == pytest.approx(0.2, rel=1e-6)
+    assert found.uncertain.degrees_of_freedom[row] == pytest.approx(4.0)
+    assert found.half_widths[row] == pytest.approx(2.776445 * 0.2, rel=1e-6)
+    width = (found.trials.high[row] - found.trials.low[row]) / 2.0
+    assert width == pytest.approx(found.half_widths[row], rel=0.03)
+    (line,) = (one for one in budget(found, row).lines if one.source == "moment of inertia")
+    assert line.degrees_of_freedom == 4.0
+
+
 def test_the_mass_acts_in_full_on_the_added_mass() -> None:
     lines = {line.source: line for line in budget(campaign(0.8), campaign(0.8).row("a33")).lines}
     assert lines["mass"].contribution == pytest.approx(0.1, rel=1e-6)
@@ -77,5 +93,5 @@ def test_low_frequency_says_how_many_digits_are_lost() -> None:
 def test_every_stated_input_has_words_of_its_own() -> None:
     from analysis.coefficients.campaign_budget import _WORDS
 
-    assert set(_WORDS) == {one.name for one in fields(Stated)}
+    assert set(_WORDS) == set(NAMES)
     assert len(set(_WORDS.values())) == len(_WORDS)

@@ -93,6 +93,22 @@ def test_with_a_file_of_pmm_inertia(campaign: Path, tmp_path: Path) -> None:
     assert heavier["Z_wdot"] - own["Z_wdot"] == pytest.approx(1.0, abs=1e-9)
 
 
+def test_repeats_behind_the_inertia_count(campaign: Path, tmp_path: Path) -> None:
+    body = vertical_rig().body
+    path = tmp_path / "model.toml"
+    path.write_text(
+        f"[model]\nmass_kg = {body.mass_kg}\ninertia_kg_m2 = {body.inertia_kg_m2}\n"
+        f"cg_x_m = {body.cg_x_m}\ncg_z_m = {body.cg_z_m}\n"
+        "[model_uncertainty]\ninertia_kg_m2 = 0.5\ninertia_degrees_of_freedom = 4.0\n"
+    )
+    found = done(campaign, "--inertia", path)
+    rows = [row for row in linear(found) if row["name"] == "M_qdot"]
+    for row in rows:
+        assert row["half_width"] == pytest.approx(2.776445 * 0.5, rel=0.01)
+    assert len(rows) == 2
+    assert found["stated"]["inertia_degrees_of_freedom"] == 4.0
+
+
 def test_several_processes_and_trials_give_the_same_numbers(campaign: Path) -> None:
     options = ("--uncertainty", "monte-carlo", "--trials", 6000, "--seed", 4)
     one = done(campaign, *options, "--jobs", 1)
