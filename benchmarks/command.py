@@ -31,6 +31,7 @@ NAMES = (
     "coefficients",
     "campaign",
     "sealed",
+    "gap",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 
