@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from analysis.coefficients.restoring import Restoring
 from pmm.calibration import Calibration
 from pmm.cli.screen import error_line, messages, output
 from pmm.run.chart import Chart
 from pmm.run.evaluation import Evaluation
 from pmm.run.in_water import InWater
-from pmm.run.restoring import Restoring
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analysis.coefficients.restoring import Restoring, Track
+from analysis.coefficients.tows import DriftSlope, Tow
 from pmm.plan.kinds import RunKind
 from pmm.report.rounding import rounded
 from pmm.report.style import FIT, PALETTE
-from pmm.run.restoring import Restoring, Track
-from pmm.run.tows import DriftSlope, Tow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,11 @@ whole campaigns. Zeros are taken off and a calibration is applied as it does.
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
+from analysis.coefficients.tows import DriftSlope, Tow, drift_slopes, tow_of
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign import Campaign
@@ -16,8 +20,6 @@ from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.tasks import Failed, Task, work_of
 from pmm.plan.kinds import RunKind
-from pmm.run.restoring import Restoring, Track, restoring_of, track_of
-from pmm.run.tows import DriftSlope, Tow, drift_slopes, tow_of
 
 _HARMONICS = 3
 
@@ -105,7 +107,10 @@ class _Found:
         if task.kind is not RunKind.RESTORING:
             self.tows.append(tow_of(task.kind, cycle))
             return
-        one = restoring_of(cycle, self._campaign)
+        hull = self._campaign.hull
+        one = restoring_of(
+            cycle, self._campaign.model, np.array(hull.added_mass), np.array(hull.restoring)
+        )
         self.restoring.append(one)
         self.tracks.append(track_of(one, cycle))
 

@@ -12,7 +12,6 @@ from analysis.coefficients.phasors import FloatArray
 from analysis.motion import incidence
 from analysis.uncertainty import student_factor
 from hardware.description.oscillator import Plane
-from pmm.plan.kinds import RunKind
 
 _LEVEL = 0.95
 _CUBIC_FROM = 5  # angles: a cubic term leaves a line three to be judged by
@@ -27,7 +26,7 @@ class Tow:
     Attributes
     ----------
     kind
-        Static drift or straight tow.
+        Static drift or straight tow, as the plan names it.
     speed_m_s, drift_rad, across_m_s
         Of the carriage; the angle; the velocity that it makes across the model, ``v = -U sin b``
         for drift and ``w = U sin b`` for trim.
@@ -42,7 +41,7 @@ class Tow:
     """
 
     run: str
-    kind: RunKind
+    kind: str
     plane: Plane
     speed_m_s: float
     drift_rad: float
@@ -96,7 +95,7 @@ class DriftSlope:
     scatter: float
 
 
-def tow_of(kind: RunKind, cycle: Cycle) -> Tow:
+def tow_of(kind: str, cycle: Cycle) -> Tow:
     """Return the loads of a tow whose zeros are taken off."""
     rows = ["force", "moment", *([SURGE_FORCE] if cycle.has_surge else [])]
     means = cycle.phasors.select([at_order(name, 0) for name in rows])

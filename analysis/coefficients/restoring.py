@@ -12,7 +12,6 @@ from analysis.uncertainty import student_factor
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
-from pmm.campaign import Campaign
 
 _LEVEL = 0.95
 _PURE = 0.02  # of the larger motion, at the struts: as much of the other one may be in it
@@ -91,8 +90,18 @@ _ROTATIONS = ("pitch", "yaw")
 _NAMES = {Plane.VERTICAL: ("heave", "pitch"), Plane.HORIZONTAL: ("sway", "yaw")}
 
 
-def restoring_of(cycle: Cycle, campaign: Campaign) -> Restoring:
+def restoring_of(
+    cycle: Cycle, body: Body | None, added_mass: FloatArray, hydrostatic: FloatArray
+) -> Restoring:
     """Return the stiffness that a slow turn shows.
+
+    Parameters
+    ----------
+    body
+        The model, with its weight; ``None`` where nobody said.
+    added_mass, hydrostatic
+        What is believed of the water, about the midpoint, shape ``(2, 2)``; zero hydrostatics are
+        none given.
 
     Raises
     ------
@@ -104,9 +113,8 @@ def restoring_of(cycle: Cycle, campaign: Campaign) -> Restoring:
     first = _of_order(cycle, 1).referred_to(motion)
     values, widths = _stiffness(first, motion)
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
-    body = campaign.model
-    inertia = -square * (_mass(body, cycle.plane) + np.array(campaign.hull.added_mass))[:, column]
-    expected = _hydrostatic(campaign, cycle.plane)
+    inertia = -square * (_mass(body, cycle.plane) + added_mass)[:, column]
+    expected = _expected(body, hydrostatic, cycle.plane)
     load = ("force", "moment")[column]
     ratio = first[load]
     return Restoring(
@@ -180,9 +188,8 @@ def _mass(body: Body | None, plane: Plane) -> FloatArray:
     return np.zeros((2, 2)) if body is None else mass_matrix(body, plane)
 
 
-def _hydrostatic(campaign: Campaign, plane: Plane) -> FloatArray | None:
+def _expected(body: Body | None, hydrostatic: FloatArray, plane: Plane) -> FloatArray | None:
     """Return what the struts feel of hydrostatics and weight; ``None`` where nothing is given."""
-    believed = np.array(campaign.hull.restoring, dtype=np.float64)
-    if not believed.any():
+    if not hydrostatic.any():
         return None
-    return believed if campaign.model is None else believed + weight_matrix(campaign.model, plane)
+    return hydrostatic if body is None else hydrostatic + weight_matrix(body, plane)
