@@ -87,15 +87,7 @@ class Hull:
     drift_rad: float = 0.0
 
     name: ClassVar[str] = "hull"
-    reads: ClassVar[tuple[Signal, ...]] = (
-        signals.DISPLACEMENT_AFT,
-        signals.DISPLACEMENT_FORE,
-        signals.VELOCITY_AFT,
-        signals.VELOCITY_FORE,
-        signals.ACCELERATION_AFT,
-        signals.ACCELERATION_FORE,
-        signals.CARRIAGE_SPEED,
-    )
+    reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
     writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
 
     def __post_init__(self) -> None:

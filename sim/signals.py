@@ -61,6 +61,17 @@ DISPLACEMENT_FORE = of_channel(channels.DISPLACEMENT_FORE)
 VELOCITY_FORE = Signal("velocity_fore", "m/s")
 ACCELERATION_FORE = Signal("acceleration_fore", "m/s2")
 
+# How struts and carriage move the model: its own and the water's forces follow from nothing else.
+MODEL_MOTION = (
+    DISPLACEMENT_AFT,
+    DISPLACEMENT_FORE,
+    VELOCITY_AFT,
+    VELOCITY_FORE,
+    ACCELERATION_AFT,
+    ACCELERATION_FORE,
+    CARRIAGE_SPEED,
+)
+
 # Displacement of each strut per shaft angle: the lever at which its force loads the shaft.
 LEVER_AFT = Signal("lever_aft", "m/rad")
 LEVER_FORE = Signal("lever_fore", "m/rad")

@@ -73,15 +73,7 @@ class Surge:
     flow_factor: float = 1.0
 
     name: ClassVar[str] = "surge"
-    reads: ClassVar[tuple[Signal, ...]] = (
-        signals.DISPLACEMENT_AFT,
-        signals.DISPLACEMENT_FORE,
-        signals.VELOCITY_AFT,
-        signals.VELOCITY_FORE,
-        signals.ACCELERATION_AFT,
-        signals.ACCELERATION_FORE,
-        signals.CARRIAGE_SPEED,
-    )
+    reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
     writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_X,)
 
     def start(self, sample_rate_hz: float, seed: int) -> None:
