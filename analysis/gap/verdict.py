@@ -40,10 +40,6 @@ class Probabilities:
         """The most probable answer."""
         return max(self.by_answer, key=lambda name: self.by_answer[name])
 
-    def of_class(self, names: Sequence[str]) -> float:
-        """Return the probability of any of some single effects."""
-        return sum(self.by_answer.get(name, 0.0) for name in names)
-
 
 def probabilities(weighed: Weighed) -> Probabilities:
     """Turn evidence and prior odds into probabilities.

@@ -100,10 +100,6 @@ class DampedFit:
         """Standard uncertainty of a period from this fit alone: never a budget's only line."""
         return float(np.sqrt(self.covariance[4 * mode, 4 * mode]))
 
-    def decay_uncertainty_1_s(self, mode: int = 0) -> float:
-        """Standard uncertainty of a decay rate from this fit alone."""
-        return float(np.sqrt(self.covariance[4 * mode + 1, 4 * mode + 1]))
-
     def correlation(self) -> FloatArray:
         """Return the parameters' correlation matrix, shape ``(P, P)``; 0 where a variance is 0."""
         spread = np.sqrt(np.diag(self.covariance))

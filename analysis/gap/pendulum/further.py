@@ -30,11 +30,6 @@ class Proposal:
     longer: float
     separation: float
 
-    @property
-    def expected_log_ratio(self) -> float:
-        """Expected log of the ratio of evidence, rather less than more."""
-        return 0.5 * self.separation**2
-
 
 def propose(
     problem: Problem,
