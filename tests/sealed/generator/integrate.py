@@ -12,6 +12,7 @@ from tests.sealed.generator.places import H, W, Y
 from tests.sealed.generator.rubbing import creep, rub
 
 STATES, HELD, WORK = max(Y) + 1, max(H) + 1, max(W) + 1
+RUNAWAY = 1e9
 
 
 @compiled
@@ -107,6 +108,15 @@ def keep(
 
 
 @compiled
+def escaped(y: FloatArray) -> bool:
+    """Tell whether a state is beyond what any rig could do: an effect at that size has no motion.
+
+    SI units throughout: a shaft turns at some 10 rad/s, a model moves by less than 1 m.
+    """
+    return not np.abs(y).sum() < RUNAWAY  # nor is what is no number
+
+
+@compiled
 def integrate(
     p: FloatArray, kernels: FloatArray, interval: float, substeps: int, before: int, samples: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -121,7 +131,8 @@ def integrate(
     -------
     tuple of FloatArray
         Samples, shape ``(6, before + samples)``: shaft angle, displacements aft and
-        fore, forces aft and fore, carriage speed; and the times of the photocell's mark from 0 on.
+        fore, forces aft and fore, carriage speed, not a number from where the motion runs away; and
+        the times of the photocell's mark from 0 on.
     """
     dt = interval / substeps
     work, held, k = np.zeros(WORK), np.zeros(HELD), np.empty((5, STATES))
@@ -130,6 +141,9 @@ def integrate(
     past, memory = np.zeros((2, before + samples)), np.zeros((2, 2))
     out, edges, count = np.empty((before + samples, 6)), np.empty(samples), 0
     for n in range(before + samples):
+        if escaped(y):
+            out[n:] = np.nan
+            break
         t = (n - before) * interval
         if len(kernels[0]) > 1:
             remember(p, t, n, y, kernels, past, interval, memory)
