@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final, TypeAlias
 
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from pmm.gap.scoring.files import checked, read_json
@@ -13,6 +13,7 @@ from pmm.gap.scoring.keys import Truth, forces
 
 NONE, COEFFICIENTS, UNKNOWN, FAILED = "none", "coefficients", "unknown", "failed"
 VERDICTS = (NONE, COEFFICIENTS, UNKNOWN)
+CONTROLS: Final = ("after_rival", "after_polynomial")
 _ALIKE = 1e-6  # that a sum of probabilities may differ from 1 by
 
 
@@ -25,6 +26,10 @@ class Predicted:
     quadrature: tuple[float, ...]
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+
+Forecast: TypeAlias = Mapping[str, Mapping[str, Predicted]]
+"""Withheld runs, and the channels of each, by name."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,9 @@ class Answer:
 
     Attributes
     ----------
+    after_rival, after_polynomial
+        As ``after``, with the second best answer and with a free polynomial in place of the best:
+        controls, which need not be given.
     failed
         Why there is none, where whoever was asked failed or took too long; else empty.
     seconds
@@ -66,8 +74,10 @@ class Answer:
     stages: Mapping[str, float]
     classes: tuple[tuple[str, ...], ...] = ()
     effects: tuple[Named, ...] = ()
-    before: Mapping[str, Mapping[str, Predicted]] = field(default_factory=dict)
-    after: Mapping[str, Mapping[str, Predicted]] = field(default_factory=dict)
+    before: Forecast = field(default_factory=dict)
+    after: Forecast = field(default_factory=dict)
+    after_rival: Forecast = field(default_factory=dict)
+    after_polynomial: Forecast = field(default_factory=dict)
     shrinkage: Interval = field(default_factory=lambda: Interval(0.0, 0.0, 0.0))
     next_run: Mapping[str, Any] | None = None
     failed: str = ""
@@ -126,9 +136,16 @@ def _faults_of_given(answer: Answer, known: frozenset[str], truth: Truth) -> Ite
     for name in answer.probabilities:
         if name.split("+") != sorted(set(name.split("+"))):
             yield f"probabilities.{name}: a pair is two names in alphabetical order"
+    yield from _faults_of_forecasts(answer, truth)
+
+
+def _faults_of_forecasts(answer: Answer, truth: Truth) -> Iterator[str]:
     if bool(answer.before) != bool(answer.after):
         yield "before and after go together: give both, or leave both empty"
-    for what in ("before", "after"):
+    for what in CONTROLS:
+        if getattr(answer, what) and not answer.after:
+            yield f"{what} stands beside after, which is missing"
+    for what in ("before", "after", *CONTROLS):
         yield from _missing(what, getattr(answer, what), truth)
 
 
@@ -151,9 +168,7 @@ def _nearest(name: str, known: frozenset[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def _missing(
-    what: str, foretold: Mapping[str, Mapping[str, Predicted]], truth: Truth
-) -> Iterator[str]:
+def _missing(what: str, foretold: Forecast, truth: Truth) -> Iterator[str]:
     if not foretold:
         return
     for run, there in truth.held_out.items():

@@ -15,6 +15,7 @@ from pmm.gap.scoring.shrinkage import Shrunk
 
 CLEAR: Final = 10.0  # sigma left of each member of a pair, its rivals taken out
 TIE: Final = 0.01  # log-odds within which two runs are worth the same
+TIE_SHARE: Final = 0.01  # of a gap, within which two answers shrink it alike
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,29 @@ def _gap(part: Callable[[Shrunk], float]) -> Values:
     return lambda entry: (part(entry.shrunk),) if entry.shrunk and entry.in_catalogue else ()
 
 
+def _control(part: Callable[[Shrunk], float | None]) -> Values:
+    """Return the shrinkage that a control reaches, where it is foretold."""
+
+    def reached(entry: Entry) -> Iterable[float]:
+        there = entry.shrunk
+        left = None if there is None else part(there)
+        if there is not None and left is not None and entry.in_catalogue:
+            yield there.share_of(left)
+
+    return reached
+
+
+def _ahead(part: Callable[[Shrunk], float | None]) -> Values:
+    """Return whether more of the gap goes away than with a control; a tie is half."""
+
+    def ahead(entry: Entry) -> Iterable[float]:
+        for other in _control(part)(entry):
+            more = entry.shrunk.share - other if entry.shrunk else 0.0
+            yield 0.5 if abs(more) < TIE_SHARE else float(more > 0.0)
+
+    return ahead
+
+
 def _won(twins: bool) -> Values:
     def won(entry: Entry) -> Iterable[float]:
         if entry.gains is not None and (entry.truth.kind == "twin") is twins:
@@ -180,6 +204,12 @@ COLUMNS: Final = (
     Column("gap_before", "gap before (u)", _gap(lambda s: s.before), median),
     Column("gap_after", "gap after (u)", _gap(lambda s: s.after), median, falls=True),
     Column("shrinkage", "true shrinkage", _gap(lambda s: s.share), median),
+    Column("shrinkage_rival", "true shrinkage, second best", _control(lambda s: s.rival), median),
+    Column("shrinkage_polynomial", "true shrinkage, free polynomial",
+           _control(lambda s: s.polynomial), median),
+    Column("ahead_of_rival", "shrinks more than the second best", _ahead(lambda s: s.rival)),
+    Column("ahead_of_polynomial", "shrinks more than a free polynomial",
+           _ahead(lambda s: s.polynomial)),
     Column("brier", "Brier", lambda e: (brier(e.answer, e.truth),), mean, falls=True),
     Column("magnitudes", "magnitudes covered", _magnitudes),
     Column("shrinkage_covered", "shrinkage covered", _covered),

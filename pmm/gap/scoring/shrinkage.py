@@ -6,12 +6,12 @@ it.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Final
 
-from pmm.gap.scoring.answers import Answer, Predicted
+from pmm.gap.scoring.answers import Answer, Forecast, Predicted
 from pmm.gap.scoring.keys import TrueChannel, Truth, forces
 
 SEEN: Final = 1.0  # sigma: below it there is nothing that could shrink
@@ -19,18 +19,30 @@ SEEN: Final = 1.0  # sigma: below it there is nothing that could shrink
 
 @dataclass(frozen=True)
 class Shrunk:
-    """Gaps before and after, in sigma, with coefficients fitted in both."""
+    """Gaps before and after, in sigma, with coefficients fitted in both.
+
+    Attributes
+    ----------
+    rival, polynomial
+        After the second best answer and after a free polynomial; ``None`` where not foretold.
+    """
 
     before: float
     after: float
+    rival: float | None = None
+    polynomial: float | None = None
 
     @property
     def share(self) -> float:
         """Part of the gap that goes away; negative where it grows."""
-        return 1.0 - self.after / self.before
+        return self.share_of(self.after)
+
+    def share_of(self, after: float) -> float:
+        """Part of the gap that goes away where this much is left."""
+        return 1.0 - after / self.before
 
 
-def gap(foretold: Mapping[str, Mapping[str, Predicted]], truth: Truth) -> float:
+def gap(foretold: Forecast, truth: Truth) -> float:
     """Return the gap of a prediction of all withheld runs, in sigma."""
     squares = [
         part**2
@@ -67,4 +79,8 @@ def shrunk(answer: Answer, truth: Truth, before: float) -> Shrunk | None:
         return None
     if answer.failed:
         return Shrunk(before, before)
-    return Shrunk(before, gap(answer.after, truth))
+    rival, polynomial = (
+        gap(there, truth) if there else None
+        for there in (answer.after_rival, answer.after_polynomial)
+    )
+    return Shrunk(before, gap(answer.after, truth), rival, polynomial)

@@ -10,6 +10,7 @@ from typing import Any
 PAGE = Path(__file__).parents[4] / "docs" / "sealed-scoring.md"
 Row = dict[str, str]
 ORDERS = 6
+SEED = "7"
 
 
 def page_table(first: str, second: str) -> list[Row]:
@@ -39,6 +40,11 @@ def _channel(off: float) -> dict[str, Any]:
             "quadrature": [-0.5 * off] * ORDERS}  # fmt: skip
 
 
+def _forecast(off: str, sign: float = 1.0) -> dict[str, Any]:
+    """Return a forecast of the withheld run; none without a number."""
+    return {"withheld-1": {"force_aft": _channel(sign * float(off))}} if off else {}
+
+
 def _effects(row: Row) -> Iterator[dict[str, Any]]:
     known = {"coulomb-friction": {"force_n": 2.0}, "cable": {"stiffness_n_m": 10.0}}
     for name in (_list(row["right"]) or [""])[0].split("+"):
@@ -58,6 +64,7 @@ def truth(row: Row) -> dict[str, Any]:
     return {
         "schema": "sealed-truth-1",
         "case": row["case"],
+        "seed": SEED,
         "kind": row["kind"],
         "null": row["kind"] == "none",
         "verdict": row["verdict"],
@@ -96,8 +103,10 @@ def answer(row: Row) -> dict[str, Any]:
         "stages": {row["stage"]: 1.0} if row["stage"] else {},
         "classes": [row["own class"].split()] if row["own class"] else [],
         "effects": _named(row["case"]),
-        "before": {"withheld-1": {"force_aft": _channel(float(row["off before"]))}},
-        "after": {"withheld-1": {"force_aft": _channel(-float(row["off after"]))}},
+        "before": _forecast(row["off before"]),
+        "after": _forecast(row["off after"], -1.0),
+        "after_rival": _forecast(row["off second"], -1.0),
+        "after_polynomial": _forecast(row["off polynomial"]),
         "shrinkage": {"value": low, "low": low, "high": high},
         "next_run": proposed if row["log-odds"] and row["case"] != "case-0012" else None,
         "seconds": 2.0,
@@ -117,7 +126,7 @@ def write(folder: Path) -> Path:
     names = ", ".join(f'"{row["case"]}"' for row in rows)
     folder.mkdir()
     (folder / "board.toml").write_text(
-        f'schema = "sealed-board-1"\nseed = "7"\ncases = [{names}]\n'
+        f'schema = "sealed-board-1"\nseed = "{SEED}"\ncases = [{names}]\n'
     )
     (folder / "answers").mkdir()
     for row, said in zip(rows, page_table("case", "probabilities"), strict=True):

@@ -57,6 +57,11 @@ def _strange(board: Path) -> None:
         (_changed(failed="too slow"), "failed, and yet there are probabilities"),
         (_changed(before={}), "before and after go together"),
         (_changed(after={"withheld-1": {}}), "after.withheld-1.force_aft is missing"),
+        (_changed(before={}, after={}), "after_rival stands beside after, which is missing"),
+        (
+            _changed(after_polynomial={"withheld-2": {}}),
+            "after_polynomial.withheld-1.force_aft is missing",
+        ),
         (_changed(propabilities={}), "did you mean probabilities"),
         (lambda b: (b / "answers").rename(b / "elsewhere"), "no answers yet"),
     ],

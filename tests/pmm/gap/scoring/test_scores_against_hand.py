@@ -79,12 +79,25 @@ def test_nobody_gains_by_a_larger_gap_before(board: Path) -> None:
 def test_an_empty_column_counts_nothing_reached(board: Path) -> None:
     (board / "answers-silent").mkdir()
     for row in handmade.page_table("case", "probabilities"):
-        silent = {**handmade.answer(row), "before": {}, "after": {}}
+        nothing: dict[str, Any] = {
+            key: {} for key in ("before", "after", "after_rival", "after_polynomial")
+        }
+        silent = {**handmade.answer(row), **nothing}
         path = board / "answers-silent" / f"{row['case']}.json"
         path.write_text(json.dumps(silent))
     full, silent_row = score(read_board(board)).rows
     assert silent_row.figure("all", "shrinkage") is None
     assert silent_row.mean == pytest.approx(full.mean - 0.9 / 11)
+
+
+def test_controls_need_not_be_foretold(board: Path) -> None:
+    for path in (board / "answers").iterdir():
+        table = json.loads(path.read_text())
+        del table["after_rival"], table["after_polynomial"]
+        path.write_text(json.dumps(table))
+    figures = score(read_board(board)).rows[0].bins[-1].figures
+    assert not [key for key in figures if key.endswith(("_rival", "_polynomial"))]
+    assert figures["shrinkage"].value == pytest.approx(0.9)
 
 
 def test_answers_that_failed_are_wrong_everywhere(board: Path) -> None:
