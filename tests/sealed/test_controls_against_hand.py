@@ -1,6 +1,5 @@
 """Controls and peers: what they answer where the right thing to say is plain."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,6 @@ from tests.sealed.answering import answer_case, still_asked
 from tests.sealed.board import generate, jobs_of
 from tests.sealed.carrying_out import carrier
 from tests.sealed.controls import CONTROLS, at_random
-from tests.sealed.leaving_out import left_out
 from tests.sealed.peers import by_bic, largest, sparse, structural
 from tests.sealed.peers.scene import Remainder, Scene, scene
 from tests.sealed.peers.terms import TERMS, force_rows, library
@@ -104,25 +102,6 @@ def test_stages_go_with_what_is_said(row: str) -> None:
         found = CONTROLS[row](Path(f"case-{number:04d}"))
         for name in set(found["probabilities"]) & set(catalogue()):
             assert found["stages"] == {catalogue()[name].stage.value: 1.0}
-
-
-def test_leave_out_lists_right_effects_of_named_gaps(board: Path) -> None:
-    for key in (board / "keys").iterdir():
-        table = json.loads((key / "truth.json").read_text())
-        table["determinable"] = table["snr"] >= 3.0
-        (key / "truth.json").write_text(json.dumps(table))
-    everything = left_out(board)
-    assert everything == {
-        "case-0006": ["gain-error"],
-        "case-0007": ["coulomb-friction"],
-        "case-0008": ["cable", "memory"],
-        "case-0011": ["amplifier-lag", "channel-skew"],
-        "case-0012": ["quadratic-damping"],
-    }
-    assert list(left_out(board, 2)) == ["case-0006", "case-0007"]
-    asked = still_asked(board, ("leave-one-out",), everything)
-    assert {one.case: list(one.left_out) for one in asked} == everything
-    assert asked[0].target("leave-one-out") == board / "answers-leave-one-out" / "case-0006.json"
 
 
 def test_a_case_that_cannot_be_answered_is_answered_as_failed(
