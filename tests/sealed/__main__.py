@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 
 import click
@@ -29,10 +30,11 @@ def main() -> None:
 def _number(seed: int | None, commit: str | None) -> int:
     if (seed is None) == (commit is None):
         raise click.UsageError("give either --seed (0 to 99, development) or --commit (scored)")
-    try:
-        return seed if seed is not None else int(str(commit), 16)
-    except ValueError as error:
-        raise click.UsageError(f"--commit {commit!r} is no hash in hexadecimal") from error
+    if seed is not None:
+        return seed
+    if not re.fullmatch("[0-9a-f]{40}", str(commit)):
+        raise click.UsageError(f"--commit {commit!r} is no whole hash: 40 hexadecimal digits")
+    return int(str(commit), 16)
 
 
 @main.command("generate")
@@ -101,7 +103,8 @@ def leave_out_command(board: Path, most: int | None, limit_s: float, workers: in
 @BOARD
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write it there.")
 @click.option("--page", type=click.Path(path_type=Path), help="Write the page there.")
-@click.option("--docs", type=click.Path(path_type=Path), help="Write docs/scoreboard.md there.")
+@click.option("--docs", type=click.Path(exists=True, file_okay=False, path_type=Path),
+              help="Keep the score in this folder's scores/, write its scoreboard.md.")  # fmt: skip
 @click.option(
     "--carry-out/--no-carry-out",
     default=True,
@@ -117,12 +120,10 @@ def score_command(
     carry_out: bool,
     workers: int,
 ) -> None:
-    """Score BOARD, its proposed runs carried out."""
-    from tests.sealed.carrying_out import carrier
-    from tests.sealed.scoring import score_board
+    """Score BOARD, its proposed runs carried out; without --docs nothing is kept."""
+    from tests.sealed.steps import shown
 
-    score_board(board, carrier(board, workers) if carry_out else None,
-                json_file=json_file, page=page, docs=docs)  # fmt: skip
+    shown(board, json_file, page, docs, workers if carry_out else None)
 
 
 @main.command("whole")
@@ -133,7 +134,7 @@ def score_command(
 @click.option("--output", required=True, type=click.Path(path_type=Path), help="The board.")
 @click.option("--docs", default="docs", show_default=True,
               type=click.Path(exists=True, file_okay=False, path_type=Path),
-              help="Folder of scoreboard.md and scoreboard.json.")  # fmt: skip
+              help="Folder of scoreboard.md and scores/; none of them with --seed.")  # fmt: skip
 @MOST
 @LIMIT
 @WORKERS
@@ -148,14 +149,31 @@ def whole_command(
     limit_s: float,
     workers: int,
 ) -> None:
-    """Make a board, answer it by all, and score it; begun again, it goes on where it was."""
+    """Make a board, answer it by all, and score it; begun again, it goes on where it was.
+
+    A score with --commit is kept in the documentation, once; with --seed all stays in the board.
+    """
     from tests.sealed import steps
 
-    steps.generated(output, _number(seed, commit), cases, nulls, workers)
+    number = _number(seed, commit)
+    if commit is not None:
+        steps.refuse(number, cases, nulls, docs)
+    steps.generated(output, number, cases, nulls, workers)
     steps.answered(output, workers, limit_s)
     steps.others(output, workers, limit_s)
     steps.left_out_answered(output, workers, limit_s, most)
-    steps.scored(output, docs, workers)
+    steps.scored(output, None if commit is None else docs, workers)
+
+
+@main.command("page")
+@click.option("--docs", default="docs", show_default=True,
+              type=click.Path(exists=True, file_okay=False, path_type=Path),
+              help="Folder of scoreboard.md and scores/.")  # fmt: skip
+def page_command(docs: Path) -> None:
+    """Write scoreboard.md again, from all scores that were kept."""
+    from tests.sealed.steps import scoreboard
+
+    scoreboard(docs)
 
 
 if __name__ == "__main__":

@@ -1,24 +1,15 @@
-"""The scored board as tables, JSON, a page and a page of the documentation."""
+"""A board scored: printed, as JSON, as a page, and among the scores of the documentation."""
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.machine import describe
 from pmm.cli.gap_checking import print_score
 from pmm.cli.screen import messages, output
 from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.document import document
-from pmm.gap.scoring.markdown import markdown
 from pmm.gap.scoring.page import write_page
 from pmm.gap.scoring.score import CarryOut, score
-from tests.sealed.targets import target_tables, verdicts
-
-INTRO = (
-    "Written by `python -m tests.sealed whole` or `score BOARD --docs FILE`; do not edit. "
-    "[sealed.md](sealed.md) says what a board is, [sealed-scoring.md](sealed-scoring.md) what each "
-    "figure counts: value, 95 % interval, number of cases. Seeds 0 to 99 are for development."
-)
+from tests.sealed.scoreboard import write_scoreboard
+from tests.sealed.scores import dumped, keep, refuse_another
 
 
 def score_board(
@@ -31,25 +22,28 @@ def score_board(
 ) -> None:
     """Score a board, print it and write what is asked for.
 
+    Parameters
+    ----------
+    docs
+        The documentation's folder, to keep the score among the others there.
+
     Raises
     ------
     ConfigurationError, DataError
-        If the board cannot be read, or is not whole.
+        If the board cannot be read, or is not whole; before anything is scored, if its score was
+        to be kept and its seed is one for development or was scored already.
     """
-    found, made_on = score(read_board(board), carry_out), describe()
+    read = read_board(board)
+    if docs is not None:
+        refuse_another(docs, read.seed)
+    found, made_on = score(read, carry_out), describe()
     print_score(output(), found)
     if json_file is not None:
-        table = {
-            **document(found),
-            "made_on": made_on,
-            "targets": [asdict(one) for one in verdicts(found)],
-        }
-        json_file.write_text(json.dumps(table, indent=1, allow_nan=False) + "\n")
+        json_file.write_text(dumped(found, made_on))
     if page is not None:
         command = f"python -m tests.sealed score {board} --page {page}"
         write_page(found, page, title=f"Sealed board {found.seed}", command=command)
     if docs is not None:
-        targets = list(target_tables(found))
-        text = markdown(found, made_on, title="The scoreboard", intro=INTRO, first=targets)
-        docs.write_text(text)
+        messages().print(f"kept: {keep(docs, found, made_on)}")
+        write_scoreboard(docs)
     messages().print(f"scored: {found.cases} cases, {len(found.rows)} rows")

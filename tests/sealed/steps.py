@@ -1,12 +1,47 @@
 """The steps from a seed to a scored board; each keeps what is done and says how far it is."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 import click
 
+from hardware.description.errors import DataError, PmmError
 from tests.sealed.answering import Asked
 from tests.sealed.progress import told
+
+LEAST: Final = 300
+"""Cases, and as many nulls, that a kept score is made of."""
+
+
+def refuse(seed: int, cases: int, nulls: int, docs: Path) -> None:
+    """Refuse to begin a score that could not be kept.
+
+    Raises
+    ------
+    click.UsageError
+        If the seed was scored already, is the hash of another commit than is checked out (its
+        diagnosis would not be the one that the seed names), or the board would be a small one.
+    """
+    from benchmarks.machine import commit
+    from tests.sealed.scores import refuse_another
+
+    name, here = f"{seed:040x}", commit()
+    try:
+        refuse_another(docs, name)
+    except DataError as error:
+        raise click.UsageError(str(error)) from None
+    if min(cases, nulls) < LEAST:
+        raise click.UsageError(
+            f"{cases} cases and {nulls} nulls: --commit takes {LEAST} of each or more, and a part "
+            "looked at first would no longer be sealed; --seed takes as few as you like"
+        )
+    if here != "unknown" and not name.startswith(here):
+        raise click.UsageError(
+            f"--commit {name[:7]}, but {here} is checked out, and that is what would answer: check "
+            "the commit out (a clone or a work tree of it), or take --seed for development"
+        )
 
 
 def generated(board: Path, seed: int, cases: int, nulls: int, workers: int) -> None:
@@ -76,10 +111,48 @@ def _answer(label: str, asked: Sequence[Asked], workers: int, limit_s: float) ->
             click.echo(f"{given.case}, {row}: failed, {why}", err=True)
 
 
-def scored(board: Path, docs: Path, workers: int) -> None:
-    """Score a board; write the page and the JSON of the documentation."""
+def scored(board: Path, docs: Path | None, workers: int) -> None:
+    """Score a board; without a folder of documentation its JSON stays beside it."""
+    shown(board, board / "scoreboard.json" if docs is None else None, board / "scoreboard.html",
+          docs, workers)  # fmt: skip
+
+
+def shown(
+    board: Path, json_file: Path | None, page: Path | None, docs: Path | None, workers: int | None
+) -> None:
+    """Score a board, its proposed runs carried out by so many workers, or not at all.
+
+    Raises
+    ------
+    click.ClickException
+        If the board is not whole, or its score cannot be kept.
+    """
     from tests.sealed.carrying_out import carrier
     from tests.sealed.scoring import score_board
 
-    score_board(board, carrier(board, workers), json_file=docs / "scoreboard.json",
-                page=board / "scoreboard.html", docs=docs / "scoreboard.md")  # fmt: skip
+    carry_out = None if workers is None else carrier(board, workers)
+    with _in_words():
+        score_board(board, carry_out, json_file=json_file, page=page, docs=docs)
+
+
+def scoreboard(docs: Path) -> None:
+    """Write the page of all scores again.
+
+    Raises
+    ------
+    click.ClickException
+        If there are none, or one cannot be read.
+    """
+    from tests.sealed.scoreboard import write_scoreboard
+
+    with _in_words():
+        write_scoreboard(docs)
+
+
+@contextmanager
+def _in_words() -> Iterator[None]:
+    """Let an error of the data end the command with its own words, as ``pmm`` does."""
+    try:
+        yield
+    except PmmError as error:
+        raise click.ClickException(str(error)) from None

@@ -7,7 +7,6 @@ from pmm.gap.scoring.board import DIAGNOSIS
 from pmm.gap.scoring.intervals import Figure
 from pmm.gap.scoring.rows import RowScore
 from pmm.gap.scoring.score import Score
-from pmm.gap.scoring.tables import Table
 
 _BINS = ("low", "middle", "high")
 
@@ -19,14 +18,24 @@ def verdicts(score: Score) -> list[Verdict]:
     return judge("gap", dict(_measured(score)))
 
 
-def target_tables(score: Score) -> Iterator[Table]:
-    """Yield the targets as one more table of the board, where the diagnosis answered."""
-    rows = tuple(
-        (one.what, one.limit, "" if one.measured is None else f"{one.measured:.3g}", one.word)
-        for one in verdicts(score)
-    )
-    if rows:
-        yield Table("Targets of the diagnosis", ("", "limit", "measured", "verdict"), rows)
+def ceilings(score: Score) -> dict[str, float]:
+    """Return by key what a linear matcher reaches where a target has such a ceiling."""
+    row = score.rows[0]
+    figures = {
+        "class_size": row.figure("all", "class_size"),
+        "pairs_clear": row.figure("all", "pairs_clear"),
+        "stage": _worst_stage(row),
+    }
+    return {
+        key: figure.ceiling
+        for key, figure in figures.items()
+        if figure is not None and figure.ceiling is not None
+    }
+
+
+def _worst_stage(row: RowScore) -> Figure | None:
+    there = _figures(row, "stage", _BINS[1:])
+    return min(there, key=lambda figure: figure.value) if there else None
 
 
 def _measured(score: Score) -> Iterator[tuple[str, float]]:
@@ -49,9 +58,7 @@ def _measured(score: Score) -> Iterator[tuple[str, float]]:
         below = [f.ceiling - f.value for f in _figures(row, column) if f.ceiling is not None]
         if below:
             yield key, max(below)
-    stages = [figure.value for figure in _figures(row, "stage", _BINS[1:])]
-    if stages:
-        yield "stage", min(stages)
+    yield from _value("stage", _worst_stage(row))
     if len(score.rows) > 1:
         yield "ahead_of_others", row.mean - max(other.mean for other in score.rows[1:])
     if score.left_out is not None:

@@ -1,43 +1,19 @@
-"""A score as a page of the documentation."""
-
-from collections.abc import Mapping, Sequence
+"""Parts of a score as Markdown, for the documentation."""
 
 from pmm.gap.scoring.score import Score
-from pmm.gap.scoring.tables import Table, tables
+from pmm.gap.scoring.tables import Table
 
 
-def markdown(
-    score: Score,
-    made_on: Mapping[str, str],
-    *,
-    title: str,
-    intro: str,
-    first: Sequence[Table] = (),
-) -> str:
-    """Return a score as Markdown.
-
-    Parameters
-    ----------
-    made_on
-        Machine, commit and date, for the foot of the page.
-    intro
-        What stands between title and tables.
-    first
-        Tables before the score's own.
-    """
+def described(score: Score) -> str:
+    """Return seed, cases by kind, and the score's notes."""
     kinds = ", ".join(f"{count} {kind}" for kind, count in score.kinds.items())
-    head = f"# {title}\n\n{intro}\n\nSeed `{score.seed}`, {score.cases} cases: {kinds}."
+    head = f"Seed `{score.seed}`, {score.cases} cases: {kinds}."
     notes = "\n".join(f"- {note}" for note in score.notes)
-    body = "\n\n".join(_table(one) for one in (*first, *tables(score)))
-    foot = "\n".join(f"| {name} | {value} |" for name, value in made_on.items())
-    return (
-        "\n\n".join(
-            part for part in (head, notes, body, "## Made on\n\n| | |\n|---|---|\n" + foot) if part
-        )
-        + "\n"
-    )
+    return "\n\n".join(part for part in (head, notes) if part)
 
 
-def _table(table: Table) -> str:
+def tabulated(table: Table, level: int = 2) -> str:
+    """Return a table under a heading of that level."""
     lines = [table.head, ("---",) * len(table.head), *table.rows]
-    return f"## {table.caption}\n\n" + "\n".join("| " + " | ".join(row) + " |" for row in lines)
+    rows = "\n".join("| " + " | ".join(row) + " |" for row in lines)
+    return f"{'#' * level} {table.caption}\n\n{rows}"
