@@ -6,17 +6,16 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import STRUTS, of_law, with_laws
+from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
-from sim.laws import Coulomb, Spring
+from sim.laws import Spring
 from sim.rig import SimulatedRig
 
 
 @dataclass(frozen=True)
 class DynamicTrim(Effect):
-    """A mean, a stiffness and its curvature that grow with U^2, half at each strut.
+    """A mean, a stiffness and its curvature that grow with U^2.
 
     Sunk and trimmed, the hull carries more, and its waterplane is another one; at rest, and in air,
     there is nothing of it.
@@ -30,26 +29,32 @@ class DynamicTrim(Effect):
     load_n_s2_m2: float = parameter(2.0, -100.0, 100.0, "N s2/m2", "mean force over U^2")
     k1_n_s2_m3: float = parameter(100.0, -3000.0, 3000.0, "N s2/m3", "stiffness over U^2")
     k2_n_s2_m4: float = parameter(500.0, -3e4, 3e4, "N s2/m4", "its quadratic part over U^2")
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with half of these loads, at the set-point's speed, at each strut."""
-        half = set_point.carriage_speed_m_s**2 / 2.0
-        if not half:
+        """Return the rig with these loads, at the set-point's speed, along the hull."""
+        square = set_point.carriage_speed_m_s**2
+        if not square:
             return rig
-        spring = Spring(self.k1_n_s2_m3 * half, self.k2_n_s2_m4 * half)
-        mean = Coulomb(0.0, self.load_n_s2_m2 * half)
-        return with_laws(rig, *((point, law) for point in STRUTS for law in (spring, mean)))
+
+        def trim(share: float) -> Spring:
+            size = share * square
+            return Spring(
+                self.k1_n_s2_m3 * size, self.k2_n_s2_m4 * size, preload_n=self.load_n_s2_m2 * size
+            )
+
+        return along_hull(rig, trim, self.at_struts)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the mean, the stiffness in phase, and the square of a sine."""
-        half = situation.set_point.carriage_speed_m_s**2 / 2.0
+        square = situation.set_point.carriage_speed_m_s**2
 
-        def wave(order: int, size: float, phase: float, _: Point) -> complex:
+        def wave(order: int, size: float, phase: float) -> complex:
             by_order = {
                 0: self.load_n_s2_m2 + self.k2_n_s2_m4 * size**2 / 2.0,
                 1: self.k1_n_s2_m3 * size * np.exp(1j * phase),
                 2: -0.5j * self.k2_n_s2_m4 * size**2 * np.exp(2j * phase),
             }
-            return complex(half * by_order[order])
+            return complex(square * by_order[order])
 
-        return of_law(situation, STRUTS, wave, 2)
+        return of_hull_law(situation, self.at_struts, wave, 2)

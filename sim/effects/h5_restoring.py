@@ -6,9 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import STRUTS, of_law, with_laws
+from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Spring
 from sim.rig import SimulatedRig
@@ -16,7 +15,7 @@ from sim.rig import SimulatedRig
 
 @dataclass(frozen=True)
 class NonlinearRestoring(Effect):
-    """``k2 y^2 + k3 y^3`` of the whole hull, half at each strut as that moves.
+    """``k2 y^2 + k3 y^3`` of the whole hull: flare at its ends, or amidships.
 
     ``k2 a^2/2`` as a mean and against it at order 2, ``3/4 k3 a^3`` in phase and ``-1/4 k3 a^3`` at
     order 3; independent of the frequency, absent in air.
@@ -29,19 +28,23 @@ class NonlinearRestoring(Effect):
 
     k2_n_m2: float = parameter(5000.0, -1e5, 1e5, "N/m2", "quadratic part, in heave")
     k3_n_m3: float = parameter(50000.0, -2e6, 2e6, "N/m3", "cubic part, in heave")
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with half of this restoring at each strut."""
-        half = Spring(0.0, self.k2_n_m2 / 2.0, self.k3_n_m3 / 2.0)
-        return with_laws(rig, *((point, half) for point in STRUTS))
+        """Return the rig with this restoring along the hull."""
+
+        def spring(share: float) -> Spring:
+            return Spring(0.0, share * self.k2_n_m2, share * self.k3_n_m3)
+
+        return along_hull(rig, spring, self.at_struts)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the powers of a sine."""
 
-        def wave(order: int, size: float, phase: float, _: Point) -> complex:
+        def wave(order: int, size: float, phase: float) -> complex:
             square = {0: 0.5, 2: -0.5j * np.exp(2j * phase)}
             cube = {1: 0.75 * np.exp(1j * phase), 3: -0.25 * np.exp(3j * phase)}
             quadratic = self.k2_n_m2 * size**2 * square.get(order, 0.0)
-            return complex(quadratic + self.k3_n_m3 * size**3 * cube.get(order, 0.0)) / 2.0
+            return complex(quadratic + self.k3_n_m3 * size**3 * cube.get(order, 0.0))
 
-        return of_law(situation, STRUTS, wave, 3)
+        return of_hull_law(situation, self.at_struts, wave, 3)

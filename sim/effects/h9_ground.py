@@ -7,9 +7,8 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import STRUTS, of_law, with_laws
+from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Proximity
 from sim.rig import SimulatedRig
@@ -19,7 +18,7 @@ HIGHEST = 4
 
 @dataclass(frozen=True)
 class GroundSuction(Effect):
-    """``F U^2 (h^2/(h - y)^2 - 1)``, half at each strut: it goes with U^2 and e = a/h.
+    """``F U^2 (h^2/(h - y)^2 - 1)``: it goes with U^2 and e = a/h.
 
     ``(1 - e^2)^(-3/2) - 1`` as a mean, about ``2 e`` in phase and ``-3/2 e^2`` as the cosine at
     order 2.
@@ -32,9 +31,10 @@ class GroundSuction(Effect):
 
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
     clearance_m: float = parameter(0.2, 0.01, 10.0, "m", "h, below the keel at rest")
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with half of the suction at each strut.
+        """Return the rig with the suction along the hull.
 
         Raises
         ------
@@ -46,14 +46,18 @@ class GroundSuction(Effect):
                 f"effect {self.name}: an eccentricity_m of {set_point.eccentricity_m:g} reaches "
                 f"the bottom at clearance_m = {self.clearance_m:g}; lower it, or clear more"
             )
-        half = Proximity(self.suction_n_s2_m2 / 2.0, self.clearance_m, reference_speed_m_s=1.0)
-        return with_laws(rig, *((point, half) for point in STRUTS))
+
+        def suction(share: float) -> Proximity:
+            size = share * self.suction_n_s2_m2
+            return Proximity(size, self.clearance_m, reference_speed_m_s=1.0)
+
+        return along_hull(rig, suction, self.at_struts)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the series of ``(1 - e sin)^-2``, by the half angle of e = sin(beta)."""
-        force = self.suction_n_s2_m2 * situation.flow_m_s**2 / 2.0
+        force = self.suction_n_s2_m2 * situation.flow_m_s**2
 
-        def wave(order: int, size: float, phase: float, _: Point) -> complex:
+        def wave(order: int, size: float, phase: float) -> complex:
             root = np.sqrt(1.0 - (size / self.clearance_m) ** 2)
             half_tangent = size / self.clearance_m / (1.0 + root)
             share = half_tangent**order * (1.0 + order * root) / root**3
@@ -61,4 +65,4 @@ class GroundSuction(Effect):
                 return complex(force * (share - 1.0))
             return complex(force * 2.0 * share * 1j * np.exp(1j * order * (phase - np.pi / 2.0)))
 
-        return of_law(situation, STRUTS, wave, HIGHEST)
+        return of_hull_law(situation, self.at_struts, wave, HIGHEST)

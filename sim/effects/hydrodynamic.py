@@ -11,7 +11,8 @@ import numpy as np
 
 from sim.acting import Acting, Point
 from sim.effects.effect import Signature
-from sim.effects.situation import Situation, at_struts
+from sim.effects.situation import Situation
+from sim.effects.situation import at_struts as at_struts_of
 from sim.hull_coefficients import HullCoefficients, Matrix
 from sim.laws import ForceLaw
 from sim.linear import ComplexArray
@@ -21,12 +22,31 @@ from sim.water.radiation import Radiation, constant
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)
+AT_STRUTS = "share that acts at the struts, half at each; the rest acts midway between them"
 
 
 def with_laws(rig: SimulatedRig, *laws: tuple[Point, ForceLaw]) -> SimulatedRig:
     """Return the rig with further laws of the water."""
     added = tuple(Acting(law, point, in_water=True) for point, law in laws)
     return replace(rig, forces=(*rig.forces, *added))
+
+
+def along_hull(
+    rig: SimulatedRig, law: Callable[[float], ForceLaw], at_struts: float
+) -> SimulatedRig:
+    """Return the rig with a law of the water, spread along the hull.
+
+    Parameters
+    ----------
+    law
+        Given a share of the whole, returns the law of that size.
+    at_struts
+        Share that acts at the struts, half at each, as they move; the rest acts at the midpoint.
+    """
+    laws = [(point, law(at_struts / 2.0)) for point in STRUTS] if at_struts else []
+    if at_struts < 1.0:
+        laws.append((Point.TRANSLATION, law(1.0 - at_struts)))
+    return with_laws(rig, *laws)
 
 
 def radiation_of(rig: SimulatedRig) -> Radiation:
@@ -88,7 +108,7 @@ def load(situation: Situation, per_velocity: Callable[[complex], ComplexArray]) 
     for order in range(HIGHEST + 1):
         matrix = per_velocity(1j * order * situation.omega)
         force = situation.system.to_motion.T @ matrix @ through_water(situation, order)
-        found |= at_struts(force, order)
+        found |= at_struts_of(force, order)
     return found
 
 
@@ -116,7 +136,36 @@ def of_law(
         total += np.outer([wave(order, size, phase, point) for order in range(highest + 1)], along)
     found: dict[tuple[str, int], complex] = {}
     for order in range(highest + 1):
-        found |= at_struts(total[order], order)
+        found |= at_struts_of(total[order], order)
+    return found
+
+
+def of_hull_law(
+    situation: Situation,
+    at_struts: float,
+    wave: Callable[[int, float, float], complex],
+    highest: int,
+) -> Signature:
+    """Return the signature of a law of the displacement that is spread along the hull.
+
+    Parameters
+    ----------
+    at_struts
+        As in :func:`along_hull`.
+    wave
+        Given the order, amplitude and phase of a displacement: ``S + i C`` of the whole law there.
+    """
+    if not situation.in_water:
+        return {}
+    ends, middle = np.eye(2), situation.system.to_motion[0]
+    places = [(end, at_struts / 2.0) for end in ends] + [(middle, 1.0 - at_struts)]
+    found: dict[tuple[str, int], complex] = {}
+    for order in range(highest + 1):
+        force = np.zeros(2, dtype=np.complex128)
+        for along, share in places:
+            motion = complex(along @ situation.displacement())
+            force += share * wave(order, abs(motion), float(np.angle(motion))) * along
+        found |= at_struts_of(force, order)
     return found
 
 
@@ -139,7 +188,7 @@ def faster(situation: Situation, flow_m_s: float) -> Signature:
         return found
     for order in range(HIGHEST + 1):
         force = per_speed(situation, 1j * order * situation.omega) @ situation.displacement(order)
-        found |= at_struts(flow_m_s * force, order)
+        found |= at_struts_of(flow_m_s * force, order)
     return found
 
 

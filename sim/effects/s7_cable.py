@@ -1,7 +1,7 @@
 """S7: a cable or umbilical between the model and the carriage."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -9,13 +9,16 @@ from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import RubbingSpring, Spring
+from sim.laws import ForceLaw, RubbingSpring, Spring
 from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.linear import ComplexArray
 
 
 @dataclass(frozen=True)
 class Cable(Effect):
-    """``F_0 + k x + k_2 x^2 + k_3 x^3 + k_h |x| sgn(v)`` on the translation x at the midpoint.
+    """``F_0 + k x + k_2 x^2 + k_3 x^3 + k_h |x| sgn(v)``, x midway between the struts or at each.
 
     Independent of frequency: in phase ``k x + 3 k_3 x^3/4``, in quadrature ``2 k_h x/pi`` from the
     strands that rub on each other.
@@ -31,31 +34,49 @@ class Cable(Effect):
     preload_n: float = parameter(0.0, -20.0, 20.0, "N", "force in the middle position")
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")
     stiffness_n_m3: float = parameter(0.0, 0.0, 1e5, "N/m3", "stiffening")
+    at_struts: float = parameter(
+        0.0, 0.0, 1.0, "1", "share that hangs on the struts, half on each; the rest midway"
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with the cable at the midpoint between the struts."""
-        spring = Spring(
-            self.stiffness_n_m, self.stiffness_n_m2, self.stiffness_n_m3, self.preload_n
-        )
-        added: tuple[Acting, ...] = (Acting(spring, Point.TRANSLATION),)
-        if self.rubbing_n_m:
-            added = (*added, Acting(RubbingSpring(self.rubbing_n_m), Point.TRANSLATION))
+        """Return the rig with the cable between the struts, or on them."""
+        places = [(Point.TRANSLATION, 1.0 - self.at_struts)]
+        places += [(point, self.at_struts / 2.0) for point in (Point.AFT, Point.FORE)]
+        added = [Acting(law, at) for at, share in places if share for law in self._laws(share)]
         return replace(rig, forces=(*rig.forces, *added))
+
+    def _laws(self, share: float) -> tuple[ForceLaw, ...]:
+        spring = Spring(
+            share * self.stiffness_n_m,
+            share * self.stiffness_n_m2,
+            share * self.stiffness_n_m3,
+            share * self.preload_n,
+        )
+        if not self.rubbing_n_m:
+            return (spring,)
+        return spring, RubbingSpring(share * self.rubbing_n_m)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the powers of a sine, and the loop of the rubbing strands; exact."""
-        along = situation.system.to_motion[0]
-        x = complex(along @ situation.displacement())
+        middle, x = situation.system.to_motion[0], situation.displacement()
+        ends = [(end, self.at_struts / 2.0) for end in np.eye(2)]
+        total: dict[int, ComplexArray] = {}
+        for along, share in [(middle, 1.0 - self.at_struts), *ends]:
+            for order, force in self._waves(complex(along @ x)).items():
+                total[order] = total.get(order, np.zeros(2)) + share * force * along
+        predicted: dict[tuple[str, int], complex] = {}
+        for order, forces in total.items():
+            predicted |= at_struts(forces, order)
+        return predicted
+
+    def _waves(self, x: complex) -> dict[int, complex]:
+        """Return the force by order where the displacement is x."""
         size, rubbing = abs(x), 1j * (2.0 / np.pi) * self.rubbing_n_m * abs(x)
         turn = x / size if size else 0j
-        force = {
+        return {
             0: self.preload_n + self.stiffness_n_m2 * size**2 / 2.0,
             1: (self.stiffness_n_m + 0.75 * self.stiffness_n_m3 * size**2) * x + rubbing * turn,
             2: -1j * self.stiffness_n_m2 * x**2 / 2.0,
             3: -self.stiffness_n_m3 * x**3 / 4.0 - rubbing * turn**3,
             5: rubbing * turn**5 / 3.0,
         }
-        predicted: dict[tuple[str, int], complex] = {}
-        for order, value in force.items():
-            predicted |= at_struts(value * along, order)
-        return predicted
