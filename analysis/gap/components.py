@@ -1,13 +1,14 @@
 """What is compared between rig and simulation, component by component."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.spectrum import Lines
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 
@@ -101,11 +102,14 @@ class Observation:
     values, uncertainty
         Of each component, and one standard deviation, shape ``(components,)``. Harmonics and trends
         are in the channel's SI unit, the rest are logarithms.
+    quiet
+        Lines between the harmonics, by channel; empty where nobody looked.
     """
 
     components: tuple[Component, ...]
     values: FloatArray
     uncertainty: FloatArray
+    quiet: Mapping[str, Lines] = field(default_factory=dict)
 
     @cached_property
     def layout(self) -> Layout:
@@ -130,6 +134,9 @@ class GapRun:
         Where it stands in its campaign, for effects that build up or die out.
     periods, sample_rate_hz
         Of the stretch that was analysed: what a simulated record has to match.
+    stands_at_m
+        Of a record at rest (:mod:`analysis.gap.at_rest`): where its aft and fore strut stand;
+        ``None`` where the shaft turns.
     """
 
     name: str
@@ -138,6 +145,12 @@ class GapRun:
     observed: Observation
     periods: int
     sample_rate_hz: float
+    stands_at_m: tuple[float, float] | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Whether it oscillates: not so a record at rest."""
+        return self.stands_at_m is None
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,6 +180,11 @@ class Stack:
             np.concatenate([one.values for one in seen]),
             np.concatenate([one.uncertainty for one in seen]),
         )
+
+    @property
+    def turning(self) -> tuple[GapRun, ...]:
+        """The runs that oscillate."""
+        return tuple(one for one in self.runs if one.turns)
 
     @cached_property
     def steady(self) -> NDArray[np.bool_]:

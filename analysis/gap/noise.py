@@ -2,19 +2,21 @@
 
 A run of six periods knows its own scatter to 30 %; taken at its word it calls small deviations
 large or large ones small. The noise of a channel is much the same in all runs, so each run's own
-variance is drawn towards that of all runs, scaled to the run's length.
+variance is drawn towards what the lines between the harmonics of all runs say
+(:mod:`analysis.gap.spectrum`), or, where there are none, the scatter of all runs.
 """
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, GapRun, Part
+from analysis.gap.components import STEADY_PARTS, Component, GapRun, Part
+from analysis.gap.spectrum import Loudness, loudness
 from hardware.description.channels import SHAFT_ANGLE
 from sim.acquisition import Digitiser
 from sim.rig import SimulatedRig
@@ -22,10 +24,11 @@ from sim.rig import SimulatedRig
 FloatArray = NDArray[np.float64]
 
 # Of the first harmonic of the channel: what a simulation by harmonics does not promise to hold.
-SIMULATION: Final = 2e-5
+SIMULATION: Final = 3e-6
 # Of an encoder whose steps nobody stated: they do not average out of a shaft that turns evenly.
 ENCODER_RAD: Final = 3e-5
-_POOLED_FREEDOM = 12.0
+_FREEDOM = 12.0  # numbers by which the usual scatter of the cycles is known
+_LINES_FREEDOM = 60.0  # and the usual power between the harmonics
 # What is simulated in time has noise of its own, as large as the record's.
 TWO_RECORDS: Final = 2.0**0.5
 
@@ -35,13 +38,51 @@ def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
 
     The rig's encoder says what its steps leave in the shaft's harmonics.
     """
+    usual = Usual.of(runs)
     encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
-    densities: dict[tuple[str, int], list[float]] = defaultdict(list)
-    for run in runs:
-        for key, density in _densities(run):
-            densities[key].append(density)
-    usual = {key: float(np.median(values)) for key, values in densities.items()}
     return tuple(_with(run, usual, encoder_rad) for run in runs)
+
+
+@dataclass(frozen=True, eq=False)
+class Usual:
+    """What the runs together say of each channel's noise.
+
+    Attributes
+    ----------
+    loud
+        By channel, from the lines between the harmonics.
+    scatter
+        By channel and kind, from the scatter of the cycles: variance times duration.
+    """
+
+    loud: Mapping[str, Loudness]
+    scatter: Mapping[tuple[str, int], float]
+
+    @classmethod
+    def of(cls, runs: Sequence[GapRun]) -> "Usual":
+        """Ask all runs."""
+        names = dict.fromkeys(name for run in runs for name in run.observed.quiet)
+        levels = {
+            name: loudness(run.observed.quiet[name] for run in runs if name in run.observed.quiet)
+            for name in names
+        }
+        densities: dict[tuple[str, int], list[float]] = defaultdict(list)
+        for run in runs:
+            for key, density in _densities(run):
+                densities[key].append(density)
+        return cls(
+            {name: level for name, level in levels.items() if level is not None},
+            {key: float(np.median(values)) for key, values in densities.items()},
+        )
+
+    def variance(self, one: Component, run: GapRun) -> tuple[float, float] | None:
+        """Return a component's usual variance, and how many numbers it is known by."""
+        duration_s = run.periods / run.set_point.frequency_hz
+        if one.channel in self.loud:
+            density = float(self.loud[one.channel].at(one.order * run.set_point.frequency_hz))
+            return density / duration_s * (1.0 if one.part is Part.MEAN else 2.0), _LINES_FREEDOM
+        key = (one.channel, _kind(one.part, one.order))
+        return (self.scatter[key] / duration_s, _FREEDOM) if key in self.scatter else None
 
 
 def _kind(part: Part, order: int) -> int:
@@ -59,22 +100,20 @@ def _densities(run: GapRun) -> list[tuple[tuple[str, int], float]]:
     ]
 
 
-def _with(run: GapRun, usual: dict[tuple[str, int], float], encoder_rad: float) -> GapRun:
+def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
     seen = run.observed
-    duration_s = run.periods / run.set_point.frequency_hz
     own_freedom = max(run.periods - 2.0, 0.0)
     uncertainty = seen.uncertainty.copy()
     for at, one in enumerate(seen.components):
         if one.part not in STEADY_PARTS:
             uncertainty[at] *= TWO_RECORDS
             continue
-        key = (one.channel, _kind(one.part, one.order))
-        if key in usual:
+        known = usual.variance(one, run)
+        if known is not None:
+            theirs, many = known
             own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
             freedom = own_freedom if own else 0.0
-            variance = (freedom * own + _POOLED_FREEDOM * usual[key] / duration_s) / (
-                freedom + _POOLED_FREEDOM
-            )
+            variance = (freedom * own + many * theirs) / (freedom + many)
             uncertainty[at] = np.sqrt(variance + _floor(run, one.channel, encoder_rad) ** 2)
     return replace(run, observed=replace(seen, uncertainty=uncertainty))
 

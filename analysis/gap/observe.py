@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Observation, Part
+from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
 from analysis.resolver.analyse import Analysis, Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
@@ -27,11 +28,14 @@ Found = Iterator[tuple[Component, float, float]]
 ORDERS: Final = 6
 FORCES: Final = (channels.FORCE_AFT.name, channels.FORCE_FORE.name)
 STRUTS: Final = (channels.DISPLACEMENT_AFT.name, channels.DISPLACEMENT_FORE.name)
-COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES)
+SPEED: Final = channels.CARRIAGE_SPEED.name
+COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES, SPEED)
 
 # Bands between the harmonics, in multiples of the fundamental: below it, among the orders that are
 # compared, and above them.
 BANDS: Final = ((0.0, 0.8), (1.2, ORDERS + 0.8), (ORDERS + 1.2, np.inf))
+# Of the carriage's speed, which has no harmonics: waves of the whole tank, rails, wheels.
+SURGES_HZ: Final = (0.0, 3.0)
 _BESIDE = 2.5  # bins on either side of a harmonic that its own leakage may reach
 _FEW_PERIODS = 3
 _FEW_LINES = 12
@@ -79,9 +83,10 @@ def observe(recording: Recording, latency_s: float = 0.0) -> Observed:
     found = [*_harmonics(analysis), *_frequency(analysis, recording)]
     found += _pulses(recording)
     if analysis.stretch.period_count >= _FEW_PERIODS:
-        found += [*_trends(analysis), *_scatter(analysis), *_between(analysis)]
+        found += [*_trends(analysis), *_scatter(analysis), *_between(analysis), *_surges(analysis)]
     parts, values, uncertainty = zip(*found, strict=True)
-    return Observed(Observation(parts, np.array(values), np.array(uncertainty)), analysis)
+    seen = Observation(parts, np.array(values), np.array(uncertainty), _quiet(analysis))
+    return Observed(seen, analysis)
 
 
 def _choice(recording: Recording, latency_s: float) -> ReferenceChoice:
@@ -110,6 +115,8 @@ def _harmonics(analysis: Analysis) -> Found:
         values, own = reading.coefficients[row], deviation[row]
         if name != channels.SHAFT_ANGLE.name:  # its mean is a matter of counting turns
             yield Component(name, Part.MEAN), values[0], own[0]
+        if name == SPEED:  # it does not go with the shaft; what varies shows among the lines
+            continue
         for order in range(1, reading.order + 1):
             for part, at in ((Part.IN_PHASE, 2 * order - 1), (Part.QUADRATURE, 2 * order)):
                 yield Component(name, part, order), values[at], own[at]
@@ -171,7 +178,7 @@ def _between(analysis: Analysis) -> Found:
     taper = np.hanning(count)
     lines_hz = np.arange(count // 2 + 1) * recording.sample_rate_hz / count
     free = _free_of_harmonics(lines_hz, frequency, recording.sample_rate_hz / count)
-    repeats = _repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()))
+    repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
     for name in FORCES:
         if name in part.channel_names:
             values = part.values(name)
@@ -183,12 +190,27 @@ def _between(analysis: Analysis) -> Found:
                 yield from _band(name, number, power[inside])
 
 
-def _repeating(angle_rad: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of what repeats with the shaft, and of a trend."""
-    turn = np.linspace(-1.0, 1.0, len(angle_rad))
-    waves = [wave(n * angle_rad) for n in range(1, 2 * ORDERS + 1) for wave in (np.sin, np.cos)]
-    basis = np.column_stack((np.ones_like(turn), turn, *waves))
-    return np.asarray(np.linalg.qr(basis)[0])
+def _quiet(analysis: Analysis) -> dict[str, Lines]:
+    """Return what lies between the harmonics of each channel."""
+    sums, reading = analysis.steady_sums, analysis.readings[0]
+    part = analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    return {
+        name: quiet_lines(part.time_s(), part.values(name), reading.frequency_hz, reading.order)
+        for name in reading.channel_names
+    }
+
+
+def _surges(analysis: Analysis) -> Found:
+    sums = analysis.steady_sums
+    part = analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    if SPEED not in part.channel_names:
+        return
+    values, taper = part.values(SPEED), np.hanning(part.sample_count)
+    power = np.abs(np.fft.rfft((values - values.mean()) * taper)) ** 2 / np.sum(taper**2)
+    lines_hz = np.arange(len(power)) * part.sample_rate_hz / part.sample_count
+    low, high = SURGES_HZ
+    inside = (lines_hz > low) & (lines_hz < high)
+    yield from _band(SPEED, 0, power[inside] / len(lines_hz))
 
 
 def _free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> NDArray[np.bool_]:

@@ -5,8 +5,8 @@ comes from drive or mechanism (or from the photocell, if everything is turned al
 appears only in the forces, with the measured motion fed to the model, comes from behind.
 """
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,7 +17,7 @@ from analysis.gap.components import Component, GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.observe import FORCES, STRUTS
+from analysis.gap.observe import FORCES, SPEED, STRUTS
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import Medium
 from sim import signals
@@ -66,8 +66,8 @@ class Walk:
     Attributes
     ----------
     steps
-        Shaft, photocell, strut motion, forces with the simulated motion, forces with the measured
-        motion; those for which there are channels.
+        Carriage, shaft, photocell, strut motion, forces with the simulated motion, forces with the
+        measured motion; those for which there are channels.
     contrasts
         The same difference by medium, strut phase, speed, amplitude and frequency.
     """
@@ -79,6 +79,8 @@ class Walk:
     def stages(self) -> tuple[StageName, ...]:
         """Stages that the walk leaves as the gap's place, from upstream down."""
         beyond = {one.what for one in self.steps if one.beyond}
+        if CARRIAGE in beyond:
+            return (StageName.CARRIAGE,)
         if MOTION in beyond:
             return (StageName.DRIVE, StageName.MECHANISM, StageName.PHOTOCELL)
         if FORCE_FED in beyond or FORCE in beyond:
@@ -87,6 +89,7 @@ class Walk:
         return ()
 
 
+CARRIAGE: Final = "carriage"
 SHAFT: Final = "shaft"
 TIMING: Final = "photocell and frequency"
 MOTION: Final = "strut motion"
@@ -99,10 +102,12 @@ def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
     stack = problem.simulator.stack
     left = left_by_step(problem, problem.residual)
-    steps = [gap_of(stack.components, left, what, inside) for what, inside in _STEPS.items()]
+    of_step = {what: _of_step(stack.components, what) for what in CHAIN}
+    steps = [gap_of(stack.components, left, what, rows) for what, rows in of_step.items()]
     fed = _fed(problem)
     if fed is not None:
-        steps.insert(4, gap_of(stack.components, fed, FORCE_FED, _STEPS[FORCE]))
+        after = CHAIN.index(FORCE) + 1
+        steps.insert(after, gap_of(stack.components, fed, FORCE_FED, of_step[FORCE]))
     steps = [one for one in steps if one.count]
     return Walk(tuple(steps), tuple(_contrasts(problem, left)))
 
@@ -120,8 +125,8 @@ def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
     """
     parts = problem.simulator.stack.components
     found, upstream = np.zeros_like(residual), np.zeros(len(parts), dtype=bool)
-    for inside in _STEPS.values():
-        own = np.array([inside(one) for one in parts])
+    for what in CHAIN:
+        own = _of_step(parts, what)
         upstream |= own
         part = problem.nuisances.among(upstream)
         fitted = part.fitted(residual[upstream])
@@ -129,23 +134,23 @@ def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
     return found
 
 
-_STEPS: Final[dict[str, Callable[[Component], bool]]] = {
-    SHAFT: lambda one: one.channel == SHAFT_ANGLE.name,
-    TIMING: lambda one: one.channel == "",
-    MOTION: lambda one: one.channel in STRUTS,
-    FORCE: lambda one: one.channel in FORCES and one.part in _HARMONIC,
-    BESIDE: lambda one: one.channel in FORCES and one.part not in _HARMONIC,
-}
+CHAIN: Final = (CARRIAGE, SHAFT, TIMING, MOTION, FORCE, BESIDE)
+
+
+def step_of(one: Component) -> str:
+    """Return the step of the chain that a component tells of."""
+    steps = {"": TIMING, SHAFT_ANGLE.name: SHAFT, SPEED: CARRIAGE, **dict.fromkeys(STRUTS, MOTION)}
+    return steps.get(one.channel) or (FORCE if one.part in _HARMONIC else BESIDE)
+
+
+def _of_step(components: Sequence[Component], what: str) -> NDArray[np.bool_]:
+    return np.array([step_of(one) == what for one in components])
 
 
 def gap_of(
-    components: Sequence[Component],
-    left: FloatArray,
-    what: str,
-    inside: Callable[[Component], bool] | NDArray[np.bool_],
+    components: Sequence[Component], left: FloatArray, what: str, rows: NDArray[np.bool_]
 ) -> Gap:
     """Return the gap over some components."""
-    rows = np.array([inside(one) for one in components]) if callable(inside) else inside
     if not rows.any():
         return Gap(what, 0.0, 0, "")
     size = np.where(rows, np.abs(left), 0.0)
@@ -173,29 +178,57 @@ def _fed(problem: Problem) -> FloatArray | None:
     seen = {one.channel for one in simulator.stack.components}
     if not set(STRUTS) <= seen or simulator.rig.drive.motor is not None:
         return None
-    found = np.concatenate([_run_fed(simulator, run) for run in simulator.stack.runs])
-    wider = np.concatenate([_motion_uncertainty(run) for run in simulator.stack.runs])
+    pairs = [_run_fed(simulator, run) for run in simulator.stack.runs]
+    found, wider = (np.concatenate(parts) for parts in zip(*pairs, strict=True))
     sigma = simulator.stack.uncertainty
     shrink = sigma / np.hypot(sigma, wider)
     residual: FloatArray = problem.whitened(simulator.stack.values - found) * shrink
-    forces = np.array([_STEPS[FORCE](one) for one in simulator.stack.components])
+    forces = _of_step(simulator.stack.components, FORCE)
     part = Nuisances((problem.nuisances.columns * shrink[:, None])[forces])
     left: FloatArray = np.zeros_like(residual)
     left[forces] = residual[forces] - part.columns @ part.fitted(residual[forces])
     return left
 
 
-def _run_fed(simulator: Simulator, run: GapRun) -> FloatArray:
+def _run_fed(simulator: Simulator, run: GapRun) -> tuple[FloatArray, FloatArray]:
+    """Return a run with the measured motion, and what that motion's noise makes of it."""
     rig, set_point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
     period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
     chain = rig.chain(set_point)
     turn = np.exp(-period.s * steady_state(chain, period).reference_s)
-    given = _measured_motion(run, period, turn)
-    state = steady_state(chain, period, given)
-    return read_steady(state, run.observed.layout, run.set_point, simulator.reference_channel)
+
+    def fed(noise: dict[str, ComplexArray]) -> FloatArray:
+        state = steady_state(chain, period, _measured_motion(run, period, turn, noise))
+        layout = run.observed.layout
+        return read_steady(state, layout, run.set_point, simulator.reference_channel)
+
+    base = fed({})
+    moved = [fed({name: _noise(run, name, period.orders)}) - base for name in STRUTS]
+    return base, np.asarray(np.hypot(*(_whole(run, change) for change in moved)))
 
 
-def _measured_motion(run: GapRun, period: Period, turn: ComplexArray) -> dict[str, ComplexArray]:
+def _noise(run: GapRun, channel: str, orders: int) -> ComplexArray:
+    """Return one standard deviation of each harmonic's cosine."""
+    found = np.zeros(orders + 1, dtype=np.complex128)
+    seen = run.observed
+    for one, sigma in zip(seen.components, seen.uncertainty, strict=True):
+        if one.channel == channel and one.part in (Part.MEAN, Part.QUADRATURE):
+            found[one.order] = sigma
+    return found
+
+
+def _whole(run: GapRun, change: FloatArray) -> FloatArray:
+    """Return each harmonic's amplitude in place of both its parts: noise has any phase."""
+    squares: dict[tuple[str, int], float] = defaultdict(float)
+    keys = [(one.channel, one.order) for one in run.observed.components]
+    for key, value in zip(keys, change, strict=True):
+        squares[key] += float(value) ** 2
+    return np.sqrt([squares[key] for key in keys])
+
+
+def _measured_motion(
+    run: GapRun, period: Period, turn: ComplexArray, noise: Mapping[str, ComplexArray]
+) -> dict[str, ComplexArray]:
     """Return displacement, velocity and acceleration of both struts from measured harmonics.
 
     Differentiated order by order in the frequency domain: samples are never differenced.
@@ -206,37 +239,12 @@ def _measured_motion(run: GapRun, period: Period, turn: ComplexArray) -> dict[st
     )
     given = {}
     for displacement, velocity, acceleration in names:
-        harmonics = _spectrum(run, displacement.name, period.orders) * turn
+        own = _spectrum(run, displacement.name, period.orders)
+        harmonics = (own + noise.get(displacement.name, 0.0)) * turn
         given[displacement.name] = harmonics
         given[velocity.name] = period.s * harmonics
         given[acceleration.name] = period.s**2 * harmonics
     return given
-
-
-def _motion_uncertainty(run: GapRun) -> FloatArray:
-    """Return what the measured motion's noise makes of the forces, shape ``(components,)``.
-
-    An order's force per displacement grows with the square of the order, as inertia does; that is
-    more than stiffness and damping make of it.
-    """
-    seen = run.observed
-    noise = {
-        (one.channel, one.order): sigma
-        for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
-        if one.channel in STRUTS and one.part is Part.IN_PHASE
-    }
-    found = np.zeros(len(seen.components))
-    for at, one in enumerate(seen.components):
-        if one.channel in FORCES and one.part in (Part.IN_PHASE, Part.QUADRATURE):
-            strut = STRUTS[FORCES.index(one.channel)]
-            per_m = _first(run, one.channel) / max(_first(run, strut), 1e-9)
-            found[at] = 2.0 * per_m * one.order**2 * noise.get((strut, one.order), 0.0)
-    return found
-
-
-def _first(run: GapRun, channel: str) -> float:
-    parts = [run.observed.value(channel, one, 1) for one in (Part.IN_PHASE, Part.QUADRATURE)]
-    return math.hypot(*parts)
 
 
 def _spectrum(run: GapRun, channel: str, orders: int) -> ComplexArray:
@@ -260,6 +268,8 @@ def unknown_stage(sizes: Sequence[Component], stays_in_air: bool | None) -> Stag
         Whether it is there in runs in air as well; ``None`` if there are none.
     """
     channels = {one.channel for one in sizes}
+    if SPEED in channels:
+        return StageName.CARRIAGE
     if channels & {*STRUTS, SHAFT_ANGLE.name}:
         return StageName.DRIVE if SHAFT_ANGLE.name in channels else StageName.MECHANISM
     if channels == {""}:

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Component, Part
-from analysis.gap.where import BESIDE, FORCE, MOTION, SHAFT, TIMING, Gap, gap_of, left_by_step
-from hardware.description.channels import SHAFT_ANGLE
+from analysis.gap.where import BESIDE, CHAIN, Gap, gap_of, left_by_step, step_of
 from pmm.gap.examine import Examined
 
 FloatArray = NDArray[np.float64]
@@ -47,20 +45,10 @@ def remains(examined: Examined, after: FloatArray) -> Iterator[StepRow]:
     problem = examined.diagnosis.problem
     left = left_by_step(problem, after)
     parts = problem.simulator.stack.components
-    for what in (SHAFT, TIMING, MOTION, FORCE, BESIDE):
-        rows = np.array([_stage_of(one) == what for one in parts])
+    for what in CHAIN:
+        rows = np.array([step_of(one) == what for one in parts])
         if rows.any():
             yield step_row(gap_of(parts, left, what, rows))
-
-
-def _stage_of(one: Component) -> str:
-    if not one.channel:
-        return TIMING
-    if one.channel == SHAFT_ANGLE.name:
-        return SHAFT
-    if one.channel.startswith("displacement"):
-        return MOTION
-    return FORCE if one.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE) else BESIDE
 
 
 def heat_cells(examined: Examined, after: FloatArray) -> Iterator[Cell]:
@@ -69,8 +57,8 @@ def heat_cells(examined: Examined, after: FloatArray) -> Iterator[Cell]:
     stack = problem.simulator.stack
     sizes: dict[tuple[str, str, int, str], list[int]] = {}
     for at, (one, run) in enumerate(zip(stack.components, stack.run, strict=True)):
-        if _stage_of(one) != BESIDE:
-            key = (_stage_of(one), one.channel, one.order, stack.runs[run].name)
+        if step_of(one) != BESIDE:
+            key = (step_of(one), one.channel, one.order, stack.runs[run].name)
             sizes.setdefault(key, []).append(at)
     first, second = left_by_step(problem, problem.residual), left_by_step(problem, after)
     for (stage, channel, order, run), rows in sizes.items():

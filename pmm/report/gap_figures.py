@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.description import ForceMap
-from analysis.gap.where import FORCE, MOTION, SHAFT, TIMING
+from analysis.gap.where import CHAIN
 from pmm.gap.cells import Cell
 from pmm.gap.report import GapReport, joined
 from pmm.report.labels import plain
@@ -23,7 +23,6 @@ FloatArray = NDArray[np.float64]
 
 # E/u from noise (1 and less) to large: one hue, dark is more, told apart without colour too.
 _LEVELS: Final = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
-_CHAIN: Final = (SHAFT, TIMING, MOTION, FORCE)
 _BEFORE, _AFTER = PALETTE[1], PALETTE[0]
 _LEAST_U: Final = 0.05  # where a gap of nothing is drawn on a logarithmic axis
 
@@ -50,7 +49,7 @@ def heat_map(report: GapReport) -> "Figure":
 
 
 def _downstream(row: tuple[str, str, int]) -> tuple[int, str, int]:
-    return _CHAIN.index(row[0]), row[1], row[2]
+    return CHAIN.index(row[0]), row[1], row[2]
 
 
 def _matrix(

@@ -1,0 +1,132 @@
+"""How loud each channel is at each frequency: the lines of the records that no harmonic reaches.
+
+A harmonic is as uncertain as its channel is loud next to it. The scatter from cycle to cycle says
+so too, but six cycles know it to 30 %, and they scatter as the photocell's pulses do, which is the
+same for all channels and left free by itself. Between the harmonics of all runs there are some
+hundred lines, in a time that no pulse defines.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+_BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
+_FEWEST = 30  # lines
+_CORNERS = 9
+_SWEEPS = 5
+_LOUD = 9.0  # times its density, which one line of noise in ten thousand reaches
+_LEAST = 1e-3  # of the usual density
+_MEDIAN = float(np.log(2.0))  # of a line's power over its mean, for Gaussian noise
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines between the harmonics of one record.
+
+    Attributes
+    ----------
+    density
+        Two-sided power density, the channel's unit squared per Hz, shape ``(lines,)``.
+    """
+
+    frequency_hz: FloatArray
+    density: FloatArray
+
+
+def quiet_lines(time_s: FloatArray, values: FloatArray, frequency_hz: float, orders: int) -> Lines:
+    """Return the lines between the harmonics of a record of whole periods, and below them.
+
+    Parameters
+    ----------
+    time_s, values
+        Of the samples, shape ``(samples,)``, evenly spaced.
+    frequency_hz
+        Of the oscillation.
+    orders
+        Harmonics up to which lines are wanted.
+    """
+    count, step_s = len(values), float(time_s[1] - time_s[0])
+    basis = repeating(2.0 * np.pi * frequency_hz * (time_s - time_s[0]), 2 * orders)
+    taper = np.hanning(count)
+    left = (values - basis @ (basis.T @ values)) * taper
+    power = np.abs(np.fft.rfft(left)) ** 2 / np.sum(taper**2) * step_s
+    lines_hz = np.arange(len(power)) / (count * step_s)
+    beside_hz = np.abs(lines_hz - np.round(lines_hz / frequency_hz) * frequency_hz)
+    quiet = (beside_hz > _BESIDE * lines_hz[1]) & (lines_hz < (orders + 1) * frequency_hz)
+    return Lines(lines_hz[quiet], power[quiet])
+
+
+def repeating(angle_rad: FloatArray, orders: int) -> FloatArray:
+    """Return an orthonormal basis of what repeats with an angle, and of a trend.
+
+    Shape ``(samples, 2 + 2 orders)``.
+    """
+    turn = np.linspace(-1.0, 1.0, len(angle_rad))
+    waves = [wave(n * angle_rad) for n in range(1, orders + 1) for wave in (np.sin, np.cos)]
+    return np.asarray(np.linalg.qr(np.column_stack((np.ones_like(turn), turn, *waves)))[0])
+
+
+@dataclass(frozen=True, order=True)
+class Loudness:
+    """A channel's power density: white noise, and noise behind one pole.
+
+    Amplifiers hiss, and what warms, settles or leaks has a time constant: two terms hold both
+    within some per cent from a hundred lines, and tell the density at zero frequency too.
+
+    Attributes
+    ----------
+    white, coloured
+        Two-sided density in the channel's unit squared per Hz; of the second at zero frequency.
+    """
+
+    white: float
+    coloured: float
+    corner_hz: float
+
+    def at(self, frequency_hz: float | FloatArray) -> FloatArray:
+        """Return the density at a frequency."""
+        pole = 1.0 + (np.asarray(frequency_hz) / self.corner_hz) ** 2
+        return np.asarray(self.white + self.coloured / pole, np.float64)
+
+
+def loudness(records: Iterable[Lines]) -> Loudness | None:
+    """Return what several records of a channel say together; ``None`` with too few lines.
+
+    The most probable two terms by Whittle's likelihood, in which a line's power over its density is
+    exponentially distributed. Lines far above it (the mains, an old wave) do not count as noise.
+    """
+    records = list(records)
+    if sum(len(one.density) for one in records) < _FEWEST:
+        return None
+    lines_hz = np.concatenate([one.frequency_hz for one in records])
+    power = np.concatenate([one.density for one in records])
+    usual = float(np.median(power)) / _MEDIAN
+    if not usual > 0.0:
+        return None
+    corners = np.geomspace(2.0 * lines_hz.min(), lines_hz.max(), _CORNERS)
+    found = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
+    one = min(found)[1]
+    return Loudness(usual * one.white, usual * one.coloured, one.corner_hz)
+
+
+def _fitted(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[float, Loudness]:
+    """Return what a corner costs in log likelihood, and the two terms that fit best with it.
+
+    Each sweep is a least squares with the variance that the sweep before has found.
+    """
+    from scipy.optimize import nnls
+
+    terms = np.column_stack((np.ones_like(power), 1.0 / (1.0 + (lines_hz / corner_hz) ** 2)))
+    density = np.ones_like(power)
+    for _ in range(_SWEEPS):
+        kept = power < _LOUD * density
+        weight = 1.0 / density[kept]
+        sizes = nnls(terms[kept] * weight[:, None], power[kept] * weight)[0]
+        density = np.maximum(terms @ sizes, _LEAST)
+    quiet = np.minimum(power / density, _LOUD)
+    cost = float(np.sum(np.log(density) + quiet))
+    return cost, Loudness(float(sizes[0]) + _LEAST, float(sizes[1]), corner_hz)
