@@ -112,6 +112,7 @@ def _short(value: object) -> str:
 
 def unknown(place: Place, known: Sequence[str]) -> str:
     """Say that a key is not known, and which one may be meant."""
+    known = [one for one in known if not one.startswith("_")]
     near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
     return f"is not a known key; {hint}"

@@ -1,5 +1,6 @@
 """What ``pmm console`` does: open the rig, start the web server beside it, and run the loop."""
 
+import errno
 import ssl
 import time
 from collections.abc import Iterator
@@ -10,7 +11,7 @@ from datetime import UTC, datetime
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
-from socket import AF_INET, AF_INET6, socket
+from socket import AF_INET, AF_INET6, EAI_AGAIN, EAI_NONAME, socket
 from socket import create_server as listen
 from typing import Final
 
@@ -24,6 +25,7 @@ from pmm.console.app_settings import Settings
 from pmm.console.asking import Answers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
+from pmm.console.plans import is_plan
 from pmm.console.priority import ADVICE, Priority, before_others, step_back
 from pmm.console.security import LOCAL, Door
 from pmm.console.station import Station
@@ -61,6 +63,7 @@ def work(request: Request) -> None:
     ConfigurationError
         If the rig's file is wrong, the address is taken, or listening there is not safe.
     """
+    _check_no_plan(Path(request.rig))
     rig_file = read_rig_file(request.rig)
     _check(request, rig_file)
     interrupts = Interrupts()
@@ -99,6 +102,34 @@ def _check(request: Request, rig_file: RigFile) -> None:
         )
     if request.output is not None:
         check_folder(Path(request.output), "--output")
+    folders = [("--plans", request.plans), *(("--earlier", one) for one in request.earlier)]
+    for option, name in folders:
+        if name is not None and not Path(name).is_dir():
+            raise ConfigurationError(f"{option} {name}: no such folder")
+    _check_reference(request.reference, rig_file)
+    _check_door(request)
+
+
+def _check_no_plan(path: Path) -> None:
+    """Refuse a plan in the rig's place, in one line instead of a list of unknown keys."""
+    if path.is_file() and is_plan(path):
+        raise ConfigurationError(
+            f"{path}: is a plan, not a rig; give the rig's file that it names, and queue the plan "
+            "on the page"
+        )
+
+
+def _check_reference(file: str | None, rig_file: RigFile) -> None:
+    """Read a table before it is needed: it is shown only when runs have ended."""
+    if file is None:
+        return
+    from pmm.coefficients.references import read_references
+    from pmm.coefficients.settings import ReferenceFile, Settings
+
+    read_references((ReferenceFile(file),), rig_file.oscillator.plane, Settings().form)
+
+
+def _check_door(request: Request) -> None:
     if (request.certificate is None) != (request.key is None):
         raise ConfigurationError("--certificate and --key belong together; give both or neither")
     if request.host not in LOCAL and request.token_file is None:
@@ -118,12 +149,17 @@ def _check_tls(certificate: str, key: str) -> None:
     try:
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(certificate, key)
     except (OSError, ssl.SSLError) as error:
-        raise ConfigurationError(f"--certificate {certificate}, --key {key}: {error}") from error
+        raise ConfigurationError(
+            f"--certificate {certificate}, --key {key}: not a certificate and its key in PEM "
+            f"({error})"
+        ) from error
 
 
 def _token(file: str | None) -> str:
     if file is None:
         return ""
+    if not Path(file).is_file():
+        raise ConfigurationError(f"--token-file {file}: no such file")
     try:
         token = Path(file).read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
@@ -143,11 +179,24 @@ def _listening(request: Request) -> Iterator[socket]:
         found = listen((request.host, request.port), family=family)
     except OSError as error:
         raise ConfigurationError(
-            f"--host {request.host} --port {request.port}: {error.strerror}; is a console running "
-            "already? --port 0 takes a free one"
+            f"--host {request.host} --port {request.port}: {_not_listening(error)}"
         ) from error
     with found:
         yield found
+
+
+def _not_listening(error: OSError) -> str:
+    """Say why an address cannot be listened on, and what to do."""
+    no_host = "no such host is known; give an address of this machine, such as 127.0.0.1"
+    known = {
+        EAI_NONAME: no_host,
+        EAI_AGAIN: no_host,
+        errno.EADDRINUSE: "the port is taken; is a console running already? --port 0 takes a free "
+        "one",
+        errno.EADDRNOTAVAIL: "not an address of this machine; give one of its own, or 127.0.0.1",
+        errno.EACCES: "this port needs more rights; take one above 1023, or --port 0",
+    }
+    return known.get(error.errno or 0, str(error))
 
 
 @contextmanager

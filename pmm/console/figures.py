@@ -5,7 +5,8 @@ from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
-from hardware.description.errors import PmmError
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from hardware.description.errors import DataError, PmmError
 
 
 class _Here(Executor):
@@ -33,17 +34,19 @@ def figures_of(
 
     points: list[dict[str, Any]] = []
     problems: list[str] = []
+    result: CampaignCoefficients | None = None
     for folder, of in [*((one, "now") for one in folders), *((one, "earlier") for one in earlier)]:
         try:
             if of == "earlier" or _has_runs(folder):
-                points += [{**one, "of": of, "campaign": folder.name} for one in _points(folder)]
+                result = _result(folder)
+                points += [{**one, "of": of, "campaign": folder.name} for one in _points(result)]
         except (PmmError, OSError) as error:
             problems.append(f"{folder.name}: {error}")
-    if reference is not None and points:
+    if reference is not None and result is not None:
         try:
-            points += list(_reference_points(reference, points))
+            points += list(_reference_points(reference, result))
         except (PmmError, OSError) as error:
-            problems.append(f"{reference.name}: {error}")
+            problems.append(str(error))
     for one in points:
         for key in ("value", "half_width", "frequency_hz", "speed_m_s"):
             one[key] = number(one[key])
@@ -51,20 +54,24 @@ def figures_of(
 
 
 def _has_runs(folder: Path) -> bool:
-    """Whether a campaign under way has a complete run yet: before that there is nothing to say."""
+    """Whether a campaign under way has a complete run in water: before that all is silent."""
     from pmm.campaign import CAMPAIGN_FILE
     from pmm.configuration import read_toml
 
-    return bool(read_toml(folder / CAMPAIGN_FILE).get("runs"))
+    runs = read_toml(folder / CAMPAIGN_FILE).get("runs") or []
+    wanted = {"outcome": "complete", "medium": "water"}
+    return any(all(one.get(key, must) == must for key, must in wanted.items()) for one in runs)
 
 
-def _points(folder: Path) -> Iterator[dict[str, Any]]:
+def _result(folder: Path) -> CampaignCoefficients:
     from pmm.coefficients.settings import Settings
     from pmm.coefficients.workflow import coefficients_of
 
     settings = Settings(nonlinear=False, zero_frequency=False)
-    found = coefficients_of([folder], settings, _Here(), _silent)
-    result = found.result
+    return coefficients_of([folder], settings, _Here(), _silent).result
+
+
+def _points(result: CampaignCoefficients) -> Iterator[dict[str, Any]]:
     widths = result.half_widths
     for row, entry in enumerate(result.entries):
         yield {
@@ -82,24 +89,28 @@ def _silent(_done: int, _total: int, _what: str) -> None:
     """Show no progress."""
 
 
-def _reference_points(path: Path, points: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Read the columns of a CSV by the names of the coefficients."""
-    import csv
+def _reference_points(path: Path, result: CampaignCoefficients) -> Iterator[dict[str, Any]]:
+    """Return what a table has of the coefficients that a campaign has, in the same system."""
+    from pmm.coefficients.references import read_references
+    from pmm.coefficients.settings import ReferenceFile
 
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        lines = [line for line in file if not line.startswith("#")]
-    units = {one["name"]: one["unit"] for one in points}
-    for row in csv.DictReader(lines):
-        for name, unit in units.items():
-            if row.get(name) and row.get("frequency_hz"):
+    units = {entry.name: entry.unit for entry in result.entries}
+    for one in read_references((ReferenceFile(str(path)),), result.plane, result.form):
+        if str(one.system) != result.normalisation:
+            raise DataError(
+                f"reference {path}: is in the system {one.system}, the page shows "
+                f"{result.normalisation} values; give it in that system"
+            )
+        for name in units.keys() & one.table.values.keys():
+            for k, frequency_hz in enumerate(one.table.frequency_hz):
                 yield {
                     "name": name,
-                    "unit": unit,
-                    "frequency_hz": float(row["frequency_hz"]),
-                    "speed_m_s": float(row.get("speed_m_s") or "nan"),
-                    "value": float(row[name]),
+                    "unit": units[name],
+                    "frequency_hz": float(frequency_hz),
+                    "speed_m_s": one.table.speed_m_s,
+                    "value": float(one.table.values[name][k]),
                     "half_width": float("nan"),
                     "runs": [],
                     "of": "reference",
-                    "campaign": path.stem,
+                    "campaign": one.table.name,
                 }

@@ -64,7 +64,7 @@ class Plans:
     def names(self) -> list[str]:
         """Return the files in the folder that hold a plan, by their names."""
         found = sorted(self._folder.glob("*.toml"))
-        return [one.name for one in found if _is_plan(one)]
+        return [one.name for one in found if is_plan(one)]
 
     def check(self, name: str, text: str) -> CheckedPlan:
         """Read and check a plan: one of the folder's files, or the text of one.
@@ -88,14 +88,18 @@ class Plans:
             If it is wrong, or the rig cannot run it.
         """
         if text:
-            with self._written(text) as path:
-                self._read(path)
+            with self._written(text) as path:  # what is refused is not kept
+                self._possible(path)
             name = f"console-{_digest(text)}.toml"
             (self._folder / name).write_text(text, encoding="utf-8")
-        found = self._read(self._known(name))
-        require_possible(found.waiting.plan, found.rig, _today())
+        found = self._possible(self._known(name))
         found.waiting.folder.mkdir(parents=True, exist_ok=True)
         keep_sources(found.waiting.plan, found.waiting.folder)
+        return found
+
+    def _possible(self, path: Path) -> CheckedPlan:
+        found = self._read(path)
+        require_possible(found.waiting.plan, found.rig, _today())
         return found
 
     def _known(self, name: str) -> Path:
@@ -164,7 +168,8 @@ def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
     }
 
 
-def _is_plan(path: Path) -> bool:
+def is_plan(path: Path) -> bool:
+    """Whether a file is a plan, right or wrong: it names a rig and has runs."""
     try:
         table = read_toml(path)
     except PmmError:

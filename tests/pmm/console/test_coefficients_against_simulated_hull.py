@@ -40,4 +40,27 @@ def test_what_cannot_be_read_is_said_by_name(tmp_path: Path) -> None:
     folder = _campaign(tmp_path / "now")
     found = figures_of((folder,), (tmp_path / "gone",), tmp_path / "none.csv")
     assert {one["of"] for one in found["points"]} == {"now"}
-    assert [problem.partition(":")[0] for problem in found["problems"]] == ["gone", "none.csv"]
+    gone, none = found["problems"]
+    assert gone.startswith("gone:")
+    assert f"{tmp_path / 'none.csv'}: no such file" in none
+
+
+def test_a_table_is_read_as_the_report_reads_it(tmp_path: Path) -> None:
+    folder = _campaign(tmp_path / "now")
+    table = tmp_path / "panels.csv"
+    values = "omega_rad_s,coefficient,value\n3.1415926535897931,Z_wdot,-80\n"
+    table.write_text(values, encoding="utf-8")
+    found = figures_of((folder,), (), table)
+    reference = [one for one in found["points"] if one["of"] == "reference"]
+    assert [(one["frequency_hz"], one["value"]) for one in reference] == [(0.5, -80.0)]
+    table.write_text(f"# system = prime\n{values}", encoding="utf-8")
+    found = figures_of((folder,), (), table)
+    assert not [one for one in found["points"] if one["of"] == "reference"]
+    (problem,) = found["problems"]
+    assert "in the system prime, the page shows dimensional" in problem
+
+
+@pytest.mark.parametrize("left", ['outcome = "fault"', 'medium = "air"'])
+def test_nothing_is_missed_before_a_run_in_water_is_complete(tmp_path: Path, left: str) -> None:
+    (tmp_path / "campaign.toml").write_text(f'[[runs]]\nname = "a"\n{left}\n', encoding="utf-8")
+    assert figures_of((tmp_path,), (), None) == {"points": [], "problems": []}
