@@ -173,6 +173,7 @@ class Hub:
             return
         self.add_notice(notice)
         if notice.outcome is not None:
+            self._needles = notice.needles or self._needles
             folder = str(notice.folder or "")
             entry = outcome_picture(notice.outcome, notice.needles, folder, self._utc())
             self.finished.append(entry)

@@ -11,6 +11,7 @@ from pmm.console.messages import Bus, ChannelInfo, FloatArray, Needles
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.measurement import Measurement
+from pmm.run.readings import rows_of
 from pmm.run.run_control import RunControl
 from pmm.run.sampler import header_channels
 from pmm.run.states import ALLOWED
@@ -86,6 +87,17 @@ class NeedleReader:
             widths = np.full(values.shape, math.nan)
             widths[:, 0] = [one.half_width for one in rows]
         return Needles(values, widths, final=all(one.final for one in rows))
+
+    def standing(self, measurement: Measurement) -> Needles | None:
+        """Return the last reading over whole periods; where there is none, what the needles show.
+
+        A motion that is being stopped spoils the provisional one.
+        """
+        rows = measurement.rows()
+        reading = measurement.reading
+        if reading is None:
+            return self.read(measurement, rows)
+        return self.read(measurement, rows_of(reading))
 
     def _half_widths(self, reading: Harmonics | None) -> FloatArray | None:
         """Compute the intervals once for each reading."""

@@ -170,7 +170,7 @@ class Station:
         if command is Command.START and not self.control.runs:
             raise RunStateError("no plan is queued; check one and queue it first")
         self.control.request(command)
-        return f"{command} in state {self.control.state}"
+        return f"{command} taken; state: {self.control.state}"
 
     def _queue(self, plan: QueuedPlan) -> str:
         if not plan.runs:
@@ -245,11 +245,10 @@ class Station:
 
     def _tell_news(self, control: RunControl) -> None:
         if control.state is not self._told_state:
-            self._told_state = control.state
+            before, self._told_state = self._told_state, control.state
             self._notice("state", str(control.state))
-            if control.measurement is not None:
-                rows = control.measurement.rows()
-                self._latest = self._needles.read(control.measurement, rows)
+            if control.measurement is not None and before is not State.STOPPING:
+                self._latest = self._needles.standing(control.measurement)
         for text in self._writer.failures():
             self._notice("alarm", text)
         new = control.alarm_count - self._told_alarms
@@ -263,8 +262,8 @@ class Station:
                 continue
             plan = self._present
             self._link.tell(
-                Notice("outcome", self._time_s, outcome.run, outcome, self._latest,
-                       plan.number, plan.folder)
+                Notice("outcome", self._time_s, f"{outcome.run}, {outcome.outcome}", outcome,
+                       self._latest, plan.number, plan.folder)
             )  # fmt: skip
             self._latest = None
             self._writer.write(plan, self._link.tell)

@@ -10,7 +10,7 @@ import { Traces } from "./traces.js";
 const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
 const finished = new Finished(), coefficients = new Coefficients();
 const FIGURES = 4; // figures change in every fourth frame: nobody reads 25 numbers a second
-let holder = "nobody", priority = "", latest = null, due = false, shown = false;
+let holder = "nobody", priority = "", latest = null, due = false, shown = false, ended = false;
 
 function draw() {
   due = false;
@@ -60,8 +60,8 @@ function showQuestion(frame) {
 
 function showDesk(desk) {
   holder = desk.holder;
-  const others = desk.browsers > 1 ? `, ${desk.browsers} browsers` : "";
-  text(byId("desk"), { you: `You have control${others}`, other: `You watch: another browser has control${others}`, nobody: "Nobody has control" }[holder]);
+  const others = desk.browsers > 1 ? `, ${desk.browsers - 1} watching` : "";
+  text(byId("desk"), { you: `You have control${others}`, other: "You watch: another browser has control", nobody: "Nobody has control" }[holder]);
   byId("take").hidden = holder === "you";
   document.body.dataset.holder = holder;
   if (latest) showButtons(latest);
@@ -90,6 +90,7 @@ function missed({ frames, seconds, happened }) {
 
 function begin(snapshot) {
   byId("lost").hidden = snapshot.connected;
+  ended = !snapshot.connected;
   if (!snapshot.hello) return;
   priority = snapshot.hello.priority;
   text(byId("rig"), snapshot.hello.rig + (snapshot.hello.speed === 1 ? "" : `, ${snapshot.hello.speed} times as fast`));
@@ -115,11 +116,15 @@ const stream = new Stream({
   desk: showDesk,
   notice: (one) => alarms.add(one),
   plans: (one) => plans.take(one.plans),
-  finished: (one) => { finished.add(one.entry); plans.refresh(); },
+  finished: (one) => {
+    finished.add(one.entry);
+    if (latest?.run === one.entry.run) readings.settle(one.entry.needles);
+    plans.refresh();
+  },
   figures: (one) => coefficients.take(one.figures),
   lost: (words) => {
-    if (words.type) words = "The control loop has ended.";
-    text(byId("lost-text"), words);
+    if (words.type) ended = true;
+    text(byId("lost-text"), ended ? "The control loop has ended; this page comes back when the console is started again." : words);
     byId("lost").hidden = false;
   },
 });

@@ -37,12 +37,15 @@ export class Finished {
   rows(entry) {
     const gauge = byId("finished-gauge").value;
     const shown = entry.rows.filter((one) => FORCES.includes(one.unit) && (!gauge || one.channel === gauge));
-    const cells = shown.length ? shown.flatMap((one) => this.harmonics(entry, one)) : [["", "", "", ""]];
-    return cells.map((one, k) => {
+    const lines = shown.length ? shown.flatMap((one) => this.harmonics(entry, one)) : [["", "", "", ""]];
+    const notes = [entry.outcome === "complete" ? "" : `${entry.outcome}: ${entry.reason}`, ...entry.flags];
+    return [...lines.map((one, k) => {
       const first = [`${SIGNS[entry.outcome] ?? ""} ${entry.run}`, `${entry.periods} periods`][k] ?? "";
       const kind = [k ? "more" : "", one[1] > "1" ? "higher" : ""].join(" ").trim();
-      return html("tr", { class: kind, "data-run": entry.run, title: `${entry.outcome} ${entry.reason}` }, ...[first, ...one].map(cell));
-    });
+      const cells = [first, ...one].map(cell);
+      cells[0].dataset.periods = `, ${entry.periods} periods`; // beside the name where there is no room below
+      return html("tr", { class: kind, "data-run": entry.run }, ...cells);
+    }), ...notes.filter((one, k) => one && !notes.slice(0, k).some((before) => before.includes(one))).map((one) => html("tr", { class: "more said", "data-run": entry.run }, html("td", { colspan: 5 }, one)))];
   }
 
   harmonics(entry, row) {
@@ -56,13 +59,14 @@ export class Finished {
   }
 }
 
-const H = 190, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
+const LEAST = 190, LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34;
 
 export class Coefficients {
   constructor() {
     this.points = [];
     byId("coefficient").addEventListener("change", () => this.draw());
-    new ResizeObserver(() => { if (byId("coefficient-chart").clientWidth !== this.width) this.draw(); }).observe(byId("coefficients"));
+    const box = byId("coefficient-chart");
+    new ResizeObserver(() => { if (box.clientWidth !== this.width || box.clientHeight !== this.height) this.draw(); }).observe(box);
     this.draw();
   }
 
@@ -72,18 +76,20 @@ export class Coefficients {
     const names = [...new Set(this.points.map((one) => one.name))];
     const box = byId("coefficient"), chosen = names.includes(box.value) ? box.value : names[0];
     box.replaceChildren(...names.map((one) => html("option", one === chosen ? { selected: "" } : {}, one)));
+    box.parentElement.hidden = !names.length;
     this.draw();
   }
 
   draw() {
     const name = byId("coefficient").value;
     this.width = byId("coefficient-chart").clientWidth;
+    this.height = byId("coefficient-chart").clientHeight;
     const points = this.points.filter((one) => one.name === name && one.value !== null && one.frequency_hz !== null);
     if (!points.length) {
       byId("coefficient-chart").replaceChildren(html("p", { class: "quiet" }, "Coefficients come when runs in water have ended and their inertia is known."));
       return;
     }
-    const W = Math.max(280, this.width);
+    const W = Math.max(280, this.width), H = Math.max(LEAST, this.height);
     const highs = points.map((one) => one.value + (one.half_width ?? 0)), lows = points.map((one) => one.value - (one.half_width ?? 0));
     const right = Math.max(...points.map((one) => one.frequency_hz)) * 1.1;
     const span = Math.max(Math.max(...highs) - Math.min(...lows), 0.05 * Math.abs(points[0].value), 1e-12);
@@ -102,9 +108,13 @@ export class Coefficients {
       parts.push(svg("text", { class: "note-text", x: x(f), y: H - 14, "text-anchor": "middle" }, [String(Number(f.toPrecision(3)))]));
     }
     parts.push(svg("text", { class: "note-text", x: W - RIGHT, y: H - 3, "text-anchor": "end" }, ["frequency [Hz]"]),
-      svg("text", { class: "note-text", x: 2, y: 13 }, [`${name} [${points[0].unit}]   ● now   ◇ earlier   - - reference`]));
-    const curve = points.filter((one) => one.of === "reference").sort((a, b) => a.frequency_hz - b.frequency_hz);
-    if (curve.length) parts.push(svg("polyline", { class: "curve", points: curve.map((one) => `${x(one.frequency_hz)},${y(one.value)}`).join(" ") }));
+      svg("text", { class: "note-text", x: 2, y: 13 }, [`${name} [${points[0].unit}]   ● now   ◇ earlier   -+- reference`]));
+    const references = points.filter((one) => one.of === "reference").sort((a, b) => a.frequency_hz - b.frequency_hz);
+    for (const speed of new Set(references.map((one) => one.speed_m_s))) { // a curve for each; a lone point has its cross
+      const curve = references.filter((one) => one.speed_m_s === speed).map((one) => [x(one.frequency_hz), y(one.value)]);
+      parts.push(svg("polyline", { class: "curve", points: curve.join(" ") }, [svg("title", {}, [`${references[0].campaign}, ${speed ?? "–"} m/s`])]),
+        svg("path", { class: "cross", d: curve.map(([px, py]) => `M ${px - 4} ${py} h 8 M ${px} ${py - 4} v 8`).join(" ") }));
+    }
     const measured = ["earlier", "now"].flatMap((of) => points.filter((each) => each.of === of)); // what is new on top
     for (const one of measured) {
       const [px, py, half] = [x(one.frequency_hz), y(one.value), one.half_width ?? 0];

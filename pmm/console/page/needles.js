@@ -20,7 +20,7 @@ class Dial {
     this.band = svg("path", { class: "band" });
     this.ends = [-1, 0, 1].map((at) => {
       const angle = ((at * SWEEP - 90) * Math.PI) / 180;
-      return svg("text", { class: "scale", x: 100 + 56 * Math.cos(angle), y: 99 + 58 * Math.sin(angle) });
+      return svg("text", { class: "scale", x: 100 + 52 * Math.cos(angle), y: 102 + 58 * Math.sin(angle) });
     });
     this.value = html("b");
     this.width = html("span");
@@ -33,7 +33,9 @@ class Dial {
 
   show(value, width, full, figures = true) {
     if (figures) {
-      text(this.value, digits(value, width));
+      const shown = digits(value, width);
+      text(this.value, shown);
+      attribute(this.value, "data-long", shown.length > 8 ? "yes" : "no");
       text(this.width, plusMinus(width) || " ");
     }
     const share = value === null ? 0 : Math.max(-1.05, Math.min(1.05, value / full));
@@ -56,6 +58,7 @@ class Phasor {
     this.root = html("div", { class: "phasor" }, svg("svg", { viewBox: "0 0 160 160", role: "img", "aria-label": "phasor: in phase to the right, quadrature up" }, [
       svg("circle", { class: "ring", cx: 80, cy: 80, r: 70 }), svg("circle", { class: "ring", cx: 80, cy: 80, r: 35 }),
       svg("line", { class: "axis", x1: 6, y1: 80, x2: 154, y2: 80 }), svg("line", { class: "axis", x1: 80, y1: 154, x2: 80, y2: 6 }),
+      svg("text", { class: "scale end", x: 156, y: 95 }, ["in phase"]), svg("text", { class: "scale start", x: 83, y: 14 }, ["quadrature"]),
       this.cloud, ...this.arrows, this.tip,
     ]));
   }
@@ -98,12 +101,14 @@ export class Card {
     this.dials.forEach((dial, k) => dial.show(parts[k], widths[2 * order - 1 + k], this.scale, figures));
     this.phasor.show(row, widths, order, nice(Math.max(...row.slice(1).map((one) => Math.abs(one ?? 0)), size) * 1.05));
     attribute(this.root, "data-final", final ? "yes" : "no");
-    if (figures) text(this.note, `mean ${digits(row[0], widths[0])}  amplitude ${digits(Math.hypot(parts[0] ?? 0, parts[1] ?? 0), Math.max(...widths.slice(1, 3)))}`);
+    attribute(this.root, "data-empty", "no");
+    if (figures) text(this.note, `mean ${digits(row[0], widths[0])}, amplitude ${digits(Math.hypot(parts[0] ?? 0, parts[1] ?? 0), Math.max(...widths.slice(1, 3)))}`);
   }
 
   clear() {
     this.dials.forEach((dial) => dial.show(null, null, this.scale || 1));
     this.phasor.show([0, ...this.phasor.arrows.flatMap(() => [0, 0])], [], this.order ?? 1, 1);
     text(this.note, "no reading");
+    attribute(this.root, "data-empty", "yes");
   }
 }

@@ -10,17 +10,21 @@ export class Plans {
       event.preventDefault();
       this.send(event.submitter?.dataset.do ?? "check");
     });
+    addEventListener("focus", () => this.refresh()); // reports are written meanwhile
     this.refresh();
   }
 
   async refresh() {
-    const [plans, pages] = await Promise.all(["/api/plans", "/api/pages"].map(async (path) => (await fetch(path)).json()));
+    const answers = await Promise.all(["/api/plans", "/api/pages"].map((path) => fetch(path).catch(() => null)));
+    if (!answers.every((one) => one?.ok)) return; // the stream says that the connection is lost
+    const [plans, pages] = await Promise.all(answers.map((one) => one.json()));
     const chosen = byId("plan-name").value;
     byId("plan-name").replaceChildren(...plans.names.map((one) => html("option", one === chosen ? { selected: "" } : {}, one)));
     const links = pages.pages.map((one) =>
       html("a", { href: one.address, target: "_blank", rel: "noopener" }, `${one.folder}: ${one.name.replace(/\.(html|svg)$/, "")}`));
     byId("pages-list").replaceChildren(...(links.length ? links : [html("p", { class: "quiet" },
-      "None yet. pmm report, pmm gap --page and pmm inertia --plot write them into a campaign's folder.")]));
+      "None yet. ", html("code", {}, "pmm report"), ", ", html("code", {}, "pmm gap --page"), " and ", html("code", {}, "pmm inertia --plot"),
+      " write them into a campaign's folder.")]));
   }
 
   async send(what) {

@@ -61,15 +61,18 @@ export class Readings {
   }
 
   clear() {
-    this.last = null;
+    this.last = this.standing = null;
     this.cards.forEach((one) => one.card.clear());
     this.tiles.forEach((one) => one.tile.clear());
     text(byId("finality"), "no reading");
   }
 
+  // What is left of a run that has ended: its whole periods, not how it came to rest.
+  settle(needles) { this.standing = needles; }
+
   // Needles move in every frame; figures and tiles only where asked for, and always at the end.
   show(needles, figures = true) {
-    if (!needles) return text(byId("finality"), this.last ? "last reading" : "no reading");
+    if (!needles) return this.rest();
     this.last = needles;
     const told = figures || needles.final;
     for (const { k, card } of this.cards) card.show(needles.values[k], needles.widths[k], this.order, needles.final, told);
@@ -79,5 +82,12 @@ export class Readings {
     if (!byId("all-channels").open || !figures) return;
     this.cells.forEach((row, k) => row.forEach((cell, at) =>
       text(cell, `${digits(needles.values[k][at], needles.widths[k][at])} ${plusMinus(needles.widths[k][at])}`)));
+  }
+
+  rest() {
+    const standing = this.standing;
+    this.standing = null;
+    if (standing) this.show(standing);
+    text(byId("finality"), this.last ? "last reading" : "no reading");
   }
 }

@@ -13,7 +13,7 @@ export function showState(frame) {
   attribute(byId("gate"), "data-gate", gate);
   text(byId("gate-name"), gate);
   text(byId("gate-line"), frame.opened_s === null ? "" : frame.closed_s === null
-    ? `open since ${(frame.time_s - frame.opened_s).toFixed(1)} s` : `was open ${(frame.closed_s - frame.opened_s).toFixed(2)} s`);
+    ? `open since ${(frame.time_s - frame.opened_s).toFixed(1)} s` : `lasted ${(frame.closed_s - frame.opened_s).toFixed(2)} s`);
   text(byId("periods"), String(frame.periods));
   text(byId("wanted"), String(frame.wanted));
   byId("period-bar").value = frame.wanted ? frame.periods / frame.wanted : 0;
@@ -33,11 +33,12 @@ function facts(frame) {
   }
   found.push(["carriage, set", frame.set ? `${digits(frame.set.carriage_speed_m_s)} m/s in ${frame.set.medium}` : "–"]);
   const bus = frame.bus;
-  const busText = bus.nodes ? `${bus.ok ? "in order" : bus.faults.length ? "a fault is latched" : "NOT IN ORDER"}, ${bus.nodes} nodes` : "none";
+  const wrong = bus.faults.length ? "fault latched" : "NOT IN ORDER";
+  const busText = !bus.nodes ? "none" : bus.ok ? `in order, ${bus.nodes} nodes` : wrong;
   found.push(["bus", busText, bus.ok ? "" : "bad"]);
   if (bus.nodes) found.push(["error frames", String(bus.error_frames)]);
   const free = frame.free_bytes;
-  found.push(["disk", free === null ? "nothing recorded" : `${(free / 1e9).toFixed(1)} GB left`, free !== null && free < 1e9 ? "bad" : ""]);
+  found.push(["disk", free === null ? "no plan yet" : `${(free / 1e9).toFixed(1)} GB left`, free !== null && free < 1e9 ? "bad" : ""]);
   const loop = frame.loop;
   const late = loop.cycles ? `${(loop.p99_s * 1e3).toFixed(2)} ms, worst ${(loop.worst_s * 1e3).toFixed(1)}` : "–";
   found.push(["loop late, 99 %", late]);

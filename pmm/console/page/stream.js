@@ -34,8 +34,15 @@ export class Stream {
       ? "This session was opened in another window; reload to come back."
       : "What is shown is old. The rig runs on; this page tries to come back.");
     if (event.code === 4001) return;
+    this.askAgain();
     setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(4000, this.wait * 2);
+  }
+
+  // A console that was started anew knows no cookie of the old one: its token is asked again.
+  async askAgain() {
+    const answer = await fetch("/api/plans").catch(() => null);
+    if (answer?.status === 401) location.assign("/login");
   }
 
   take(message) {

@@ -25,16 +25,20 @@ export function attribute(element, name, value) {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-// A value with the digits that its half-width bears; five digits where there is none.
+const KEPT = 6; // digits of a number that is sent
+const places = (halfWidth) => Math.min(8, Math.max(0, 1 - Math.floor(Math.log10(halfWidth))));
+
+// A value with the digits that its half-width bears, and no more than were sent; four where there is none.
 export function digits(value, halfWidth) {
   if (value === null || value === undefined) return "–";
   if (!(halfWidth > 0)) return Number(value.toPrecision(4)).toString();
-  const places = Math.min(8, Math.max(0, 1 - Math.floor(Math.log10(halfWidth))));
-  return value.toFixed(places);
+  const sent = value ? Math.max(0, KEPT - 1 - Math.floor(Math.log10(Math.abs(value)))) : 8;
+  return value.toFixed(Math.min(places(halfWidth), sent)).replace(/^-(0\.?0*)$/, "$1");
 }
 
 export function plusMinus(halfWidth) {
-  return halfWidth > 0 ? `± ${Number(halfWidth.toPrecision(2))}` : "";
+  if (!(halfWidth > 0)) return "";
+  return `± ${halfWidth < 1e-4 ? halfWidth.toPrecision(2) : halfWidth.toFixed(places(halfWidth))}`;
 }
 
 // The next of 1, 2, 5, 10 ... that is not below a size.

@@ -40,10 +40,12 @@ export class Tile {
     this.lines.forEach((line, k) => line.show(parts[k], widths[2 * order - 1 + k], full));
     text(this.width, plusMinus(Math.max(...[0, 1].map((k) => widths[2 * order - 1 + k] ?? 0))));
     attribute(this.root, "data-final", final ? "yes" : "no");
+    attribute(this.root, "data-empty", "no");
   }
 
   clear() {
     this.lines.forEach((line) => line.show(null, null, 1));
     text(this.width, "");
+    attribute(this.root, "data-empty", "yes");
   }
 }

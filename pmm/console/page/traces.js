@@ -16,7 +16,7 @@ class Scale {
       if (one > high) high = one;
     }
     if (low > high) return;
-    const span = Math.max(high - low, 1e-4 * Math.abs(high), 1e-9);
+    const span = Math.max(high - low, 3e-3 * Math.max(Math.abs(high), Math.abs(low)), 1e-9);
     const grown = low < this.low || high > this.high;
     if (grown || span < 0.5 * (this.high - this.low)) {
       this.low = low - 0.1 * span;
@@ -32,7 +32,8 @@ class Chart {
     this.scale = new Scale();
     this.members = members;
     this.box = html("div", { class: "chart" });
-    const unit = channels[members[0]].unit || "–";
+    const given = channels[members[0]].unit || "–";
+    const [factor, unit] = given === "m" ? [1000, "mm"] : [1, given]; // as the set points are told
     const colours = members.map((_, k) => css(`--s${(k % PER_CHART) + 1}`));
     this.legend = html("div", { class: "legend" }, `[${unit}] `, ...members.map((k, at) => {
       const mark = html("i");
@@ -40,8 +41,8 @@ class Chart {
       return html("span", {}, mark, channels[k].name);
     }));
     const values = (_plot, splits, _axis, _space, step) => {
-      const places = Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
-      return splits.map((one) => one.toFixed(places));
+      const places = Math.min(6, Math.max(0, Math.ceil(-Math.log10(step * factor) - 1e-9)));
+      return splits.map((one) => (one * factor).toFixed(places));
     };
     const axis = { stroke: css("--quiet"), grid: { stroke: css("--line"), width: 1 }, ticks: { stroke: css("--line") }, font: "12px system-ui" };
     this.plot = new uPlot({
@@ -108,6 +109,7 @@ export class Traces {
     this.width = 0;
     this.box.replaceChildren(...this.charts.flatMap((one) => [one.legend, one.box]));
     this.fit();
+    this.charts.forEach((one) => one.draw()); // no frame may come to do it
   }
 
   fit() {
@@ -117,10 +119,12 @@ export class Traces {
     this.charts.forEach((one) => one.resize(width));
   }
 
-  // Gates of the last 20 s; a gate that closes replaces itself as it was open.
+  // Gates of the last 20 s; a gate that closes replaces itself as it was open, and one whose run was
+  // stopped ends where it was last seen.
   mark(opened, closed) {
-    const from = this.times ? this.window()[0] : 0;
-    this.gates = this.gates.filter(([one, end]) => one !== opened && end !== null && end > from);
+    const [from, now] = this.times ? this.window() : [0, 0];
+    this.gates = this.gates.filter(([one]) => one !== opened).map(([one, end]) => [one, end ?? now])
+      .filter(([, end]) => end > from);
     if (opened !== null) this.gates.push([opened, closed]);
   }
 

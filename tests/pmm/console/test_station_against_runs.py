@@ -128,6 +128,28 @@ def test_plans_follow_each_other_and_every_point_of_a_trace_is_shown_once(tmp_pa
         )  # first and last frame, a cycle each
 
 
+def test_a_run_that_is_stopped_leaves_the_reading_of_its_whole_periods(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        runs = [oscillation(name, 2.0, periods=8, max_periods=8) for name in ("whole", "stopped")]
+        one.queue(1, "plan", *runs)
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.DONE)
+        one.until(State.GATE_OPEN)
+        for _ in range(5 * 50 + 30):  # into the sixth period
+            one.station.step()
+        assert one.order(OrderKind.COMMAND, "stop").done
+        for _ in range(1000):
+            one.station.step()
+        told = [o for o in one.heard.told if isinstance(o, Notice) and o.kind == "outcome"]
+        assert [o.text for o in told] == ["whole, complete", "stopped, stopped"]
+        whole, stopped = (o.needles for o in told)
+        assert whole is not None
+        assert stopped is not None
+        assert stopped.final
+        apart = np.abs(stopped.coefficients - whole.coefficients)[:, 1:3]
+        assert (apart <= 2.0 * (stopped.half_widths + whole.half_widths)[:, 1:3] + 1e-9).all()
+
+
 def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_path: Path) -> None:
     with _shown(tmp_path) as one:
         one.queue(1, "first", _short("a"))
