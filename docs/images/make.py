@@ -5,6 +5,7 @@ where chromium and chromedriver are installed.
 """
 
 import shutil
+from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import sleep
@@ -14,7 +15,7 @@ from analysis.resolver.analyse import Settings, analyse
 from pmm.report.plots import FIGURES
 from pmm.report.style import drawing
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parents[1] / "examples"
 EXAMPLE = EXAMPLES / "recordings"
 PLAN = """name = "heave"
@@ -49,12 +50,12 @@ def show_console() -> None:
     """Run a plan under the console and take its picture, light and dark, while a gate is open."""
     from tests.pmm.console.chromium import browser, console
 
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        shutil.copytree(EXAMPLES / "vertical", folder / "rig")
+    # Relative names, for the page shows where it records.
+    with TemporaryDirectory() as name, chdir(name):
+        shutil.copytree(EXAMPLES / "vertical", "rig")
         with (
-            console(folder / "rig" / "rig.toml", folder / "out") as one,
-            browser(folder / "profile") as page,
+            console(Path("rig") / "rig.toml", Path("campaigns")) as one,
+            browser(Path(name) / "profile") as page,
         ):
             page.open(one.address)
             page.queue(PLAN)
@@ -82,10 +83,10 @@ def show_report() -> None:
     with TemporaryDirectory() as name:
         folder, whole = Path(name), Path(name) / "whole.png"
         CliRunner().invoke(cli, ["demo", "--vertical-only", "--output", str(folder / "demo")])
-        with browser(folder / "profile") as page:
-            page.driver.set_window_size(1100, 1500)
-            page.open((folder / "demo" / "report.html").as_uri())
-            page.run("document.querySelector('h2').scrollIntoView()")
+        with browser(folder / "profile", width=1100, height=1500) as page:
+            page.driver.get((folder / "demo" / "report.html").as_uri())
+            page.run("document.documentElement.style.scrollbarWidth = 'none'")
+            page.run("document.querySelector('h2').scrollIntoView(); scrollBy(0, -20)")
             page.driver.save_screenshot(str(whole))
         picture = Image.open(whole).convert("RGB").crop((0, 0, 1100, 990))
         picture.resize((880, 792)).quantize(64).save(HERE / "report.png", optimize=True)

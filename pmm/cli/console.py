@@ -24,7 +24,7 @@ import click
     multiple=True,
     help="Show the coefficients of this campaign beside; repeatable.",
 )
-@click.option("--reference", metavar="CSV", help="Show this table of coefficients beside.")
+@click.option("--reference", metavar="FILE", help="Show this table of coefficients beside.")
 @click.option(
     "--speed",
     type=click.FloatRange(min=0.1, max=1000.0),
