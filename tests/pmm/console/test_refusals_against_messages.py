@@ -8,6 +8,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
+from pmm.console.plans import Plans
+from pmm.plan.findings import PlanRefusedError
+from tests.pmm.console.chromium import plan
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "vertical"
 
@@ -77,3 +80,13 @@ def test_unknown_keys_are_told_with_those_that_are_known(folder: Path) -> None:
     assert "zzz is not a known key; known: oscillator" in result.stderr
     assert "pydantic" not in result.stderr
     assert result.exit_code == 2
+
+
+def test_the_text_of_a_plan_that_the_rig_refuses_is_not_kept(folder: Path) -> None:
+    plans = Plans(folder / "rig" / "rig.toml", folder / "rig", folder / "out")
+    before = sorted((folder / "rig").iterdir())
+    with pytest.raises(PlanRefusedError, match=r"0\.09 is above 0\.06"):
+        plans.queue("", plan("far").replace("20.0", "90.0"))
+    assert sorted((folder / "rig").iterdir()) == before
+    plans.queue("", plan("near"))
+    assert len(plans.names()) == len([one for one in before if one.name == "plan.toml"]) + 1
