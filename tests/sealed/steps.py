@@ -37,7 +37,7 @@ def refuse(seed: int, cases: int, nulls: int, docs: Path) -> None:
             f"{cases} cases and {nulls} nulls: --commit takes {LEAST} of each or more, and a part "
             "looked at first would no longer be sealed; --seed takes as few as you like"
         )
-    if here != "unknown" and not name.startswith(here):
+    if not name.startswith(here):
         raise click.UsageError(
             f"--commit {name[:7]}, but {here} is checked out, and that is what would answer: check "
             "the commit out (a clone or a work tree of it), or take --seed for development"

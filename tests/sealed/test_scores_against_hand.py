@@ -166,6 +166,7 @@ def test_score_keeps_what_it_may_and_refuses_before_it_scores(docs: Path, tmp_pa
         (("--commit", FIRST), "aaaaaaa", "scored once"),
         (("--commit", "c" * 40), "ddddddd", "ddddddd is checked out"),
         (("--commit", "c" * 40), "ccccccc with changes", "ccccccc with changes is checked out"),
+        (("--commit", "c" * 40), "unknown", "unknown is checked out"),
         (("--commit", "c" * 40, "--cases", "20"), "ccccccc", "takes 300 of each"),
         (("--commit", "ccccccc"), "ccccccc", "no whole hash"),
     ],
