@@ -24,7 +24,6 @@ from sim.acting import Acting
 from sim.carriage import CarriageSettings
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers
-from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import build_from
 from sim.effects.effect import Effect
 from sim.hull import HullCoefficients
@@ -101,8 +100,7 @@ class Run:
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the run's recording lies: ``<name>.nc`` if it is there, else ``file``."""
-        own = folder / f"{self.name}.nc"
-        return own if self.file is None or own.exists() else folder / self.file
+        return _recording_path(folder, self.name, self.file)
 
 
 @dataclass(frozen=True)
@@ -132,6 +130,15 @@ class AtRest:
     zero_after: str | None = None
     number: int | None = None
     outcome: str = "complete"
+
+    def recording_path(self, folder: Path) -> Path:
+        """Return where the recording lies, as for a run."""
+        return _recording_path(folder, self.name, self.file)
+
+
+def _recording_path(folder: Path, name: str, file: str | None) -> Path:
+    own = folder / f"{name}.nc"
+    return own if file is None or own.exists() else folder / file
 
 
 @dataclass(frozen=True)
@@ -270,17 +277,6 @@ class Campaign:
         if faults:
             raise ConfigurationError(f"campaign {self.name!r}: " + "; ".join(faults))
         return tuple(built)
-
-    def place(self, run: Run) -> CampaignRun:
-        """Return where a run of the campaign stands, if its runs are made in the file's order."""
-        index = self.runs.index(run)
-        waiting = self.simulation.waiting_s
-        settling = self.simulation.settling_periods
-        # A record is one period longer than the periods that are wanted.
-        took = [(settling + one.periods + 1) / one.frequency_hz for one in self.runs[:index]]
-        before = self.runs[index - 1].set_point if index else None
-        since = sum(took) + index * waiting
-        return CampaignRun(index, since, waiting if index else 0.0, before)
 
     def run(self, name: str) -> Run:
         """Return the run of that name.

@@ -19,7 +19,7 @@ from hardware.description.errors import ConfigurationError, DataError
 Response = Callable[[complex], complex]
 
 _LEAST_GAIN = 0.1  # a channel filtered below this tells about its noise, not about the force
-_BLOCKS = 10  # of a zero run: their scatter sees slow noise too
+ZERO_BLOCKS = 10  # of a zero run: their scatter sees slow noise too
 
 
 @dataclass(frozen=True)
@@ -184,18 +184,18 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
         If a sample is missing or there are fewer than twenty.
     """
     values = np.stack([recording.values(name) for name in names])
-    if values.shape[1] < 2 * _BLOCKS or not np.isfinite(values).all():
+    if values.shape[1] < 2 * ZERO_BLOCKS or not np.isfinite(values).all():
         raise DataError(
-            f"{recording.name}: a zero run needs {2 * _BLOCKS} samples or more, none missing; "
+            f"{recording.name}: a zero run needs {2 * ZERO_BLOCKS} samples or more, none missing; "
             f"it has {values.shape[1]}, {int((~np.isfinite(values)).sum())} of them missing"
         )
-    length = values.shape[1] // _BLOCKS
-    blocks = values[:, : length * _BLOCKS].reshape(len(names), _BLOCKS, length).mean(axis=2)
+    length = values.shape[1] // ZERO_BLOCKS
+    blocks = values[:, : length * ZERO_BLOCKS].reshape(len(names), ZERO_BLOCKS, length).mean(axis=2)
     covariance = np.zeros((len(names), 2, len(names), 2))
-    covariance[:, 0, :, 0] = np.cov(blocks) / _BLOCKS
+    covariance[:, 0, :, 0] = np.cov(blocks) / ZERO_BLOCKS
     size = 2 * len(names)
     source = Source(
-        f"zero run {recording.name}", covariance.reshape(size, size), float(_BLOCKS - 1)
+        f"zero run {recording.name}", covariance.reshape(size, size), float(ZERO_BLOCKS - 1)
     )
     units = tuple(recording.channels[recording.index(name)].unit for name in names)
     means: ComplexArray = values.mean(axis=1).astype(np.complex128)

@@ -148,6 +148,8 @@ def _power(stack: Stack, sizes: FloatArray, *, frequency: bool) -> float:
     """Return the exponent of the size over groups of runs that are alike in all else."""
     groups: dict[tuple[float, ...], list[tuple[float, float]]] = {}
     for run, size in zip(stack.runs, sizes, strict=True):
+        if not run.turns:
+            continue
         at = run.set_point
         pair = (at.frequency_hz, at.eccentricity_m)
         varied, other = pair if frequency else pair[::-1]

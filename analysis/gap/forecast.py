@@ -46,7 +46,7 @@ class Forecast:
 
 def planned(problem: Problem, set_point: SetPoint, number: int) -> GapRun:
     """Return a run that has not been made, with the noise of the nearest one that has."""
-    made = problem.simulator.stack.runs
+    made = problem.simulator.stack.turning
     near = min(
         made, key=lambda run: abs(math.log(run.set_point.frequency_hz / set_point.frequency_hz))
     )

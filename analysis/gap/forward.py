@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.at_rest import record_at_rest, steady_at_rest
 from analysis.gap.components import Component, GapRun, Layout, Observation, Stack
 from analysis.gap.observe import observe
 from analysis.gap.prefix import Solved
@@ -114,6 +115,8 @@ class Simulator:
             run.set_point, frequency_hz=run.set_point.frequency_hz * self.frequency_ratio
         )
         rig, set_point = switch_on(effects, self.rig, told, run.place)
+        if not run.turns:
+            return steady_at_rest(rig, set_point, run)
         period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
         state = self.solved.steady_state(rig.chain(set_point), period)
         return read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
@@ -123,6 +126,9 @@ class Simulator:
         from sim.run import simulate
 
         rig, set_point = switch_on(effects, self.rig, run.set_point, run.place)
+        if not run.turns:
+            seen = record_at_rest(rig, set_point, run, _SEED + run.place.index)
+            return align(seen, run.observed.components)
         # The run has been made: whatever the strut may carry, it did.
         oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
         dataset = simulate(

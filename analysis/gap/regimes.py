@@ -17,7 +17,8 @@ class Regime:
     Attributes
     ----------
     what
-        ``"frequency"``, ``"amplitude"``, ``"phase"``, ``"speed"``, ``"medium"``, or ``"chosen"``.
+        ``"frequency"``, ``"amplitude"``, ``"phase"``, ``"speed"``, ``"medium"``, or ``"chosen"``;
+        records at rest are a medium of their own, and no frequency or amplitude.
     runs
         Numbers of the withheld runs.
     """
@@ -32,7 +33,8 @@ class Regime:
 
 def regimes(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
     """Return the regimes of a campaign that leave enough other runs to fit to."""
-    found = [one for one in _all(runs) if len(runs) - len(one.runs) >= _ENOUGH]
+    turning = {at for at, run in enumerate(runs) if run.turns}
+    found = [one for one in _all(runs) if len(turning.difference(one.runs)) >= _ENOUGH]
     different = {one.runs: one for one in found}
     return tuple(different.values())
 
@@ -45,11 +47,14 @@ def _all(runs: Sequence[GapRun]) -> Iterator[Regime]:
         ("speed", lambda one: f"{one.carriage_speed_m_s:.4g} m/s"),
         ("medium", lambda one: one.medium.value),
     ):
-        values = [value_of(run.set_point) for run in runs]
+        values = [value_of(run.set_point) if run.turns else None for run in runs]
         for value in dict.fromkeys(values):
             chosen = tuple(at for at, one in enumerate(values) if one == value)
-            if 0 < len(chosen) < len(runs) and not (what == "medium" and value == Medium.WATER):
+            if value is not None and not (what == "medium" and value == Medium.WATER):
                 yield Regime(what, value, chosen)
+    at_rest = tuple(at for at, run in enumerate(runs) if not run.turns)
+    if at_rest:
+        yield Regime("medium", "rest", at_rest)
 
 
 def chosen_regime(runs: Sequence[GapRun], names: Sequence[str]) -> Regime:

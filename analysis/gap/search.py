@@ -127,7 +127,7 @@ def _each(
 
 def look(problem: Problem, kind: type[Effect]) -> Looked:
     """Linearise an effect at its typical values, from each of its starts, and keep the best."""
-    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.runs]
+    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
     best, most, reason = None, -math.inf, ""
     for one in candidates(kind, sorted(set(frequencies))):
         try:

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import Component, GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
@@ -167,8 +168,9 @@ def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
     for regime in regimes(stack.runs):
         rows = forces & np.isin(stack.run, regime.runs)
         yield gap_of(stack.components, left, str(regime), rows)
-    in_water = [at for at, run in enumerate(stack.runs) if run.set_point.medium is Medium.WATER]
-    if len(in_water) < len(stack.runs):
+    turning = [at for at, run in enumerate(stack.runs) if run.turns]
+    in_water = [at for at in turning if stack.runs[at].set_point.medium is Medium.WATER]
+    if len(in_water) < len(turning):
         yield gap_of(stack.components, left, "medium water", forces & np.isin(stack.run, in_water))
 
 
@@ -193,6 +195,9 @@ def _fed(problem: Problem) -> FloatArray | None:
 def _run_fed(simulator: Simulator, run: GapRun) -> tuple[FloatArray, FloatArray]:
     """Return a run with the measured motion, and what that motion's noise makes of it."""
     rig, set_point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
+    if not run.turns:  # where its struts stand is measured in any case
+        still = steady_at_rest(rig, set_point, run)
+        return still, np.zeros_like(still)
     period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
     chain = rig.chain(set_point)
     turn = np.exp(-period.s * steady_state(chain, period).reference_s)

@@ -13,12 +13,14 @@ import numpy as np
 from analysis.readers import from_dataset, write_recording
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
-from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
+from pmm.campaign import CAMPAIGN_FILE, AtRest, Campaign, Run
 from pmm.campaign_file import read_campaign
+from pmm.campaign_order import place_in
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
 from pmm.cli.screen import output, print_flags, show_progress
+from pmm.cli.simulating_zeros import simulate_zero, zero_runs
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, user_effects
 from sim.effects.effect import Effect
@@ -74,19 +76,23 @@ def run(request: Request) -> None:
     chosen = [campaign.run(name) for name in request.runs] or list(campaign.runs)
     seed = campaign.simulation.seed if request.seed is None else request.seed
     effects = _effects(request, campaign)
-    check_output(path, campaign, chosen, folder, overwrite=request.overwrite)
+    zeros = () if request.runs else zero_runs(campaign)
+    check_output(path, campaign, (*chosen, *zeros), folder, overwrite=request.overwrite)
     if request.plot is not None:
         check_folder(Path(request.plot), "--plot")
     written = list(
         simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
     )
+    at_rest = list(
+        simulate_zeros(campaign, zeros, folder, seed, overwrite=request.overwrite, effects=effects)
+    )
     copy_campaign(path, folder)
     copy_table(path, campaign, folder)
     figures = [] if request.plot is None else _draw(campaign, written, effects, Path(request.plot))
     if request.as_json:
-        click.echo(json.dumps(_document(folder, written, effects), indent=1))
+        click.echo(json.dumps(_document(folder, written, effects, at_rest), indent=1))
     else:
-        _print(campaign, written, folder, effects)
+        _print(campaign, written, folder, effects, at_rest)
         for figure in figures:
             output().print(str(figure), soft_wrap=True)
 
@@ -109,7 +115,7 @@ def _draw(
 
 
 def check_output(
-    path: Path, campaign: Campaign, runs: Sequence[Run], folder: Path, *, overwrite: bool
+    path: Path, campaign: Campaign, runs: Sequence[Run | AtRest], folder: Path, *, overwrite: bool
 ) -> None:
     """Refuse a folder in which something would be lost or confused, before any work is done.
 
@@ -120,7 +126,7 @@ def check_output(
         if the folder cannot be written to, or a recording, or another campaign file, is there and
         may not be overwritten.
     """
-    if not runs:
+    if not campaign.runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
     check_folder(folder, "--output")
     target = folder / CAMPAIGN_FILE
@@ -164,6 +170,22 @@ def simulate_runs(
         yield Written(one, str(file), run_seed, rate, count, recording.flags)
 
 
+def simulate_zeros(
+    campaign: Campaign,
+    zeros: Sequence[AtRest],
+    folder: Path,
+    seed: int,
+    *,
+    overwrite: bool,
+    effects: Sequence[Effect] = (),
+) -> Iterator[str]:
+    """Simulate zero runs, write their recordings beside those of the runs, and yield the files."""
+    rig = campaign.rig()
+    for one in zeros:
+        recording = simulate_zero(rig, campaign, one, seed_of(seed, one.name), effects)
+        yield str(write_recording(recording, folder / f"{one.name}.nc", overwrite=overwrite))
+
+
 def simulate_recording(
     rig: SimulatedRig, campaign: Campaign, run: Run, run_seed: int, effects: Sequence[Effect] = ()
 ) -> "Recording":
@@ -175,7 +197,7 @@ def simulate_recording(
         As :func:`sim.run.simulate` does; the message begins with the run's name.
     """
     try:
-        changed, set_point = switch_on(effects, rig, run.set_point, campaign.place(run))
+        changed, set_point = switch_on(effects, rig, run.set_point, place_in(campaign, run))
         dataset = simulate(
             changed,
             set_point,
@@ -225,18 +247,23 @@ def copy_table(path: Path, campaign: Campaign, folder: Path) -> None:
 
 
 def _document(
-    folder: Path, written: Sequence[Written], effects: Sequence[Effect]
+    folder: Path, written: Sequence[Written], effects: Sequence[Effect], at_rest: Sequence[str]
 ) -> dict[str, Any]:
     return {
         "schema": JSON_SCHEMA,
         "folder": str(folder),
         "effects": _effect_rows(effects),
         "runs": [asdict(one) for one in written],
+        "at_rest": list(at_rest),
     }
 
 
 def _print(
-    campaign: Campaign, written: Sequence[Written], folder: Path, effects: Sequence[Effect]
+    campaign: Campaign,
+    written: Sequence[Written],
+    folder: Path,
+    effects: Sequence[Effect],
+    at_rest: Sequence[str],
 ) -> None:
     from rich.table import Table
 
@@ -259,6 +286,8 @@ def _print(
             one.file,
         )
     console.print(table)
+    for file in at_rest:
+        console.print(f"at rest: {file}", soft_wrap=True)
     for effect in effects:
         values = ", ".join(f"{key} = {value:g}" for key, value in asdict(effect).items())
         console.print(f"effect {effect.name}: {values}", soft_wrap=True)

@@ -38,7 +38,7 @@ def read_zero(task: Task) -> Done | Failed:
     """Read what the gauges show at rest."""
     try:
         recording = _recording(task)
-        part = _gated(recording, task.path)
+        part = gated(recording, task.path)
         zero = Zero(
             task.name,
             _utc_s(recording),
@@ -95,7 +95,7 @@ def _turning(task: Task, recording: Recording) -> Done:
 
 
 def _towed(task: Task, recording: Recording) -> Done:
-    part = _gated(recording, task.path)
+    part = gated(recording, task.path)
     reading = zero_reading(part, 0.0, (*FORCES, *_surge(part)))
     speed = task.set_point.carriage_speed_m_s
     struts = static_cycle(task.name, reading, task.oscillator, speed)
@@ -184,7 +184,7 @@ def _surge(recording: Recording) -> tuple[str, ...]:
     return (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
 
 
-def _gated(recording: Recording, path: Path) -> Recording:
+def gated(recording: Recording, path: Path) -> Recording:
     """Return the part of a record at rest in which the gate was open, where that was written."""
     if not (path.parent / EVENTS).exists():
         return recording

@@ -222,8 +222,7 @@ def _is_dry(one: Run | AtRest) -> bool:
 
 
 def _path(one: Run | AtRest, folder: Path) -> Path:
-    path = one.recording_path(folder) if isinstance(one, Run) else folder / one.file
-    return path.resolve()
+    return one.recording_path(folder).resolve()
 
 
 def _set_point(one: Run | AtRest) -> SetPoint:

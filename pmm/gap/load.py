@@ -14,6 +14,8 @@ from hardware.description.oscillator import Range
 from pmm.calibrated import calibrated
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
+from pmm.campaign_order import place_in
+from pmm.gap.at_rest import records_at_rest
 from sim.rig import SimulatedRig
 
 
@@ -25,6 +27,8 @@ class Loaded:
     ----------
     left_out
         Runs that could not be used, by name, with the reason.
+    at_rest
+        The campaign's zero runs.
     reference_channel
         The channel whose fundamental is phase 0; ``None`` with a photocell.
     """
@@ -34,6 +38,7 @@ class Loaded:
     runs: tuple[GapRun, ...]
     left_out: dict[str, str]
     reference_channel: str | None
+    at_rest: tuple[GapRun, ...] = ()
 
 
 def load_campaign(
@@ -42,7 +47,7 @@ def load_campaign(
     progress: Callable[[str], None] = lambda _: None,
     sensors: Sequence[str] = (),
 ) -> Loaded:
-    """Read and observe the runs of a campaign that oscillate.
+    """Read and observe the runs of a campaign that oscillate, and its zero runs.
 
     Parameters
     ----------
@@ -77,7 +82,9 @@ def load_campaign(
             own = one.reference_channel or "the photocell"
             left_out[run.name] = f"its phase comes from {own}, not as in most runs"
     kept = [pair for pair in found if pair[0].name not in left_out]
-    return Loaded(campaign, rig, tuple(_gap_runs(campaign, kept)), left_out, reference)
+    runs = tuple(_gap_runs(campaign, kept))
+    at_rest, unused = records_at_rest(campaign, path.parent, sensors)
+    return Loaded(campaign, rig, runs, left_out | unused, reference, at_rest)
 
 
 def unlimited(rig: SimulatedRig) -> SimulatedRig:
@@ -121,7 +128,7 @@ def _gap_runs(campaign: Campaign, found: Sequence[tuple[Run, Observed]]) -> Iter
         yield GapRun(
             run.name,
             run.set_point,
-            campaign.place(run),
+            place_in(campaign, run),
             one.observation,
             one.analysis.stretch.period_count,
             one.analysis.recording.sample_rate_hz,

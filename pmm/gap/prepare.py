@@ -38,7 +38,7 @@ class Prepared:
     there
         The rig to begin with: moved to the coefficients that fit where the stated ones are far off.
     fitted, withheld
-        The runs to fit, and those that nobody looks at until the end.
+        The runs to fit, records at rest among them, and those that nobody looks at until the end.
     """
 
     campaign: Campaign
@@ -93,6 +93,7 @@ def prepare(
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
     )
+    fitted += loaded.at_rest
     return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.campaign import Campaign, Run
+from pmm.campaign_order import place_in
 from pmm.report.labels import display, plain
 from pmm.report.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals
@@ -245,7 +246,7 @@ def run_figure(campaign: Campaign, run: Run, effects: Sequence[Effect], seed: in
     nominal = simulated(rig, run.set_point)
     changed = None
     if effects:
-        changed = simulated(*switch_on(effects, rig, run.set_point, campaign.place(run)))
+        changed = simulated(*switch_on(effects, rig, run.set_point, place_in(campaign, run)))
     names = ", ".join(one.name for one in effects)
     title = f"{run.name}: {run.frequency_hz:g} Hz, {1e3 * run.eccentricity_m:g} mm"
     return chain_figure(nominal, changed, 1.0 / run.frequency_hz, title, names)

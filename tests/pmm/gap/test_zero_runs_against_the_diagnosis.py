@@ -1,0 +1,113 @@
+"""Zero runs in a campaign's folder: picked up, compared, and left out with a reason."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pmm.gap.load import load_campaign
+from tests.pmm.gap.rigs import run, short
+
+EFFECTS = tuple(
+    text
+    for name in ("zero-offset", "surface-suction", "gain-error")
+    for text in ("--effects", name)
+)
+OFFSET_N = 0.4
+ZEROS = ("zero-1", "zero-5", "zero-8")
+
+
+def zero(number: int) -> str:
+    name = f"zero-{number}"
+    keys = f'name = "{name}"\nkind = "zero"\nfile = "{name}/run.nc"\nduration_s = 20.0\n'
+    return f"[[at_rest]]\n{keys}number = {number}\n\n"
+
+
+def with_zeros() -> str:
+    """Return the short campaign with a zero run before, one amid and one after its runs."""
+    head, *runs = short().split("[[runs]]")
+    numbered = [
+        f"[[runs]]{one.rstrip()}\nnumber = {number}\n\n"
+        for one, number in zip(runs, (2, 3, 4, 6, 7), strict=True)
+    ]
+    return "".join([head, *numbered, *(zero(number) for number in (1, 5, 8))])
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Simulate it with a zero that is off."""
+    folder = tmp_path_factory.mktemp("zeros")
+    (folder / "zeros.toml").write_text(with_zeros())
+    effect = ("--effect", f"zero-offset:aft_n={OFFSET_N}")
+    done = run("simulate", folder / "zeros.toml", "--output", folder / "rig", *effect, "--json")
+    assert done.exit_code == 0, done.output
+    files = [Path(one).name for one in json.loads(done.stdout)["at_rest"]]
+    assert files == [f"{name}.nc" for name in ZEROS]
+    return folder / "rig"
+
+
+def found(campaign: Path, *options: str) -> dict[str, Any]:
+    done = run("gap", campaign, *EFFECTS, "--json", *options)
+    assert done.exit_code == 0, done.output
+    document: dict[str, Any] = json.loads(done.stdout)
+    return document
+
+
+def offset(document: dict[str, Any]) -> dict[str, float]:
+    """Return the zero offset that is named, and only it."""
+    assert document["ranking"][0]["answer"] == "zero-offset"
+    (effect,) = document["ranking"][0]["effects"]
+    size: dict[str, float] = effect["parameters"]["aft_n"]
+    return size
+
+
+def test_they_are_runs_among_the_others(rig: Path) -> None:
+    document = found(rig)
+    assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=3e-3)
+    assert {*ZEROS} <= {*document["runs"]}
+    assert document["left_out"] == {}
+    withheld = {one["regime"] for one in document["regimes"]}
+    assert "medium rest" in withheld
+    assert not {one for one in withheld if one.endswith(" 0 mm")}
+
+
+def test_runs_are_withheld_as_ever(rig: Path) -> None:
+    document = found(rig, "--hold-out", "frequency=1.1")
+    assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=3e-3)
+    assert [one["regime"] for one in document["regimes"]] == ["run heave-1.10-20"]
+
+
+def test_without_struts_nothing_tells_where_they_stand(rig: Path) -> None:
+    loaded = load_campaign(rig, sensors=("photocell", "force_aft", "force_fore"))
+    assert {*loaded.left_out} == {*ZEROS}
+    assert "tells where its struts stand" in loaded.left_out["zero-1"]
+    assert not loaded.at_rest
+
+
+def test_what_cannot_be_used_is_said(rig: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(rig, tmp_path / "copy")
+    (copy / "zero-5.nc").unlink()
+    path = copy / "campaign.toml"
+    path.write_text(path.read_text() + 'outcome = "stopped"\n')  # of the last table, zero-8
+    loaded = load_campaign(copy)
+    assert {*loaded.left_out} == {"zero-5", "zero-8"}
+    assert "run.nc" in loaded.left_out["zero-5"]
+    assert loaded.left_out["zero-8"] == "its outcome is 'stopped'"
+    assert [one.name for one in loaded.at_rest] == ["zero-1"]
+
+
+def test_what_run_control_has_put_in_folders_is_used(rig: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(rig, tmp_path / "copy")
+    for name in ZEROS:
+        (copy / name).mkdir()
+        (copy / f"{name}.nc").rename(copy / name / "run.nc")
+    assert [one.name for one in load_campaign(copy).at_rest] == list(ZEROS)
+
+
+def test_one_that_nobody_numbers_is_left_out(rig: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(rig, tmp_path / "copy")
+    path = copy / "campaign.toml"
+    path.write_text(path.read_text().replace("number = 8\n", ""))
+    assert "nothing says when 'zero-8' was made" in load_campaign(copy).left_out["zero-8"]

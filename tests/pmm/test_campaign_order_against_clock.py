@@ -1,0 +1,73 @@
+"""Where a run stands in its campaign, by adding up what was done before it."""
+
+from dataclasses import replace
+
+import pytest
+
+from hardware.description.errors import ConfigurationError
+from pmm.campaign import AtRest, Campaign, Run, Simulation
+from pmm.campaign_order import made_in_order, place_in
+from pmm.plan.kinds import RunKind
+
+RUNS = (Run("a", 0.5, 0.02, periods=6), Run("b", 1.0, 0.02, periods=6), Run("c", 2.0, 0.01))
+# Settling, the periods, and one more: (3 + 6 + 1) / 0.5 Hz, and so on.
+TOOK_S = (20.0, 10.0, 7.0)
+WAITING_S = 100.0
+ZEROS = tuple(AtRest(f"zero-{at}", RunKind.ZERO, f"zero-{at}.nc", 30.0) for at in (1, 2))
+
+
+def campaign(runs: tuple[Run, ...], zeros: tuple[AtRest, ...] = ()) -> Campaign:
+    return Campaign(
+        runs=runs, at_rest=zeros, simulation=Simulation(settling_periods=3, waiting_s=WAITING_S)
+    )
+
+
+def test_runs_alone_follow_each_other_in_the_files_order() -> None:
+    """Whatever their numbers are."""
+    runs = tuple(replace(one, number=9 - at) for at, one in enumerate(RUNS))
+    places = [place_in(campaign(runs), one) for one in runs]
+    assert [one.index for one in places] == [0, 1, 2]
+    assert [one.since_start_s for one in places] == [0.0, 120.0, 230.0]
+    assert [one.waited_s for one in places] == [0.0, WAITING_S, WAITING_S]
+    assert [one.before for one in places] == [None, RUNS[0].set_point, RUNS[1].set_point]
+
+
+@pytest.mark.parametrize("numbered", [True, False])
+def test_zero_runs_take_their_time(numbered: bool) -> None:
+    """Zero, a, b, zero, c: by numbers, or because c names the second as before it."""
+    runs, zeros = RUNS, ZEROS
+    if numbered:
+        runs = tuple(replace(one, number=n) for one, n in zip(RUNS, (2, 3, 5), strict=True))
+        zeros = tuple(replace(one, number=n) for one, n in zip(ZEROS, (1, 4), strict=True))
+    else:
+        runs = (
+            replace(RUNS[0], zero_before="zero-1"),
+            RUNS[1],
+            replace(RUNS[2], zero_before="zero-2"),
+        )
+    made = campaign(runs, zeros)
+    assert [one.name for one in made_in_order(made)] == ["zero-1", "a", "b", "zero-2", "c"]
+    since = {one.name: place_in(made, one) for one in (*runs, *zeros)}
+    assert {name: one.since_start_s for name, one in since.items()} == {
+        "zero-1": 0.0,
+        "a": 30.0 + WAITING_S,
+        "b": 30.0 + TOOK_S[0] + 2.0 * WAITING_S,
+        "zero-2": 30.0 + sum(TOOK_S[:2]) + 3.0 * WAITING_S,
+        "c": 60.0 + sum(TOOK_S[:2]) + 4.0 * WAITING_S,
+    }
+    assert since["c"].index == 2
+    assert since["c"].waited_s == 30.0 + 2.0 * WAITING_S
+    assert since["c"].before == runs[1].set_point
+
+
+def test_a_zero_run_after_the_last_that_names_it() -> None:
+    runs = (replace(RUNS[0], zero_after="zero-1"), replace(RUNS[1], zero_after="zero-1"), RUNS[2])
+    made = made_in_order(campaign(runs, ZEROS[:1]))
+    assert [one.name for one in made] == ["a", "b", "zero-1", "c"]
+
+
+def test_a_record_of_which_nothing_tells_the_time_has_no_place() -> None:
+    made = campaign(RUNS, ZEROS)
+    assert made_in_order(made) == RUNS
+    with pytest.raises(ConfigurationError, match="nothing says when 'zero-2' was made; number all"):
+        place_in(made, ZEROS[1])
