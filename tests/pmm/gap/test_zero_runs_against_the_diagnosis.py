@@ -5,10 +5,15 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from pmm.campaign import AtRest, Campaign, Run
+from pmm.gap.at_rest import records_at_rest
 from pmm.gap.load import load_campaign
+from pmm.plan.kinds import RunKind
 from tests.pmm.gap.rigs import run, short
+from tests.pmm.run.harness import at_rest, bench, oscillation
 
 EFFECTS = tuple(
     text
@@ -111,3 +116,20 @@ def test_one_that_nobody_numbers_is_left_out(rig: Path, tmp_path: Path) -> None:
     path = copy / "campaign.toml"
     path.write_text(path.read_text().replace("number = 8\n", ""))
     assert "nothing says when 'zero-8' was made" in load_campaign(copy).left_out["zero-8"]
+
+
+def test_run_controls_own_are_read_within_their_gate(tmp_path: Path) -> None:
+    """The simulated gauges' zero is none, and the gate is open for a second: ten blocks."""
+    runs = [at_rest("zero-1", RunKind.ZERO), oscillation(), at_rest("zero-2", RunKind.ZERO)]
+    with bench(tmp_path, runs) as one:
+        one.finish(40000)
+    first, last = (
+        AtRest(f"zero-{at}", RunKind.ZERO, f"zero-{at}/run.nc", 1.0, number=number)
+        for at, number in ((1, 1), (2, 3))
+    )
+    campaign = Campaign(runs=(Run("heave", 1.0, 0.02, number=2),), at_rest=(first, last))
+    used, left_out = records_at_rest(campaign, tmp_path)
+    assert left_out == {}
+    for record in used:
+        assert record.observed.values == pytest.approx(np.zeros(2), abs=0.05)
+        assert record.set_point.frequency_hz == pytest.approx(10.0, rel=0.02)
