@@ -57,6 +57,11 @@ class Axis:
     is_log: bool
     start: float
 
+    @property
+    def is_size(self) -> bool:
+        """Whether the effect is gone where this is zero."""
+        return not self.is_log and self.centre == 0.0 and not is_phase(self.parameter)
+
     def value(self, unit: float) -> float:
         """Return the parameter's value, kept within its plausible range."""
         raw = self.centre + self.deviation * unit
@@ -122,6 +127,9 @@ def _options(
     kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
 ) -> Iterator[Axis | tuple[str, float]]:
     magnitude = one.low <= 0.0 and not is_phase(one)
+    if is_share(one):
+        yield from (Axis(one, 0.5, 0.5, False, start) for start in (1.0, -1.0))
+        return
     if one.name in _HELD.get(kind.name, ()):
         yield one.name, one.typical
     elif one.name in _CHOICES:
@@ -149,6 +157,11 @@ def _held(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
 def is_phase(one: Parameter) -> bool:
     """Tell whether a parameter is an angle on the whole circle."""
     return one.unit == "rad" and math.isclose(one.high, math.pi) and math.isclose(one.low, -math.pi)
+
+
+def is_share(one: Parameter) -> bool:
+    """Tell whether a parameter is a share of a whole; a fit begins at either end of it."""
+    return one.unit == "1" and one.low == 0.0 and one.high == 1.0
 
 
 def turned(candidate: Candidate) -> Iterator[FloatArray]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
-from analysis.gap.components import Component, GapRun, Layout, Observation, Stack
+from analysis.gap.components import GapRun, Layout, Observation, Stack
 from analysis.gap.observe import observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
@@ -128,7 +128,7 @@ class Simulator:
         rig, set_point = switch_on(effects, self.rig, run.set_point, run.place)
         if not run.turns:
             seen = record_at_rest(rig, set_point, run, _SEED + run.place.index)
-            return align(seen, run.observed.components)
+            return align(seen, run.observed)
         # The run has been made: whatever the strut may carry, it did.
         oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
         dataset = simulate(
@@ -141,13 +141,18 @@ class Simulator:
             name=run.name,
         )
         record = replace(from_dataset(dataset), set_point=run.set_point)
-        return align(observe(record).observation, run.observed.components)
+        return align(observe(record, quiet=False).observation, run.observed)
 
 
-def align(observation: Observation, components: Sequence[Component]) -> FloatArray:
-    """Return an observation's values in the order of other components; 0 where it has none."""
-    at = dict(zip(observation.components, observation.values, strict=True))
-    return np.array([at.get(one, 0.0) for one in components])
+def align(simulated: Observation, measured: Observation) -> FloatArray:
+    """Return a simulated observation's values in the order of a measured one's components.
+
+    Where the simulated record does not have one, for want of lines or of a period, it is as it was
+    measured: what cannot be compared is no gap.
+    """
+    at = dict(zip(simulated.components, simulated.values, strict=True))
+    pairs = zip(measured.components, measured.values, strict=True)
+    return np.array([at.get(one, value) for one, value in pairs])
 
 
 def read_steady(

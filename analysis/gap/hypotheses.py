@@ -35,14 +35,14 @@ HIDDEN: Final = (
 class Odds:
     """Prior probabilities; the catalogue's share is spread evenly over its effects.
 
-    They are those of a rig of which nothing is known: one in five has no gap, and one in six has
-    one that no catalogue knows.
+    They are those of a rig that is looked after: two campaigns in five have no gap, one in
+    eight has one that no catalogue knows.
     """
 
-    none: float = 0.20
-    single: float = 0.50
-    pair: float = 0.13
-    unknown: float = 0.17
+    none: float = 0.40
+    single: float = 0.38
+    pair: float = 0.09
+    unknown: float = 0.13
 
 
 _NOTHING = Deviation({}, np.zeros(0), 0.0)
@@ -200,8 +200,12 @@ def _by_evidence(one: Named) -> float:
 
 
 def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
-    """Return a hypothesis whose signature is off by a share of itself, at random."""
-    weight = 1.0 / np.sqrt(1.0 + (share * fit.signature) ** 2)
+    """Return a hypothesis whose signature is off by a share of itself, at random.
+
+    Of what the nuisances leave of it: what passes for a coefficient has no form of its own.
+    """
+    own = problem.nuisances.whiten(fit.signature)
+    weight = 1.0 / np.sqrt(1.0 + (share * own) ** 2)
     nuisances = Nuisances(problem.nuisances.columns * weight[:, None])
     columns = fit.columns * weight[:, None]
     target = fit.linearised(problem.residual) * weight

@@ -55,7 +55,7 @@ class Observed:
         return None if reference.source is ReferenceSource.PHOTOCELL else reference.channel
 
 
-def observe(recording: Recording, latency_s: float = 0.0) -> Observed:
+def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True) -> Observed:
     """Return what a recording shows.
 
     The photocell is the reference where there is one; else the aft strut's displacement, else the
@@ -65,6 +65,8 @@ def observe(recording: Recording, latency_s: float = 0.0) -> Observed:
     ----------
     latency_s
         Known delay of the photocell.
+    quiet
+        Whether to look between the harmonics for the noise of each channel.
 
     Raises
     ------
@@ -85,7 +87,8 @@ def observe(recording: Recording, latency_s: float = 0.0) -> Observed:
     if analysis.stretch.period_count >= _FEW_PERIODS:
         found += [*_trends(analysis), *_scatter(analysis), *_between(analysis), *_surges(analysis)]
     parts, values, uncertainty = zip(*found, strict=True)
-    seen = Observation(parts, np.array(values), np.array(uncertainty), _quiet(analysis))
+    lines = _quiet(analysis) if quiet else {}
+    seen = Observation(parts, np.array(values), np.array(uncertainty), lines)
     return Observed(seen, analysis)
 
 
@@ -194,10 +197,9 @@ def _quiet(analysis: Analysis) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     sums, reading = analysis.steady_sums, analysis.readings[0]
     part = analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
-    return {
-        name: quiet_lines(part.time_s(), part.values(name), reading.frequency_hz, reading.order)
-        for name in reading.channel_names
-    }
+    values = np.stack([part.values(name) for name in reading.channel_names])
+    found = quiet_lines(part.time_s(), values, reading.frequency_hz, reading.order)
+    return dict(zip(reading.channel_names, found, strict=True))
 
 
 def _surges(analysis: Analysis) -> Found:

@@ -46,7 +46,8 @@ _LOUD: Final = 20.0  # times the usual scatter
 _OFF_FREQUENCY: Final = 0.02
 _FEW: Final = 3
 _HARMONIC: Final = (Part.IN_PHASE, Part.QUADRATURE)
-_SMALL: Final = 0.2  # of the inertia's force: a prediction below it is a difference of large terms
+_SMALL: Final = 0.1  # of those terms: a prediction below it is a difference of large ones
+_TOLERATED: Final = 0.25  # of those terms: what tolerances of added mass and damping make of them
 
 
 @dataclass(frozen=True)
@@ -124,9 +125,10 @@ def judged(
 def _of_channel(
     rig: SimulatedRig, stack: Stack, nominal: FloatArray, channel: str
 ) -> Iterator[Doubt]:
-    ratios = _ratios(rig, stack, nominal, channel)
-    if len(ratios) < _FEW:
+    found = _ratios(rig, stack, nominal, channel)
+    if len(found) < _FEW:
         return
+    ratios = {name: ratio for name, (ratio, _) in found.items()}
     sizes = {name: math.log(max(abs(ratio), 1e-12)) for name, ratio in ratios.items()}
     usual = float(np.median(list(sizes.values())))
     factor = _unit(usual)
@@ -136,8 +138,9 @@ def _of_channel(
     turns = _middle_turn(list(ratios.values()))
     for name, ratio in ratios.items():
         others = [size for other, size in sizes.items() if other != name]
-        reason = _reason(sizes[name] - usual, cmath.phase(ratio / turns), _spread(others))
-        if reason:
+        own = ratio / turns / math.exp(usual)
+        reason = _reason(sizes[name] - usual, cmath.phase(own), _spread(others))
+        if reason and abs(own - 1.0) > found[name][1]:
             yield Doubt(name, channel, reason)
 
 
@@ -174,14 +177,19 @@ def _middle_turn(ratios: Sequence[complex]) -> complex:
 
 def _ratios(
     rig: SimulatedRig, stack: Stack, nominal: FloatArray, channel: str
-) -> dict[str, complex]:
-    """Return measured over simulated first harmonic by run, where both say something."""
+) -> dict[str, tuple[complex, float]]:
+    """Return measured over simulated first harmonic by run, where both say something.
+
+    Beside each stands by how much it may be off where the terms of which the force is the
+    difference are off by their usual tolerance.
+    """
     found = {}
     for number, run in enumerate(stack.runs):
         told = complex(*_first(stack, nominal, number, channel))
         seen = complex(*_first(stack, stack.values, number, channel))
         if np.isfinite([told, seen]).all() and abs(told) > _least(rig, run, channel):
-            found[run.name] = seen / told
+            slack = 0.0 if channel in STRUTS else _TOLERATED * _terms(rig, run) / abs(told)
+            found[run.name] = seen / told, slack
     return found
 
 
@@ -197,10 +205,16 @@ def _first(stack: Stack, values: FloatArray, run: int, channel: str) -> tuple[fl
 def _least(rig: SimulatedRig, run: GapRun, channel: str) -> float:
     if channel in STRUTS:
         return 0.1 * run.set_point.eccentricity_m
+    return _SMALL * _terms(rig, run)
+
+
+def _terms(rig: SimulatedRig, run: GapRun) -> float:
+    """Return about what inertia and restoring ask of a strut, one added to the other."""
     omega = 2.0 * math.pi * run.set_point.frequency_hz
-    wet = 0.0 if run.set_point.medium is Medium.AIR else abs(rig.water.added_mass[0][0])
-    mass_kg = 0.5 * (rig.body.mass_kg + wet)
-    return _SMALL * mass_kg * omega**2 * run.set_point.eccentricity_m
+    wet = float(run.set_point.medium is Medium.WATER)
+    mass_kg = rig.body.mass_kg + wet * abs(rig.water.added_mass[0][0])
+    stiffness_n_m = wet * abs(rig.water.restoring[0][0])
+    return 0.5 * (mass_kg * omega**2 + stiffness_n_m) * run.set_point.eccentricity_m
 
 
 def _of_frequency(runs: Sequence[GapRun]) -> Iterator[Doubt]:

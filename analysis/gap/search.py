@@ -10,21 +10,26 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from analysis.gap.candidate import candidates, turned
 from analysis.gap.fit import (
     Fit,
     Problem,
     at,
     expected_evidence,
+    inside,
     joined,
     most_probable,
     refine,
     stepped,
 )
-from analysis.gap.gaussian import left_over
+from analysis.gap.gaussian import left_over, misfit, null_evidence
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
+FloatArray = NDArray[np.float64]
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -36,6 +41,11 @@ _TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred ti
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
 _STARTS: Final = 3  # effects to which partners are sought
 _STEPS_IN_TIME: Final = 3
+_MUCH: Final = 4.0  # times what there is to explain, from which a look begins nearer
+_SEEN: Final = 10.0  # chi-square that there is to explain, at least
+_HOPELESS: Final = 20.0  # log evidence under "no gap": a straight line has gone astray
+_APPROACHES: Final = 3
+_LEAST_POWER: Final = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +141,7 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
     best, most, reason = None, -math.inf, ""
     for one in candidates(kind, sorted(set(frequencies))):
         try:
-            fit = at(problem, (one,), one.start, roughly=True)
+            fit = _near(problem, at(problem, (one,), one.start, roughly=True))
         except PmmError as error:
             reason = str(error)
             continue
@@ -143,6 +153,51 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
     steps = (best.signature, best.columns @ most_probable(best))
     visible = max(left_over(one, problem.nuisances) for one in steps)
     return Looked(kind.name, best, most, visible)
+
+
+def _near(problem: Problem, fit: Fit) -> Fit:
+    """Return a first look from where the effect is about as large as what there is to explain.
+
+    A backlash that is a thousand times too large is no straight line down to the one that is there.
+    """
+    if not len(fit.units):
+        return fit
+    none = null_evidence(problem.residual, problem.nuisances)
+    chi_square = misfit(problem.residual, problem.nuisances)
+    wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
+    for _ in range(_APPROACHES):
+        ratio = left_over(fit.signature, problem.nuisances) / wanted
+        if (
+            ratio < _MUCH
+            or not len(fit.units)
+            or expected_evidence(problem, fit) > none - _HOPELESS
+        ):
+            break
+        units = smaller(problem, fit, 1.0 / ratio)
+        if np.allclose(units, fit.units):
+            break
+        fit = at(problem, fit.candidates, units, roughly=True)
+    return fit
+
+
+def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:
+    """Return parameters at which a signature is about a share of what it is.
+
+    By the power with which it goes with its sizes, all together; or, where a parameter can't be
+    zero, with the one that changes it most.
+    """
+    weighted = problem.nuisances.whiten(fit.signature)
+    slopes = weighted @ fit.columns / max(float(weighted @ fit.signature), 1e-12)
+    axes = [axis for one in fit.candidates for axis in one.axes]
+    sizes = np.array([one.is_size for one in axes], dtype=bool)
+    units = fit.units.copy()
+    power = float(slopes[sizes] @ units[sizes])
+    if power > _LEAST_POWER:
+        units[sizes] *= share ** (1.0 / power)
+        return inside(fit.candidates, units)
+    at_most = int(np.argmax(np.where(sizes, 0.0, np.abs(slopes))))
+    units[at_most] += math.log(share) / (slopes[at_most] or math.inf)
+    return inside(fit.candidates, units)
 
 
 def _refined(problem: Problem, fit: Fit) -> Fit:

@@ -37,27 +37,31 @@ class Lines:
     density: FloatArray
 
 
-def quiet_lines(time_s: FloatArray, values: FloatArray, frequency_hz: float, orders: int) -> Lines:
+def quiet_lines(
+    time_s: FloatArray, values: FloatArray, frequency_hz: float, orders: int
+) -> list[Lines]:
     """Return the lines between the harmonics of a record of whole periods, and below them.
 
     Parameters
     ----------
-    time_s, values
+    time_s
         Of the samples, shape ``(samples,)``, evenly spaced.
+    values
+        Of each channel, shape ``(channels, samples)``.
     frequency_hz
         Of the oscillation.
     orders
         Harmonics up to which lines are wanted.
     """
-    count, step_s = len(values), float(time_s[1] - time_s[0])
+    count, step_s = len(time_s), float(time_s[1] - time_s[0])
     basis = repeating(2.0 * np.pi * frequency_hz * (time_s - time_s[0]), 2 * orders)
     taper = np.hanning(count)
-    left = (values - basis @ (basis.T @ values)) * taper
-    power = np.abs(np.fft.rfft(left)) ** 2 / np.sum(taper**2) * step_s
-    lines_hz = np.arange(len(power)) / (count * step_s)
+    left = (values - (values @ basis) @ basis.T) * taper
+    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / np.sum(taper**2) * step_s
+    lines_hz = np.arange(power.shape[1]) / (count * step_s)
     beside_hz = np.abs(lines_hz - np.round(lines_hz / frequency_hz) * frequency_hz)
     quiet = (beside_hz > _BESIDE * lines_hz[1]) & (lines_hz < (orders + 1) * frequency_hz)
-    return Lines(lines_hz[quiet], power[quiet])
+    return [Lines(lines_hz[quiet], row[quiet]) for row in power]
 
 
 def repeating(angle_rad: FloatArray, orders: int) -> FloatArray:

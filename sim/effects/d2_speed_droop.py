@@ -27,7 +27,7 @@ class SpeedDroop(Effect):
     title: ClassVar[str] = "Mean speed that falls under load"
     stage: ClassVar[StageName] = StageName.DRIVE
 
-    droop_rad_s_n_m: float = parameter(0.02, 1e-4, 0.5, "rad/(s N m)", "speed lost per mean torque")
+    droop_rad_s_n_m: float = parameter(0.02, 1e-7, 0.5, "rad/(s N m)", "speed lost per mean torque")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with a motor that nothing brings back to its speed.

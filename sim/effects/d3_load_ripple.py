@@ -27,7 +27,7 @@ class LoadRipple(Effect):
     title: ClassVar[str] = "Speed that varies with the load over a revolution"
     stage: ClassVar[StageName] = StageName.DRIVE
 
-    inertia_kg_m2: float = parameter(5.0, 0.5, 500.0, "kg m2", "motor, gear and flywheel, at crank")
+    inertia_kg_m2: float = parameter(5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank")
     hold_hz: float = parameter(
         0.05, 0.001, 2.0, "Hz", "bandwidth of what brings the mean speed back, critically damped"
     )

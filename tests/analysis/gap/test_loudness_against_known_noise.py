@@ -33,7 +33,7 @@ def lines_of(frequency_hz: float, seed: int, hum: float = 0.0) -> Lines:
     shown = 5.0 + 40.0 * np.sin(angle) + 3.0 * np.cos(3.0 * angle + 0.4)
     shown = shown + hum * np.sin(2.0 * np.pi * 2.41 * frequency_hz * time_s)
     values = shown + noise(len(time_s), np.random.default_rng(seed))
-    return quiet_lines(time_s, values, frequency_hz, 6)
+    return quiet_lines(time_s, values[None, :], frequency_hz, 6)[0]
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
