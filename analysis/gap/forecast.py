@@ -70,14 +70,24 @@ def further(
     return Problem(simulator, nuisances, problem.free, tuple(free))
 
 
-def forecast(problem: Problem, there: Problem, fit: Fit | None) -> Forecast:
+def forecast(
+    problem: Problem, there: Problem, fit: Fit | None, columns_ahead: FloatArray | None = None
+) -> Forecast:
     """Return what an answer predicts at further runs; ``None`` is the answer "no gap".
 
     Coefficients and settings are as the campaign fits them; frequency and noise are each run's own,
     and the effect has a form of its own.
+
+    Parameters
+    ----------
+    columns_ahead
+        At the further runs, of a fit that has no effects to be simulated.
     """
     count = len(problem.free)
-    ahead = _Ahead.of(problem, there, fit)
+    if fit is not None and columns_ahead is not None:
+        ahead = _Ahead(columns_ahead @ fit.units, columns_ahead)
+    else:
+        ahead = _Ahead.of(problem, there, fit)
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
     covariance = np.linalg.inv(np.eye(shared.shape[1]) + shared.T @ shared)

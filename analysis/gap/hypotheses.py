@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.fit import Fit, Problem
+from analysis.gap.fit import Fit, Problem, most_probable
 from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
 from analysis.gap.screen import shown, worth_a_look
@@ -209,8 +209,9 @@ def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
     nuisances = Nuisances(problem.nuisances.columns * weight[:, None])
     columns = fit.columns * weight[:, None]
     target = fit.linearised(problem.residual) * weight
-    found = posterior(target, columns, nuisances)
-    cost = misfit(target - columns @ found.mean, nuisances) + float(found.mean @ found.mean)
-    log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
+    found = replace(fit, columns=columns, posterior=posterior(target, columns, nuisances))
+    units = most_probable(found)
+    cost = misfit(target - columns @ units, nuisances) + float(units @ units)
+    log_density = -0.5 * (cost + nuisances.log_determinant) + found.posterior.log_volume
     log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
     return Named(replace(fit, form=share), log_density, share, _NOTHING)

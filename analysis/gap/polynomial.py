@@ -31,15 +31,32 @@ def polynomial(problem: Problem, fitted: NDArray[np.bool_] | None = None) -> Fit
     fitted
         Observations by which to judge that, shape ``(observations,)``; all if not given.
     """
+    return _fit(problem, _scaled(problem, problem.simulator.stack, fitted))
+
+
+def polynomial_ahead(problem: Problem, there: Problem) -> FloatArray:
+    """Return the control's columns at further runs, in the units that it has in the campaign.
+
+    Shape ``(observations there, terms)``.
+    """
+    return _scaled(problem, there.simulator.stack)
+
+
+def _scaled(problem: Problem, stack: Stack, fitted: NDArray[np.bool_] | None = None) -> FloatArray:
+    """Return all terms over the runs of a stack, each as wide as its prior in the campaign."""
     rows = np.ones(len(problem.residual), dtype=bool) if fitted is None else fitted
-    stack = problem.simulator.stack
-    raw = np.column_stack([one for channel in FORCES for one in _terms(stack, channel)])
-    raw = raw / stack.uncertainty[:, None]
+    raw = _raw(problem.simulator.stack, problem.simulator.stack)
     sizes = np.array([left_over(one, problem.nuisances) for one in raw.T])
     shown = sizes > 1e-6
     unit = raw[:, shown] / sizes[shown]
     size = max(_SIZES, key=lambda one: log_evidence(problem, one * unit, rows))
-    return _fit(problem, size * unit)
+    return np.asarray(size * _raw(problem.simulator.stack, stack)[:, shown] / sizes[shown])
+
+
+def _raw(made: Stack, stack: Stack) -> FloatArray:
+    """Return each term's components over a stack in sigma, scaled by the motions that were made."""
+    terms = [one for channel in FORCES for one in _terms(made, stack, channel)]
+    return np.asarray(np.column_stack(terms) / stack.uncertainty[:, None])
 
 
 def _fit(problem: Problem, columns: FloatArray) -> Fit:
@@ -79,9 +96,10 @@ def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArra
     )
 
 
-def _terms(stack: Stack, channel: str) -> list[FloatArray]:
+def _terms(made: Stack, stack: Stack, channel: str) -> list[FloatArray]:
+    usual = [motion(run, channel) for run in made.runs]
+    scale = [max(float(np.abs(run[at]).max()) for run in usual) or 1.0 for at in range(3)]
     moved = [motion(run, channel) for run in stack.runs]
-    scale = [max(float(np.abs(run[at]).max()) for run in moved) or 1.0 for at in range(3)]
     laws = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i) if i + j]
     found = []
     for i, j in laws:

@@ -14,6 +14,7 @@ from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import Free, free_numbers
+from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
 from analysis.gap.recentre import Recentred
@@ -48,7 +49,8 @@ def answer(
     """
     free = free_numbers(there.rig, priors)
     best = None if diagnosis.best is None else diagnosis.best.fit
-    foretold = _Foretold(diagnosis.problem, best, held_out, free, priors)
+    rival = None if diagnosis.rival is None else diagnosis.rival.fit
+    foretold = _Foretold(diagnosis.problem, best, rival, held_out, free, priors)
     shares = shares_of(diagnosis, there)
     found: dict[str, Any] = {
         "schema": SCHEMA,
@@ -113,12 +115,13 @@ _SPECIAL: Final[Mapping[str, Mapping[str, Any]]] = {
 
 
 class _Foretold:
-    """The withheld runs as foretold without an effect and with the best answer."""
+    """The withheld runs as foretold without an effect, with the best answer, and by controls."""
 
     def __init__(
         self,
         problem: Problem,
         best: Fit | None,
+        rival: Fit | None,
         held_out: Sequence[HeldOut],
         free: Sequence[Free],
         priors: Priors,
@@ -126,7 +129,7 @@ class _Foretold:
         self._names = [one.name for one in held_out]
         runs = [planned(problem, one.set_point, at) for at, one in enumerate(held_out)]
         self._there = further(problem, runs, free, priors) if runs else None
-        self._problem, self._best = problem, best
+        self._problem, self._best, self._rival = problem, best, rival
 
     def as_dict(self) -> dict[str, Any]:
         if self._there is None:
@@ -143,8 +146,19 @@ class _Foretold:
         return {
             "before": self._runs(stack, plain.values(self._there)),
             "after": self._runs(stack, cured.values(self._there)),
+            **self._controls(self._there),
             "shrinkage": _share(middle if self._best else 0.0, float(low), float(high)),
         }
+
+    def _controls(self, there: Problem) -> dict[str, Any]:
+        """Return what the second best answer and a free polynomial foretell."""
+        problem, stack = self._problem, there.simulator.stack
+        free = forecast(problem, there, polynomial(problem), polynomial_ahead(problem, there))
+        found = {"after_polynomial": self._runs(stack, free.values(there))}
+        if self._rival is not None:
+            second = forecast(problem, there, self._rival)
+            found["after_rival"] = self._runs(stack, second.values(there))
+        return found
 
     def _runs(self, stack: Stack, values: FloatArray) -> dict[str, Any]:
         return {name: harmonics(stack, values, number) for number, name in enumerate(self._names)}

@@ -1,7 +1,7 @@
 """D2: a mean speed that falls under load."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -9,8 +9,6 @@ from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.motor import droop
 from sim.rig import SimulatedRig
-
-FLYWHEEL_KG_M2: Final = 20.0  # where the rig says nothing of its motor
 
 
 @dataclass(frozen=True)
@@ -28,6 +26,9 @@ class SpeedDroop(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
 
     droop_rad_s_n_m: float = parameter(0.02, 1e-7, 0.5, "rad/(s N m)", "speed lost per mean torque")
+    inertia_kg_m2: float = parameter(
+        20.0, 0.5, 1e5, "kg m2", "of the flywheel, where the rig says nothing of its motor"
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with a motor that nothing brings back to its speed.
@@ -35,7 +36,7 @@ class SpeedDroop(Effect):
         A motor that the rig has keeps its inertia, and its droop is added to.
         """
         old = rig.drive.motor
-        inertia = FLYWHEEL_KG_M2 if old is None else old.shaft_inertia_kg_m2
+        inertia = self.inertia_kg_m2 if old is None else old.shaft_inertia_kg_m2
         whole = self.droop_rad_s_n_m + (0.0 if old is None else -droop(old))
         motor = Yielding(inertia, 1.0 / whole).motor()
         if old is not None:
@@ -44,4 +45,4 @@ class SpeedDroop(Effect):
 
     def signature(self, situation: Situation) -> Signature:
         """Return what slower turning does to the model, against a drive that holds its speed."""
-        return Yielding(FLYWHEEL_KG_M2, 1.0 / self.droop_rad_s_n_m).signature(situation, {})
+        return Yielding(self.inertia_kg_m2, 1.0 / self.droop_rad_s_n_m).signature(situation, {})

@@ -1,7 +1,7 @@
 """S7: a cable or umbilical between the model and the carriage."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -9,11 +9,13 @@ from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import ForceLaw, RubbingSpring, Spring
+from sim.laws import Coulomb, ForceLaw, RubbingSpring, Spring
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
     from sim.linear import ComplexArray
+
+STANDS_M: Final = 1e-12
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Cable(Effect):
     """``F_0 + k x + k_2 x^2 + k_3 x^3 + k_h |x| sgn(v)``, x midway between the struts or at each.
 
     Independent of frequency: in phase ``k x + 3 k_3 x^3/4``, in quadrature ``2 k_h x/pi`` from the
-    strands that rub on each other.
+    strands that rub on each other, and ``4 F/pi`` where they slide throughout.
     """
 
     code: ClassVar[str] = "S7"
@@ -31,6 +33,7 @@ class Cable(Effect):
 
     stiffness_n_m: float = parameter(5.0, 0.0, 100.0, "N/m", "stiffness")
     rubbing_n_m: float = parameter(1.0, 0.0, 50.0, "N/m", "friction per displacement")
+    sliding_n: float = parameter(0.0, 0.0, 20.0, "N", "friction of strands that slide throughout")
     preload_n: float = parameter(0.0, -20.0, 20.0, "N", "force in the middle position")
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")
     stiffness_n_m3: float = parameter(0.0, 0.0, 1e5, "N/m3", "stiffening")
@@ -52,9 +55,9 @@ class Cable(Effect):
             share * self.stiffness_n_m3,
             share * self.preload_n,
         )
-        if not self.rubbing_n_m:
-            return (spring,)
-        return spring, RubbingSpring(share * self.rubbing_n_m)
+        rubbing = [RubbingSpring(share * self.rubbing_n_m)] if self.rubbing_n_m else []
+        sliding = [Coulomb(share * self.sliding_n)] if self.sliding_n else []
+        return (spring, *rubbing, *sliding)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the powers of a sine, and the loop of the rubbing strands; exact."""
@@ -72,11 +75,14 @@ class Cable(Effect):
     def _waves(self, x: complex) -> dict[int, complex]:
         """Return the force by order where the displacement is x."""
         size, rubbing = abs(x), 1j * (2.0 / np.pi) * self.rubbing_n_m * abs(x)
-        turn = x / size if size else 0j
+        # Midway between struts in antiphase nothing moves, but for the last digit.
+        turn = x / size if size > STANDS_M else 0j
+        sliding = 1j * (4.0 / np.pi) * self.sliding_n
+        stiffness = self.stiffness_n_m + 0.75 * self.stiffness_n_m3 * size**2
         return {
             0: self.preload_n + self.stiffness_n_m2 * size**2 / 2.0,
-            1: (self.stiffness_n_m + 0.75 * self.stiffness_n_m3 * size**2) * x + rubbing * turn,
+            1: stiffness * x + (rubbing + sliding) * turn,
             2: -1j * self.stiffness_n_m2 * x**2 / 2.0,
-            3: -self.stiffness_n_m3 * x**3 / 4.0 - rubbing * turn**3,
-            5: rubbing * turn**5 / 3.0,
+            3: -self.stiffness_n_m3 * x**3 / 4.0 - (rubbing + sliding / 3.0) * turn**3,
+            5: (rubbing / 3.0 + sliding / 5.0) * turn**5,
         }

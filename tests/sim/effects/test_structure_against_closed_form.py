@@ -32,6 +32,7 @@ CASES = [
     (ViscousGuides(), 1e-9),
     (Cable(), 1e-3),
     (Cable(at_struts=0.6), 1e-3),
+    (Cable(sliding_n=0.3), 2e-2),
     (Cable(preload_n=-3.0, stiffness_n_m2=200.0, stiffness_n_m3=4e3, rubbing_n_m=0.0), 1e-9),
     (MassError(), 1e-9),
     (InertiaError(), 1e-9),
