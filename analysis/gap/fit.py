@@ -216,9 +216,9 @@ def _slope(
 ) -> FloatArray:
     step = max(_STEP, 0.1 * abs(float(units[axis])))
     for sign in (1.0, -1.0):
-        moved = units.copy()
-        moved[axis] += sign * step
-        kept = inside(parts, moved)
+        aside = units.copy()
+        aside[axis] += sign * step
+        kept = inside(parts, aside)
         if abs(kept[axis] - units[axis]) > 0.5 * step:
             change = problem.simulator.predict(built(parts, kept)) - base
             return np.asarray(problem.whitened(change) / (kept[axis] - units[axis]), np.float64)
@@ -275,11 +275,11 @@ def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
     for share in (1.0, 0.4, 0.1, 0.02):
         units = fit.units + share * towards
         try:
-            moved = _moved(problem, fit, units)
+            better = moved(problem, fit, units)
         except PmmError:
             continue
-        if moved.cost < fit.cost:
-            return moved, (fit.cost - moved.cost) / max(promise, 1e-9)
+        if better.cost < fit.cost:
+            return better, (fit.cost - better.cost) / max(promise, 1e-9)
     return None, 0.0
 
 
@@ -288,7 +288,7 @@ def _linear_cost(problem: Problem, fit: Fit, units: FloatArray) -> float:
     return misfit(left, problem.nuisances) + float(units @ units)
 
 
-def _moved(problem: Problem, fit: Fit, units: FloatArray) -> Fit:
+def moved(problem: Problem, fit: Fit, units: FloatArray) -> Fit:
     """Return the fit at other parameters, with the slopes that it has."""
     values = problem.simulator.predict(built(fit.candidates, units))
     signature = problem.whitened(values - problem.simulator.nominal)

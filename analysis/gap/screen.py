@@ -6,13 +6,16 @@ a kind of its own; where nothing of that kind is beyond u, it is not there to be
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, Part
+from analysis.gap.components import STEADY_PARTS, Component, Part
 from analysis.gap.fit import Problem
+from analysis.gap.observe import STRUTS
+from hardware.description.channels import SHAFT_ANGLE
 from sim.effects.effect import Effect
 
 BEYOND: Final = 3.0  # standard deviations of a kind's chi-square
@@ -20,29 +23,48 @@ _LONE: Final = 4.0  # sigma of a single component
 _BESIDE: Final = frozenset({Part.BETWEEN, Part.LINE, Part.CYCLE_SCATTER})
 _TRACES: Final[Mapping[str, frozenset[Part]]] = {
     "trigger-jitter": frozenset({Part.PERIOD_SCATTER, Part.CYCLE_SCATTER}),
-    "missed-pulse": frozenset({Part.PULSES, Part.PERIOD_SCATTER}),
+    "missed-pulse": frozenset({Part.PULSES}),
     "hum": _BESIDE,
     "carriage-fluctuation": _BESIDE,
     "residual-waves": _BESIDE,
     "zero-drift": frozenset({Part.TREND, Part.MEAN}),
     "campaign-drift": frozenset({Part.TREND, Part.MEAN}),
-    **dict.fromkeys(
-        ("torque-cogging", "speed-droop", "load-ripple", "gear-backlash", "free-play"),
-        frozenset(STEADY_PARTS),
-    ),
+    "free-play": frozenset(STEADY_PARTS),
 }
+# What they do, the shaft and the struts do, and more of it than the forces show.
+_OF_THE_DRIVE: Final = frozenset({"torque-cogging", "speed-droop", "load-ripple", "gear-backlash"})
+_MOTION: Final = frozenset({SHAFT_ANGLE.name, *STRUTS})
 
 
-def shown(problem: Problem) -> frozenset[Part]:
-    """Return the parts of which some component deviates, over all runs, by more than noise."""
+@dataclass(frozen=True)
+class Shown:
+    """What of the recordings deviates by more than noise.
+
+    Attributes
+    ----------
+    parts
+        Of which some component does.
+    moves
+        Whether shaft or struts do, or the frequency; forces speak for them where nothing else is
+        recorded.
+    """
+
+    parts: frozenset[Part]
+    moves: bool
+
+
+def shown(problem: Problem) -> Shown:
+    """Return what deviates over all runs."""
     stack = problem.simulator.stack
     left = problem.nuisances.whiten(problem.residual[:, None])[:, 0]
-    kinds: dict[object, list[int]] = {}
+    kinds: dict[Component, list[int]] = {}
     for at, one in enumerate(stack.components):
         kinds.setdefault(one, []).append(at)
-    return frozenset(
-        stack.components[rows[0]].part for rows in kinds.values() if _deviates(left, rows)
-    )
+    seen = [one for one, rows in kinds.items() if _deviates(left, rows)]
+    motion = _MOTION & {one.channel for one in kinds}
+    steady = [one for one in seen if one.part in STEADY_PARTS]
+    moves = any(one.channel in motion or not (one.channel and motion) for one in steady)
+    return Shown(frozenset(one.part for one in seen), moves)
 
 
 def _deviates(left: NDArray[np.float64], rows: list[int]) -> bool:
@@ -51,8 +73,10 @@ def _deviates(left: NDArray[np.float64], rows: list[int]) -> bool:
     return bool(own @ own > limit or np.abs(own).max() > _LONE)
 
 
-def worth_a_look(kind: type[Effect], parts: frozenset[Part]) -> bool:
+def worth_a_look(kind: type[Effect], seen: Shown) -> bool:
     """Tell whether an effect can be among what deviates; always so if a look at it is cheap."""
+    if kind.name in _OF_THE_DRIVE:
+        return seen.moves
     if kind.name in _TRACES:
-        return bool(_TRACES[kind.name] & parts)
-    return kind.repeats or bool(parts)
+        return bool(_TRACES[kind.name] & seen.parts)
+    return kind.repeats or bool(seen.parts)

@@ -22,6 +22,7 @@ from analysis.gap.fit import (
     inside,
     joined,
     most_probable,
+    moved,
     refine,
     stepped,
 )
@@ -165,19 +166,15 @@ def _near(problem: Problem, fit: Fit) -> Fit:
     none = null_evidence(problem.residual, problem.nuisances)
     chi_square = misfit(problem.residual, problem.nuisances)
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
+    near = fit
     for _ in range(_APPROACHES):
-        ratio = left_over(fit.signature, problem.nuisances) / wanted
-        if (
-            ratio < _MUCH
-            or not len(fit.units)
-            or expected_evidence(problem, fit) > none - _HOPELESS
-        ):
+        ratio = left_over(near.signature, problem.nuisances) / wanted
+        if ratio < _MUCH:
             break
-        units = smaller(problem, fit, 1.0 / ratio)
-        if np.allclose(units, fit.units):
-            break
-        fit = at(problem, fit.candidates, units, roughly=True)
-    return fit
+        if expected_evidence(problem, near) > none - _HOPELESS:
+            return fit
+        near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
+    return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)
 
 
 def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:

@@ -1,0 +1,34 @@
+"""What is wrong with the carriage's speed shows in its own record."""
+
+import pytest
+
+from analysis.gap.diagnose import Diagnosis, Settings, diagnose
+from analysis.gap.observe import SPEED
+from analysis.gap.where import CARRIAGE
+from sim.effects.catalogue import build, find
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import record
+
+KNOWN = ("carriage-speed", "carriage-fluctuation", "blockage", "coulomb-friction")
+
+
+def diagnosed(rig: SimulatedRig, said: str, seed: int) -> Diagnosis:
+    runs = record(rig, [build(said)], seed)
+    assert all(SPEED in {one.channel for one in run.observed.components} for run in runs)
+    return diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
+
+
+def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
+    found = diagnosed(rig, "carriage-speed:relative=0.02", 71)
+    assert found.probabilities.by_answer["carriage-speed"] > 0.9
+    assert found.best is not None
+    (effect,) = found.best.fit.effects
+    assert getattr(effect, "relative", 0.0) == pytest.approx(0.02, rel=0.05)
+
+
+def test_a_speed_that_is_uneven(rig: SimulatedRig) -> None:
+    """The walk along the chain begins with the carriage, and ends there where it deviates."""
+    found = diagnosed(rig, "carriage-fluctuation:relative=0.002,frequency_hz=0.37", 72)
+    assert found.probabilities.best == "carriage-fluctuation"
+    assert CARRIAGE in {one.what for one in found.walk.steps if one.beyond}
+    assert [stage.value for stage in found.walk.stages] == ["carriage"]
