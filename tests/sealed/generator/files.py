@@ -155,6 +155,8 @@ def _held_out(case: Case, run: Run, record: Record, ref: Reference) -> dict[str,
     """Return the harmonics of a withheld run without noise, with sigma as if it had some."""
     rig = case.campaign.rig
     means, in_phase, quadrature = harmonics(resampled(record, ref, run.periods), run.periods)
+    if "photocell" not in rig.sensors:
+        in_phase, quadrature = from_fundamental(in_phase, quadrature)
     own = np.arange(1, ORDERS + 1) * run.periods
     channels = {}
     for row in recorded(rig.sensors):
@@ -165,6 +167,18 @@ def _held_out(case: Case, run: Run, record: Record, ref: Reference) -> dict[str,
             "sigma": line_sigma(rig, run, row)[own].tolist(),
         }
     return {"frequency_hz": 1.0 / ref.period_s, "channels": channels}
+
+
+def from_fundamental(in_phase: FloatArray, quadrature: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return harmonics counted from where the aft strut's fundamental passes zero upwards.
+
+    So docs/conventions.md counts them without a photocell; a crank's displacement, which is no
+    sine, passes its middle somewhat beside that.
+    """
+    aft = CHANNELS.index("displacement_aft")
+    turned = np.arange(1, ORDERS + 1) * np.arctan2(quadrature[aft, 0], in_phase[aft, 0])
+    cosine, sine = np.cos(turned), np.sin(turned)
+    return in_phase * cosine + quadrature * sine, quadrature * cosine - in_phase * sine
 
 
 def _effects(case: Case) -> list[dict[str, Any]]:
