@@ -39,9 +39,10 @@ $(VENV)/.sealed: $(VENV)/.dev
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo
 
-# A file's tests stay together: what they prepare is prepared once.
+# A file's tests stay together: what they prepare is prepared once. The tests share the cores, so a
+# library's own threads would only get in each other's way.
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check

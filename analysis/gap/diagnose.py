@@ -39,6 +39,7 @@ from sim.rig import SimulatedRig
 FloatArray = NDArray[np.float64]
 
 SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
+_DOUBTED = 0.05  # least share of a rival when the next run is chosen: odds are overconfident
 
 
 @dataclass(frozen=True)
@@ -258,7 +259,7 @@ def _next(
     shares = found.by_answer
     ranked = sorted((*weighed.singles, *weighed.pairs), key=lambda one: -shares[answer_of(one.fit)])
     leading: list[tuple[Fit | None, float]] = [
-        (one.fit, max(shares[answer_of(one.fit)], 1e-3)) for one in ranked[:4]
+        (one.fit, max(shares[answer_of(one.fit)], _DOUBTED)) for one in ranked[:4]
     ]
-    leading.append((None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), 1e-3)))
+    leading.append((None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), _DOUBTED)))
     return proposals(problem, leading, settings.choices, free, settings.priors)

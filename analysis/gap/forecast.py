@@ -32,11 +32,22 @@ class Forecast:
     mean
         Departure from the nominal simulation in sigma, shape ``(observations,)``.
     root
-        Times its transpose it is the covariance, without the noise; ``(observations, k)``.
+        Times its transpose it is the covariance of what all runs share, ``(observations, k)``.
+    own
+        The same of each run's own frequency and phase reference, and of the loudness of its noise.
+    form
+        The same of the effect's own form, by about as much as it is off.
     """
 
     mean: FloatArray
     root: FloatArray
+    own: FloatArray
+    form: FloatArray
+
+    @property
+    def whole(self) -> FloatArray:
+        """Root of the covariance of a run that will be made, without the noise."""
+        return np.hstack((self.root, self.own, self.form))
 
     def values(self, there: Problem) -> FloatArray:
         """Return the predicted components in their own units."""
@@ -99,13 +110,12 @@ def forecast(
     known = np.hstack((wide[:, :count], ahead.columns))
     root = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
     mean = ahead.signature + known @ fitted[kept]
-    found = Forecast(mean, np.hstack((known @ root, wide[:, count:])))
+    found = Forecast(mean, known @ root, wide[:, count:], np.zeros((len(mean), 0)))
     if fit is None:
         return found
     # What the coefficients make up for, they make up for in any form.
     alone = mean - forecast(problem, there, None).mean
-    form = _of_form(there, alone, max(fit.form, LEAST_FORM))
-    return Forecast(mean, np.hstack((found.root, form)))
+    return replace(found, form=_of_form(there, alone, max(fit.form, LEAST_FORM)))
 
 
 def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:

@@ -126,7 +126,7 @@ def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
     difference = one.mean[rows] - other.mean[rows]
     total = 0.0
     for side in (one, other):
-        root = side.root[rows]
+        root = side.whole[rows]
         root = root[:, root.any(axis=0)]  # frequency and noise are each run's own
         left = difference - root @ np.linalg.solve(
             np.eye(root.shape[1]) + root.T @ root, root.T @ difference
