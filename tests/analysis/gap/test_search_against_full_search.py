@@ -11,14 +11,14 @@ from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.fit import Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import columns, free_numbers, with_coefficients
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.gaussian import Nuisances, left_over
 from analysis.gap.hypotheses import Named, Odds, Weighed, balance
 from analysis.gap.noise import pooled
 from analysis.gap.prefix import Solved
 from analysis.gap.priors import Priors
 from analysis.gap.regimes import Regime
 from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.search import look
+from analysis.gap.search import look, smaller
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation
 from analysis.gap.verdict import probabilities
@@ -50,17 +50,38 @@ def test_stages_solved_once_give_the_whole_chain(said: str, rig: SimulatedRig) -
 def test_nothing_costly_is_looked_at_where_nothing_shows(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
-    parts = shown(_scattering(rig, clean))
-    assert Part.BETWEEN not in parts
-    assert not worth_a_look(find("hum"), parts)
-    assert worth_a_look(find("coulomb-friction"), parts)
+    seen = shown(_scattering(rig, clean))
+    assert Part.BETWEEN not in seen.parts
+    assert not worth_a_look(find("hum"), seen)
+    assert not worth_a_look(find("load-ripple"), seen)
+    assert worth_a_look(find("coulomb-friction"), seen)
 
 
 def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
     runs = record(rig, [build("hum:amplitude_n=1,frequency_hz=7.3")], 31)
-    parts = shown(_scattering(rig, runs))
-    assert {Part.BETWEEN, Part.LINE} & parts
-    assert worth_a_look(find("hum"), parts)
+    seen = shown(_scattering(rig, runs))
+    assert {Part.BETWEEN, Part.LINE} & seen.parts
+    assert worth_a_look(find("hum"), seen)
+
+
+def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> None:
+    seen = shown(_scattering(rig, record(rig, [build("speed-ripple")], 33)))
+    assert worth_a_look(find("load-ripple"), seen)
+
+
+@pytest.mark.parametrize(
+    "name", ["load-ripple", "coulomb-friction", "quadratic-damping", "joint-play", "speed-ripple"]
+)
+def test_a_tenth_of_an_effect_is_found_by_the_power_of_its_size(
+    name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    """Inertia by its inverse, drag in proportion, play by less than its size."""
+    problem = problem_of(rig, clean)
+    chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
+    whole = at(problem, chosen, chosen[0].start)
+    tenth = at(problem, chosen, smaller(problem, whole, 0.1))
+    sizes = [left_over(one.signature, problem.nuisances) for one in (whole, tenth)]
+    assert 0.05 < sizes[1] / sizes[0] < 0.2
 
 
 @pytest.mark.parametrize("name", ["coulomb-friction", "viscous-guides", "strut-phase-error"])
