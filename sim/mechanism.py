@@ -83,7 +83,8 @@ class Mechanism:
     Raises
     ------
     ConfigurationError
-        If the rod is not longer than the eccentricity: the crank could not turn.
+        If the rod is not longer than the eccentricity and its guide's offset: the crank could not
+        turn.
     """
 
     eccentricity_m: float
@@ -101,10 +102,12 @@ class Mechanism:
     writes: ClassVar[tuple[Signal, ...]] = _WRITES[0] + _WRITES[1]
 
     def __post_init__(self) -> None:
-        if self.rod_length_m is not None and self.rod_length_m <= self.eccentricity_m:
+        offset_m = max(abs(self.aft.rod_offset_m), abs(self.fore.rod_offset_m))
+        if self.rod_length_m is not None and self.rod_length_m <= self.eccentricity_m + offset_m:
+            aside = f" and rod_offset_m = {offset_m:g}" if offset_m else ""
             raise ConfigurationError(
                 f"rod_length_m = {self.rod_length_m:g} must exceed "
-                f"eccentricity_m = {self.eccentricity_m:g}: the crank could not turn"
+                f"eccentricity_m = {self.eccentricity_m:g}{aside}: the crank could not turn"
             )
 
     def start(self, sample_rate_hz: float, seed: int) -> PlayStates | None:

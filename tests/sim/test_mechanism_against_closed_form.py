@@ -10,7 +10,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.struts import to_motion
-from sim.mechanism import Mechanism
+from sim.mechanism import Mechanism, Setting
 from sim.rig import horizontal_rig, vertical_rig
 from sim.signals import FloatArray, Signals
 from sim.stage import Block
@@ -120,6 +120,8 @@ def test_chain_rule_holds_while_the_shaft_speeds_up() -> None:
 def test_rod_shorter_than_the_crank_is_refused() -> None:
     with pytest.raises(ConfigurationError, match=r"rod_length_m = 0\.1 .*0\.12"):
         Mechanism(0.12, rod_length_m=0.1)
+    with pytest.raises(ConfigurationError, match=r"rod_offset_m = 0\.05: the crank could not turn"):
+        Mechanism(0.12, rod_length_m=0.15, fore=Setting(rod_offset_m=-0.05))
     short = replace(vertical_rig(), oscillator=replace(VERTICAL_1963, rod_length_m=0.03))
     with pytest.raises(ConfigurationError, match="rod_length_m"):
         short.chain(SetPoint(1.0, 0.05))
