@@ -130,8 +130,8 @@ def weigh(
         The coefficients and settings of the problem, to be moved together with the effects.
     """
     kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
-    seen_at_all = shown(problem)
-    worth = [kind for kind in kinds if worth_a_look(kind, seen_at_all)]
+    traces = shown(problem)
+    worth = [kind for kind in kinds if worth_a_look(kind, traces)]
     progress(f"looking at {len(worth)} effects")
     looked = looked_at(problem, worth, executor)
     none = null_evidence(problem.residual, problem.nuisances)

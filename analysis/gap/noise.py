@@ -79,7 +79,7 @@ class Usual:
         """Return a component's usual variance, and how many numbers it is known by."""
         duration_s = run.periods / run.set_point.frequency_hz
         if one.channel in self.loud:
-            density = float(self.loud[one.channel].at(one.order * run.set_point.frequency_hz))
+            density = self.loud[one.channel].at(one.order * run.set_point.frequency_hz)
             return density / duration_s * (1.0 if one.part is Part.MEAN else 2.0), _LINES_FREEDOM
         key = (one.channel, _kind(one.part, one.order))
         return (self.scatter[key] / duration_s, _FREEDOM) if key in self.scatter else None

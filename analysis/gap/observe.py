@@ -173,14 +173,19 @@ def _scatter(analysis: Analysis) -> Found:
                 yield part, 0.5 * float(np.log(power + 1e-12)), sure / np.sqrt(2.0)
 
 
+def _steady(analysis: Analysis) -> Recording:
+    """Return the whole periods of a record that were analysed."""
+    sums = analysis.steady_sums
+    return analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+
+
 def _between(analysis: Analysis) -> Found:
-    sums, recording = analysis.steady_sums, analysis.recording
-    part = recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
-    frequency = analysis.readings[0].frequency_hz
+    part = _steady(analysis)
+    rate_hz, frequency = part.sample_rate_hz, analysis.readings[0].frequency_hz
     count = part.sample_count
     taper = np.hanning(count)
-    lines_hz = np.arange(count // 2 + 1) * recording.sample_rate_hz / count
-    free = _free_of_harmonics(lines_hz, frequency, recording.sample_rate_hz / count)
+    lines_hz = np.arange(count // 2 + 1) * rate_hz / count
+    free = _free_of_harmonics(lines_hz, frequency, rate_hz / count)
     repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
     for name in FORCES:
         if name in part.channel_names:
@@ -195,16 +200,14 @@ def _between(analysis: Analysis) -> Found:
 
 def _quiet(analysis: Analysis) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
-    sums, reading = analysis.steady_sums, analysis.readings[0]
-    part = analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    part, reading = _steady(analysis), analysis.readings[0]
     values = np.stack([part.values(name) for name in reading.channel_names])
     found = quiet_lines(part.time_s(), values, reading.frequency_hz, reading.order)
     return dict(zip(reading.channel_names, found, strict=True))
 
 
 def _surges(analysis: Analysis) -> Found:
-    sums = analysis.steady_sums
-    part = analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    part = _steady(analysis)
     if SPEED not in part.channel_names:
         return
     values, taper = part.values(SPEED), np.hanning(part.sample_count)

@@ -74,7 +74,7 @@ def repeating(angle_rad: FloatArray, orders: int) -> FloatArray:
     return np.asarray(np.linalg.qr(np.column_stack((np.ones_like(turn), turn, *waves)))[0])
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Loudness:
     """A channel's power density: white noise, and noise behind one pole.
 
@@ -91,10 +91,9 @@ class Loudness:
     coloured: float
     corner_hz: float
 
-    def at(self, frequency_hz: float | FloatArray) -> FloatArray:
+    def at(self, frequency_hz: float) -> float:
         """Return the density at a frequency."""
-        pole = 1.0 + (np.asarray(frequency_hz) / self.corner_hz) ** 2
-        return np.asarray(self.white + self.coloured / pole, np.float64)
+        return self.white + self.coloured / (1.0 + (frequency_hz / self.corner_hz) ** 2)
 
 
 def loudness(records: Iterable[Lines]) -> Loudness | None:
@@ -113,7 +112,7 @@ def loudness(records: Iterable[Lines]) -> Loudness | None:
         return None
     corners = np.geomspace(2.0 * lines_hz.min(), lines_hz.max(), _CORNERS)
     found = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
-    one = min(found)[1]
+    one = min(found, key=lambda pair: pair[0])[1]
     return Loudness(usual * one.white, usual * one.coloured, one.corner_hz)
 
 

@@ -46,7 +46,7 @@ def test_density_at_the_harmonics(seed: int, hum: float) -> None:
     )
     assert found is not None
     for frequency, spread in ((0.5, 0.22), (1.0, 0.12), (2.5, 0.09), (5.0, 0.12)):
-        assert float(found.at(frequency)) == pytest.approx(density(frequency), rel=3.0 * spread)
+        assert found.at(frequency) == pytest.approx(density(frequency), rel=3.0 * spread)
 
 
 def test_no_bias_over_many_campaigns() -> None:
@@ -58,7 +58,7 @@ def test_no_bias_over_many_campaigns() -> None:
             for number, frequency in enumerate(FREQUENCIES_HZ)
         )
         assert found is not None
-        ratios.append([float(found.at(one)) / density(one) for one in (0.0, 0.6, 3.0)])
+        ratios.append([found.at(one) / density(one) for one in (0.0, 0.6, 3.0)])
     assert np.median(ratios, axis=0) == pytest.approx(np.ones(3), abs=0.12)
 
 
