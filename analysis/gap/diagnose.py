@@ -247,6 +247,13 @@ def _unknown_stage(problem: Problem, weighed: Weighed) -> str:
     return unknown_stage(list(weighed.unknown.sizes), stays).value
 
 
+def _different(weighed: Weighed, shares: Mapping[str, float]) -> list[Fit]:
+    """Return the most probable hypothesis and those that share no effect with it."""
+    fits = [one.fit for one in (*weighed.singles, *weighed.pairs)]
+    ranked = sorted(fits, key=lambda one: -shares[answer_of(one)])
+    return [one for one in ranked if one is ranked[0] or not {*one.names} & {*ranked[0].names}]
+
+
 def _next(
     problem: Problem,
     weighed: Weighed,
@@ -257,9 +264,8 @@ def _next(
     if settings.choices is None:
         return ()
     shares = found.by_answer
-    ranked = sorted((*weighed.singles, *weighed.pairs), key=lambda one: -shares[answer_of(one.fit)])
     leading: list[tuple[Fit | None, float]] = [
-        (one.fit, max(shares[answer_of(one.fit)], _DOUBTED)) for one in ranked[:4]
+        (one, max(shares[answer_of(one)], _DOUBTED)) for one in _different(weighed, shares)[:4]
     ]
     leading.append((None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), _DOUBTED)))
     return proposals(problem, leading, settings.choices, free, settings.priors)

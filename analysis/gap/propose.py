@@ -1,15 +1,17 @@
 """Which run to make next: the one that is expected to tell the leading answers apart.
 
-An oscillation is worth what the leading answers predict differently there, each with its own
+An oscillation tells two answers apart by what they predict differently there, each with its own
 parameters known no better than the campaign knows them, and with the coefficients free as always.
 A measurement of another kind (at rest, with a check weight, with a signal in place of the bridges)
-is worth what it shows of an effect's stage by itself.
+tells apart what it shows of an effect's stage by itself. A run is worth the log odds that whichever
+answer is right gains over all others together: a rival that it does not touch is left standing,
+however far it throws the rest.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -17,7 +19,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.fit import Fit, Problem
-from analysis.gap.forecast import Forecast, forecast, further, planned
+from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import Free
 from analysis.gap.priors import Priors
 from hardware.description.errors import PmmError
@@ -26,9 +28,12 @@ from hardware.description.setpoint import Medium, SetPoint
 
 FloatArray = NDArray[np.float64]
 
-ENOUGH: Final = 40.0  # log odds beyond which more is worth no more
+ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
 _FREQUENCIES: Final = 3
 _RADII: Final = 2
+
+Leading = Sequence[tuple[Fit | None, float]]
+"""The leading answers with their probabilities; ``None`` for no gap."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ class Proposal:
     kind
         ``"oscillation"`` or one of the special ones.
     gain
-        Expected log odds between the leading answers that it adds, at most ``ENOUGH``.
+        Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``.
     """
 
     kind: str
@@ -82,25 +87,19 @@ _SHOWN: Final[Mapping[str, frozenset[str]]] = {
 
 def proposals(
     problem: Problem,
-    leading: Sequence[tuple[Fit | None, float]],
+    leading: Leading,
     choices: Choices,
     free: Sequence[Free],
     priors: Priors,
 ) -> tuple[Proposal, ...]:
-    """Return runs in the order of what they are worth.
-
-    Parameters
-    ----------
-    leading
-        The leading answers with their probabilities; ``None`` for no gap.
-    """
+    """Return runs in the order of what they are worth."""
     found = [*_oscillations(problem, leading, choices, free, priors), *_special(leading, choices)]
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
 def _oscillations(
     problem: Problem,
-    leading: Sequence[tuple[Fit | None, float]],
+    leading: Leading,
     choices: Choices,
     free: Sequence[Free],
     priors: Priors,
@@ -111,28 +110,48 @@ def _oscillations(
         return
     there = further(problem, runs, free, priors)
     told = [forecast(problem, there, fit) for fit, _ in leading]
+    shares = [share for _, share in leading]
+    means, roots = [one.mean for one in told], [one.whole for one in told]
     for number, run in enumerate(runs):
         rows = there.simulator.stack.run == number
-        gain = sum(
-            leading[i][1] * leading[j][1] * min(_apart(told[i], told[j], rows), ENOUGH)
-            for i, j in combinations(range(len(leading)), 2)
-        )
-        share = sum(a[1] * b[1] for a, b in combinations(leading, 2))
-        yield Proposal("oscillation", run.set_point, 0.0, gain / max(share, 1e-12), "")
+        odds = _apart(np.column_stack([one[rows] for one in means]), [one[rows] for one in roots])
+        yield Proposal("oscillation", run.set_point, 0.0, gained(shares, odds), "")
 
 
-def _apart(one: Forecast, other: Forecast, rows: NDArray[np.bool_]) -> float:
-    """Return the expected log odds between two answers after a run, by symmetric divergence."""
-    difference = one.mean[rows] - other.mean[rows]
-    total = 0.0
-    for side in (one, other):
-        root = side.whole[rows]
-        root = root[:, root.any(axis=0)]  # frequency and noise are each run's own
-        left = difference - root @ np.linalg.solve(
-            np.eye(root.shape[1]) + root.T @ root, root.T @ difference
-        )
-        total += 0.25 * float(difference @ left)
-    return total
+def gained(shares: Sequence[float], odds: FloatArray) -> float:
+    """Return the log odds that the right answer gains over all others, over which it may be.
+
+    Parameters
+    ----------
+    shares
+        How probable each answer is, shape ``(answers,)``; they need not sum to 1.
+    odds
+        Expected log odds between each two of the answers after a run, ``(answers, answers)``.
+    """
+    if len(shares) < 2:
+        return 0.0
+    others = np.asarray(shares) * (1.0 - np.eye(len(shares)))
+    left = np.sum(others * np.exp(-np.minimum(odds, ENOUGH)), axis=1)
+    return float(np.average(np.log(others.sum(axis=1) / left), weights=shares))
+
+
+def _apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
+    """Return the expected log odds between each two answers after a run, by symmetric divergence.
+
+    Parameters
+    ----------
+    means
+        What each answer predicts, shape ``(observations, answers)``.
+    roots
+        The root of its covariance without the noise, shape ``(observations, any)``.
+    """
+    squares = np.zeros((means.shape[1], means.shape[1]))
+    for number, whole in enumerate(roots):
+        root = whole[:, whole.any(axis=0)]  # frequency and noise are each run's own
+        away = means - means[:, number, None]
+        towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
+        squares[number] = np.sum(away * (away - root @ towards), axis=0)
+    return 0.25 * (squares + squares.T)
 
 
 def _set_points(choices: Choices) -> Iterator[SetPoint]:
@@ -164,15 +183,12 @@ def _bearable(problem: Problem, run: GapRun, choices: Choices) -> bool:
     return math.sqrt(2.0) * max(forces, default=0.0) < choices.force_limit_n
 
 
-def _special(leading: Sequence[tuple[Fit | None, float]], choices: Choices) -> Iterator[Proposal]:
-    share = sum(a[1] * b[1] for a, b in combinations(leading, 2))
+def _special(leading: Leading, choices: Choices) -> Iterator[Proposal]:
+    shares = [share for _, share in leading]
     for kind in choices.special:
         told = [_tells(kind, fit) for fit, _ in leading]
-        gain = sum(
-            leading[i][1] * leading[j][1] * ENOUGH * 0.5 * (told[i] != told[j])
-            for i, j in combinations(range(len(leading)), 2)
-        )
-        yield Proposal(kind, None, 0.0, gain / max(share, 1e-12), "")
+        odds = [[ENOUGH * (one != other) for other in told] for one in told]
+        yield Proposal(kind, None, 0.0, gained(shares, np.array(odds)), "")
 
 
 def _tells(kind: str, fit: Fit | None) -> frozenset[str]:

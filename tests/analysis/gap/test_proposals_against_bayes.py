@@ -1,0 +1,56 @@
+"""What a further run is worth, against Bayes' rule worked out for a run that comes as expected."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from analysis.gap.propose import ENOUGH, gained
+
+FloatArray = NDArray[np.float64]
+Pairs = dict[tuple[int, int], float]
+
+shares = st.lists(st.floats(0.01, 1.0), min_size=2, max_size=6)
+
+
+def table(count: int, apart: Pairs) -> FloatArray:
+    odds = np.zeros((count, count))
+    for (i, j), value in apart.items():
+        odds[i, j] = odds[j, i] = value
+    return odds
+
+
+def test_two_answers_gain_what_lies_between_them() -> None:
+    assert gained([0.9, 0.1], table(2, {(0, 1): 7.0})) == pytest.approx(7.0)
+
+
+def test_a_rival_that_a_run_does_not_touch_is_left_standing() -> None:
+    # Whichever of the three is right: one rival falls to e^-15, the other keeps its odds.
+    apart = {(0, 1): 15.0, (0, 2): 0.0, (1, 2): 15.0}
+    first = math.log((0.2 + 0.3) / (0.2 * math.exp(-15.0) + 0.3))
+    second = 15.0
+    third = math.log((0.5 + 0.2) / (0.5 + 0.2 * math.exp(-15.0)))
+    expected = 0.5 * first + 0.2 * second + 0.3 * third
+    assert gained([0.5, 0.2, 0.3], table(3, apart)) == pytest.approx(expected)
+
+
+def test_a_run_that_tells_all_apart_is_worth_more_than_one_that_throws_one_far() -> None:
+    even = gained([0.5, 0.25, 0.25], table(3, {(0, 1): 10.0, (0, 2): 10.0, (1, 2): 10.0}))
+    uneven = gained([0.5, 0.25, 0.25], table(3, {(0, 1): 20.0, (0, 2): 1.0, (1, 2): 20.0}))
+    assert even > uneven
+
+
+def test_a_single_answer_gains_nothing() -> None:
+    assert gained([1.0], table(1, {})) == 0.0
+
+
+@given(shares, st.data())
+def test_what_is_gained_lies_between_nothing_and_enough(
+    shares: list[float], data: st.DataObject
+) -> None:
+    pairs = [(i, j) for i in range(len(shares)) for j in range(i + 1, len(shares))]
+    apart = {pair: data.draw(st.floats(0.0, 100.0)) for pair in pairs}
+    assert -1e-9 <= gained(shares, table(len(shares), apart)) <= ENOUGH + 1e-9
