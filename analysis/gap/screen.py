@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from analysis.gap.components import STEADY_PARTS, Component, Part
 from analysis.gap.fit import Problem
 from analysis.gap.observe import STRUTS
+from analysis.gap.where import left_by_step
 from hardware.description.channels import SHAFT_ANGLE
 from sim.effects.effect import Effect
 
@@ -54,9 +55,9 @@ class Shown:
 
 
 def shown(problem: Problem) -> Shown:
-    """Return what deviates over all runs."""
+    """Return what deviates over all runs, the motion judged without what comes after it."""
     stack = problem.simulator.stack
-    left = problem.nuisances.whiten(problem.residual[:, None])[:, 0]
+    left = left_by_step(problem, problem.residual)
     kinds: dict[Component, list[int]] = {}
     for at, one in enumerate(stack.components):
         kinds.setdefault(one, []).append(at)

@@ -5,6 +5,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import Forecast, forecast, further, planned
 from analysis.gap.free import Free, free_numbers
+from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
@@ -28,8 +30,8 @@ FloatArray = NDArray[np.float64]
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
 _DRAWS = 400
-_FORM_KNOWN = 0.7  # standard deviation of the logarithm of by how much a form is off
-_ELSE = 0.05  # standard deviation of what a wrong effect makes go away
+_FORM_KNOWN = 1.0  # standard deviation of the logarithm of by how much a form is off
+_ELSE = 0.15  # standard deviation of what a wrong effect makes go away, about what it did so far
 _SEED = 20260
 
 
@@ -56,7 +58,9 @@ def answer(
     rival = None if diagnosis.rival is None else diagnosis.rival.fit
     shares = shares_of(diagnosis, there)
     share = 0.0 if best is None else shares[answer_of(best)]
-    foretold = _Foretold(diagnosis.problem, (best, rival), share, held_out, free, priors)
+    tried = 0.0 if diagnosis.shrinkage is None else diagnosis.shrinkage.share
+    named = _Named(best, rival, share, tried)
+    foretold = _Foretold(diagnosis.problem, named, held_out, free, priors)
     found: dict[str, Any] = {
         "schema": SCHEMA,
         "case": name,
@@ -119,14 +123,29 @@ _SPECIAL: Final[Mapping[str, Mapping[str, Any]]] = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class _Named:
+    """What the answer names, the second best, how probable the first is, and what it did so far.
+
+    Attributes
+    ----------
+    tried
+        Part of the gap that went away on regimes of the campaign that were withheld from it.
+    """
+
+    best: Fit | None
+    rival: Fit | None
+    share: float
+    tried: float
+
+
 class _Foretold:
     """The withheld runs as foretold without an effect, with the best answer, and by controls."""
 
     def __init__(
         self,
         problem: Problem,
-        fits: tuple[Fit | None, Fit | None],
-        share: float,
+        named: _Named,
         held_out: Sequence[HeldOut],
         free: Sequence[Free],
         priors: Priors,
@@ -134,16 +153,18 @@ class _Foretold:
         self._names = [one.name for one in held_out]
         runs = [planned(problem, one.set_point, at) for at, one in enumerate(held_out)]
         self._there = further(problem, runs, free, priors) if runs else None
-        self._problem, self._share = problem, share
-        self._best, self._rival = fits
+        self._problem, self._named = problem, named
 
     def as_dict(self) -> dict[str, Any]:
         if self._there is None:
             return {"before": {}, "after": {}, "shrinkage": _share(0.0, 0.0, 0.0)}
         stack = self._there.simulator.stack
         plain = forecast(self._problem, self._there, None)
-        cured = forecast(self._problem, self._there, self._best) if self._best else plain
-        low, middle, high = self._shrinkage(plain, cured) if self._best else (0.0, 0.0, 0.0)
+        best = self._named.best
+        cured = plain if best is None else forecast(self._problem, self._there, best)
+        low, middle, high = (
+            (0.0, 0.0, 0.0) if best is None else self._shrinkage(stack, plain, cured)
+        )
         return {
             "before": self._runs(stack, plain.values(self._there)),
             "after": self._runs(stack, cured.values(self._there)),
@@ -151,21 +172,25 @@ class _Foretold:
             "shrinkage": _share(float(middle), float(low), float(high)),
         }
 
-    def _shrinkage(self, plain: Forecast, cured: Forecast) -> tuple[float, float, float]:
-        """Return the median and the 95 % interval of the part of the gap that goes away.
+    def _shrinkage(
+        self, stack: Stack, plain: Forecast, cured: Forecast
+    ) -> tuple[float, float, float]:
+        """Return the median and the 95 % interval of the part of the forces' gap that goes away.
 
-        By how much a form is off is itself known to a factor of two only; and where the answer is
-        another one, next to nothing goes away.
+        By how much a form is off is itself known to a factor of three only; and where the answer is
+        another one, about as much goes away as on the regimes that were withheld from it.
         """
+        rows = np.array([one.channel in FORCES for one in stack.components])
+        gap, root, form = (cured.mean - plain.mean)[rows], cured.root[rows], cured.form[rows]
         rng, shares = np.random.default_rng(_SEED), []
         for number in range(_DRAWS):
-            if number >= self._share * _DRAWS:
-                shares.append(_ELSE * float(rng.standard_normal()))
+            if number >= self._named.share * _DRAWS:
+                shares.append(self._named.tried + _ELSE * float(rng.standard_normal()))
                 continue
-            off = cured.root @ rng.standard_normal(cured.root.shape[1])
+            off = root @ rng.standard_normal(root.shape[1])
             size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))
-            off = off + size * (cured.form @ rng.standard_normal(cured.form.shape[1]))
-            shares.append(_shrinks(cured.mean + off - plain.mean, off))
+            off = off + size * (form @ rng.standard_normal(form.shape[1]))
+            shares.append(_shrinks(gap + off, off))
         low, middle, high = np.quantile(shares, (0.025, 0.5, 0.975))
         return float(low), float(middle), float(high)
 
@@ -174,8 +199,8 @@ class _Foretold:
         problem, stack = self._problem, there.simulator.stack
         free = forecast(problem, there, polynomial(problem), polynomial_ahead(problem, there))
         found = {"after_polynomial": self._runs(stack, free.values(there))}
-        if self._rival is not None:
-            second = forecast(problem, there, self._rival)
+        if self._named.rival is not None:
+            second = forecast(problem, there, self._named.rival)
             found["after_rival"] = self._runs(stack, second.values(there))
         return found
 
