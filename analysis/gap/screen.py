@@ -33,7 +33,7 @@ _TRACES: Final[Mapping[str, frozenset[Part]]] = {
     "free-play": frozenset(STEADY_PARTS),
 }
 # What they do, the shaft and the struts do, and more of it than the forces show.
-_OF_THE_DRIVE: Final = frozenset({"torque-cogging", "speed-droop", "load-ripple", "gear-backlash"})
+_OF_THE_DRIVE: Final = frozenset({"speed-droop", "load-ripple", "gear-backlash"})
 _MOTION: Final = frozenset({SHAFT_ANGLE.name, *STRUTS})
 
 

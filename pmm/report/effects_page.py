@@ -31,7 +31,6 @@ _EXACT: Final = 1e-9  # below it a figure is rounding, and differs from machine 
 
 # Why an effect at its typical parameters is further from its theory than that, by its code.
 _WHY: Final = {
-    "D1b": "first order in the load's inertia over the shaft's; below 1e-3 with 400 kg m2",
     "D2": "first order in the droop; below 1e-3 with 2e-4 rad/(s N m)",
     "D3": "first order in M e²/J; below 1e-3 with 200 kg m2",
     "D4": "theory has rigid teeth, which do not bounce or ring",

@@ -6,21 +6,20 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
+from sim.drive import SpeedRipple
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.shaft import Yielding
+from sim.effects.shaft import uneven_signature
 from sim.effects.situation import Situation
 from sim.motor import Cogging
 from sim.rig import SimulatedRig
-
-_HOLD_RAD_S = 0.3  # what brings the mean speed back of a motor that the rig does not have yet
 
 
 @dataclass(frozen=True)
 class TorqueCogging(Effect):
     """``T sin(k th + psi)`` against the motion moves the shaft by ``T/(J k^2 w^2)``.
 
-    Like a ripple of the speed that falls with the frequency squared. A rig without a motor gets one
-    of this inertia, which yields to the struts' load too: see load-ripple.
+    Like a ripple of the speed that falls with the frequency squared. Without a motor in the rig it
+    is just that, of a shaft with this inertia: what the load does to such a shaft is load-ripple.
     """
 
     code: ClassVar[str] = "D1b"
@@ -36,18 +35,21 @@ class TorqueCogging(Effect):
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with this torque on its motor."""
-        motor = self._shaft.motor() if rig.drive.motor is None else rig.drive.motor
-        torque = Cogging(round(self.order), self.torque_n_m, self.phase_rad)
-        motor = replace(motor, cogging=(*motor.cogging, torque))
-        return replace(rig, drive=replace(rig.drive, motor=motor))
+        """Return the rig with this torque on its motor, or with the ripple that it makes."""
+        order, drive = round(self.order), rig.drive
+        if drive.motor is not None:
+            torque = Cogging(order, self.torque_n_m, self.phase_rad)
+            motor = replace(drive.motor, cogging=(*drive.motor.cogging, torque))
+            return replace(rig, drive=replace(drive, motor=motor))
+        relative = order * self._angle_rad(2.0 * np.pi * set_point.frequency_hz)
+        ripple = (*drive.ripple, SpeedRipple(order, relative, self.phase_rad))
+        return replace(rig, drive=replace(drive, ripple=ripple))
 
     def signature(self, situation: Situation) -> Signature:
-        """Return the modulated motion and the model's reaction, against a drive that holds."""
-        wave = -1j * self.torque_n_m * complex(np.exp(1j * self.phase_rad))
-        return self._shaft.signature(situation, {round(self.order): wave})
+        """Return the modulated motion and the model's reaction, of a shaft that no load moves."""
+        wave = -1j * self._angle_rad(situation.omega) * np.exp(1j * self.phase_rad)
+        return uneven_signature(situation, {round(self.order): complex(wave)})
 
-    @property
-    def _shaft(self) -> Yielding:
-        inertia = self.inertia_kg_m2
-        return Yielding(inertia, 2.0 * _HOLD_RAD_S * inertia, _HOLD_RAD_S**2 * inertia)
+    def _angle_rad(self, omega_rad_s: float) -> float:
+        """Return by how much the shaft is moved to either side."""
+        return self.torque_n_m / (self.inertia_kg_m2 * (round(self.order) * omega_rad_s) ** 2)

@@ -42,7 +42,6 @@ def test_the_page_has_every_effect_once() -> None:
 @pytest.mark.parametrize(
     ("text", "set_points"),
     [
-        ("torque-cogging:inertia_kg_m2=400", SET_POINTS),
         ("speed-droop:droop_rad_s_n_m=2e-4", SET_POINTS),
         ("load-ripple:inertia_kg_m2=200", SET_POINTS),
         ("foreshortening", [SetPoint(1.0, 0.01, np.pi, 1.0), SetPoint(0.5, 0.01, 2.0)]),

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
@@ -14,10 +16,12 @@ from sim.effects.d3_load_ripple import LoadRipple
 from sim.effects.d5_guide_friction import GuideFriction
 from sim.effects.d6_frequency_error import FrequencyError
 from sim.effects.effect import Effect
-from sim.motor import Guides
+from sim.motor import Cogging, Guides
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import mismatch
+
+FloatArray = NDArray[np.float64]
 
 PHASES = (0.0, np.pi / 3.0, np.pi)
 IN_WATER = [SetPoint(f, a, p) for f in (0.4, 0.9) for a in (0.01, 0.03) for p in PHASES]
@@ -32,8 +36,8 @@ CASES = [
     (SpeedDroop(2e-4), 1e-3),
     (LoadRipple(200.0), 1e-3),
     (LoadRipple(200.0, 0.5), 1e-3),
-    (TorqueCogging(1.0, 1.0, 0.5, 400.0), 1e-3),
-    (TorqueCogging(1.0, 3.0, 0.0, 400.0), 1e-3),
+    (TorqueCogging(0.1, 1.0, 0.5, 5.0), 1e-6),
+    (TorqueCogging(0.1, 3.0, 0.0, 5.0), 1e-6),
     (FrequencyError(), 1e-9),
     (FrequencyError(-0.02), 1e-9),
 ]
@@ -70,6 +74,34 @@ def test_guide_friction_shows_in_no_force_but_in_the_torque() -> None:
     assert more[0].real == pytest.approx(2.0 * (20.0 * e * 2.0 / np.pi + viscous), rel=1e-3)
     second = (20.0 * e * 4.0 / (3.0 * np.pi) + viscous) * (1.0 + turn)
     assert abs(more[2] - second) < 1e-3 * abs(second)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_cogging_moves_the_shaft_by_the_equation_of_motion(order: int) -> None:
+    # th'' = -(T/J) sin(k th + psi), integrated over three turns from the start that repeats.
+    torque, inertia, phase, frequency_hz = 0.02, 5.0, 0.4, 0.5
+    omega = 2.0 * np.pi * frequency_hz
+    effect = TorqueCogging(torque, float(order), phase, inertia)
+    rippled = effect.change(vertical_rig().ideal(), SetPoint(frequency_hz, 0.02, 0.0)).drive
+    time_s = np.linspace(0.0, 3.0 / frequency_hz, 301)
+    there = rippled.commanded(frequency_hz, time_s)
+
+    def motion(_: float, state: FloatArray) -> list[float]:
+        return [state[1], -torque / inertia * np.sin(order * state[0] + phase)]
+
+    start = [there.angle[0], there.speed[0]]
+    found = solve_ivp(motion, (0.0, time_s[-1]), start, t_eval=time_s, rtol=1e-10, atol=1e-12)
+    # To the second order in k X the mean speed differs too, and that adds up over the turns.
+    second = (torque / (inertia * order * omega**2)) ** 2
+    assert np.abs(found.y[0] - there.angle).max() < second * omega * time_s[-1]
+
+
+def test_cogging_turns_a_motor_that_the_rig_has() -> None:
+    set_point = SetPoint(0.7, 0.02, 0.0)
+    driven = LoadRipple(300.0).change(vertical_rig().ideal(), set_point)
+    motor = TorqueCogging(1.0, 2.0, 0.1).change(driven, set_point).drive.motor
+    assert motor is not None
+    assert motor.cogging == (Cogging(2, 1.0, 0.1),)
 
 
 def test_load_ripple_by_the_textbook_formula() -> None:
