@@ -185,6 +185,9 @@ def _positive(one: Parameter, frequencies_hz: Sequence[float]) -> Iterator[Axis]
 
 
 def _size(one: Parameter, siblings: tuple[Parameter, ...]) -> float:
-    """Return a parameter's usual size; that of its siblings of the same unit where it is zero."""
-    alike = [abs(other.typical) for other in siblings if other.unit == one.unit]
+    """Return a parameter's usual size; that of its siblings of the same unit where it is zero.
+
+    Only of siblings that can be zero too: a rod's length says nothing of what it is out of line by.
+    """
+    alike = [abs(other.typical) for other in siblings if other.unit == one.unit and other.low <= 0]
     return abs(one.typical) or max(alike) or max(abs(one.low), abs(one.high)) / 10.0

@@ -47,6 +47,8 @@ _SEEN: Final = 10.0  # chi-square that there is to explain, at least
 _HOPELESS: Final = 20.0  # log evidence under "no gap": a straight line has gone astray
 _APPROACHES: Final = 3
 _LEAST_POWER: Final = 0.2
+_MATCHES: Final = 2
+_ALIKE: Final = 1.3  # times what the runs show of an effect, down to which its size is alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,13 +107,14 @@ def paired(
 ) -> list[Fit]:
     """Add to the leading effects whatever promises most beside them; greedy, by linear steps.
 
-    Fitted in full are those that promise to do better than one effect alone.
+    Fitted in full are those that promise to do better than one effect alone. An effect is tried
+    from where it was first seen and from where it was fitted: alone, it may have gone astray after
+    what its partner does.
     """
     chances: dict[frozenset[str], tuple[float, Fit]] = {}
-    partners = {one.fit.names: one.fit for one in seen if one.fit is not None}
-    partners |= {one.names: one for one in singles}
+    partners = [*(one.fit for one in seen if one.fit is not None), *singles]
     for first in singles[:_STARTS]:
-        for second in partners.values():
+        for second in partners:
             if second.names != first.names:
                 key = frozenset((*first.names, *second.names))
                 both = joined(problem, first, second)
@@ -151,6 +154,9 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
             best, most = fit, expected
     if best is None:
         return Looked(kind.name, None, reason=reason)
+    if not kind.repeats:
+        best = _matched(problem, best)
+        most = expected_evidence(problem, best)
     steps = (best.signature, best.columns @ most_probable(best))
     visible = max(left_over(one, problem.nuisances) for one in steps)
     return Looked(kind.name, best, most, visible)
@@ -175,6 +181,21 @@ def _near(problem: Problem, fit: Fit) -> Fit:
             return fit
         near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
     return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)
+
+
+def _matched(problem: Problem, fit: Fit) -> Fit:
+    """Return a look at what does not repeat from where it is as large as what the runs show of it.
+
+    It shows in logarithms, which no straight line follows far; and in what no other effect changes,
+    so that what it is to explain is known whatever else is there.
+    """
+    for _ in range(_MATCHES):
+        weighted = problem.nuisances.whiten(fit.signature)
+        seen, own = float(weighted @ problem.residual), float(weighted @ fit.signature)
+        if not max(seen, 0.0) ** 2 > _SEEN * own or seen * _ALIKE > own:
+            break
+        fit = at(problem, fit.candidates, smaller(problem, fit, seen / own))
+    return fit
 
 
 def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:

@@ -16,7 +16,9 @@ class ConnectingRod(Effect):
 
     The second one, ``-e (r/4 + r^3/16) cos(2 theta)`` with r = e/L, grows with the amplitude
     squared; as inertia it is r times the first harmonic of the force. A guide that misses the
-    crank's centre by o adds ``-e (o/L) cos(theta)`` and a third harmonic r^2/8 as large.
+    crank's centre by o adds ``-e (o/L) cos(theta)`` and a third harmonic r^2/8 as large. A yoke
+    whose slot is bowed to a radius L moves its strut likewise, so that L may be far longer than any
+    rod: the range ends where no sensor tells the slot from a straight one.
     """
 
     code: ClassVar[str] = "K1"
@@ -24,7 +26,7 @@ class ConnectingRod(Effect):
     title: ClassVar[str] = "Crank with a connecting rod of finite length"
     stage: ClassVar[StageName] = StageName.MECHANISM
 
-    rod_length_m: float = parameter(1.5, 0.1, 20.0, "m", "length of the rod")
+    rod_length_m: float = parameter(1.5, 0.1, 1e4, "m", "length of the rod, or the slot's radius")
     rod_offset_m: float = parameter(
         0.0, -0.05, 0.05, "m", "by how much the rod's guide misses the crank's centre"
     )

@@ -1,0 +1,49 @@
+"""Two effects at once: each is found beside the other, however far its usual size is off."""
+
+import numpy as np
+import pytest
+
+from analysis.gap.candidate import candidates
+from analysis.gap.diagnose import Settings, diagnose
+from analysis.gap.search import look
+from sim.effects.catalogue import build, catalogue, find
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of, record
+
+KNOWN = (
+    "connecting-rod",
+    "entrained-water",
+    "coulomb-friction",
+    "slot-tilt",
+    "carriage-fluctuation",
+    "carriage-speed",
+)
+
+
+@pytest.mark.parametrize(
+    ("said", "seed"),
+    [
+        (("connecting-rod:rod_length_m=60", "coulomb-friction:friction_n=0.05"), 81),
+        (("carriage-fluctuation:relative=0.001", "slot-tilt:tilt_aft_rad=0.005"), 82),
+    ],
+)
+def test_both_are_named(rig: SimulatedRig, said: tuple[str, str], seed: int) -> None:
+    """The slot's bow is 40 times less than a usual rod makes, the swell a third."""
+    runs = record(rig, [build(one) for one in said], seed)
+    found = diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
+    assert found.probabilities.best == "+".join(sorted(one.split(":")[0] for one in said))
+
+
+def test_every_start_is_within_its_range() -> None:
+    for kind in catalogue().values():
+        for one in candidates(kind, [0.5, 1.0]):
+            low, high = one.bounds
+            assert np.all((low <= one.start) & (one.start <= high)), one.name
+
+
+def test_what_does_not_repeat_is_looked_at_from_about_its_size(rig: SimulatedRig) -> None:
+    problem = problem_of(rig, record(rig, [build("carriage-fluctuation:relative=0.001")], 83))
+    fit = look(problem, find("carriage-fluctuation")).fit
+    assert fit is not None
+    weighted = problem.nuisances.whiten(fit.signature)
+    assert 0.6 < float(weighted @ problem.residual) / float(weighted @ fit.signature) < 1.7
