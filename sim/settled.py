@@ -14,12 +14,12 @@ import numpy as np
 from sim.period import Period
 from sim.signals import FloatArray
 
-_STEP_RAD: Final = 0.1  # of the fastest vibration, at most
+_STEP_RAD: Final = 0.3  # of the fastest vibration, at most
 _SUBSTEP_RAD: Final = 0.3
 _DAMPED: Final = 0.1  # damping ratio from which what a clearance gives back settles at any step
 _MOST_DOUBLED: Final = 10
 _SETTLED: Final = 1e-9
-_MOST_PERIODS: Final = 300
+_MOST_PERIODS: Final = 64
 _AVERAGED: Final = 32  # periods, where they never become the same
 
 

@@ -36,6 +36,15 @@ _HELD: Final[Mapping[str, frozenset[str]]] = {
     "temperature": frozenset({"rate_k_h", "hours"}),
     "campaign-drift": frozenset({"since_zero_s"}),
 }
+# The nominal gear does not give way at all. Beside it a clearance shows, between teeth that the
+# load hardly bends and before a flywheel; softer ones would have to explain their own give first.
+_FIRM: Final[Mapping[tuple[str, str], float]] = {
+    ("gear-backlash", "inertia_kg_m2"): 20.0,
+    ("gear-backlash", "stiffness_n_m_rad"): 1e7,
+    ("gear-backlash", "damping_n_m_s"): 2e3,
+}
+# A good gear's clearance: across a worn one's the cranks may strike so hard that nothing solves it.
+_BEGINS: Final[Mapping[str, float]] = {"backlash_rad": 3e-4}
 _SPREAD = 0.35  # of the range's logarithm, but at most two
 
 
@@ -131,7 +140,7 @@ def _options(
         yield from (Axis(one, 0.5, 0.5, False, start) for start in (1.0, -1.0))
         return
     if one.name in _HELD.get(kind.name, ()):
-        yield one.name, one.typical
+        yield one.name, _FIRM.get((kind.name, one.name), one.typical)
     elif one.name in _CHOICES:
         yield from ((one.name, value) for value in _CHOICES[one.name])
     elif magnitude:
@@ -176,7 +185,7 @@ def turned(candidate: Candidate) -> Iterator[FloatArray]:
 
 def _positive(one: Parameter, frequencies_hz: Sequence[float]) -> Iterator[Axis]:
     deviation = min(_SPREAD * math.log(one.high / one.low), 2.0)
-    starts = [one.typical]
+    starts = [_BEGINS.get(one.name, one.typical)]
     if one.name == "slosh_hz":
         starts += [1.15 * max(frequencies_hz), math.sqrt(max(frequencies_hz) * min(frequencies_hz))]
     centre = math.log(one.typical)

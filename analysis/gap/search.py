@@ -42,13 +42,16 @@ _TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred ti
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
 _STARTS: Final = 3  # effects to which partners are sought
 _STEPS_IN_TIME: Final = 3
+_DEAR: Final = frozenset({"gear-backlash"})  # repeats, but is run in time until it does
 _MUCH: Final = 4.0  # times what there is to explain, from which a look begins nearer
 _SEEN: Final = 10.0  # chi-square that there is to explain, at least
 _HOPELESS: Final = 20.0  # log evidence under "no gap": a straight line has gone astray
 _APPROACHES: Final = 3
+_ALIKE: Final = 2.0  # times what there is to explain, within which an effect is about as large
+_HALVINGS: Final = 6
 _LEAST_POWER: Final = 0.2
 _MATCHES: Final = 2
-_ALIKE: Final = 1.3  # times what the runs show of an effect, down to which its size is alike
+_SHOWN: Final = 1.3  # times what the runs show of an effect, down to which its size is alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +95,8 @@ def fitted(
     leaders = [
         one.fit
         for number, one in enumerate(ranked)
-        if one.fit is not None and (number < _LEAST or one.expected > none + _PROMISING)
+        if one.fit is not None
+        and (number < _LEAST or one.expected > none + _least(one, ranked[0].expected - none))
     ]
     found = _each(executor, _refined, problem, leaders)
     return sorted(found, key=lambda one: -one.log_evidence)
@@ -123,9 +127,19 @@ def paired(
                     chances[key] = (score, both)
     best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
     least = max([none + _TWICE, *(one.log_evidence - _WORSE for one in singles)])
-    worth = [both for score, both in best if score > least]
+    worth = [both for score, both in best if score > least + _dearer(both)]
     found = _each(executor, _refined_pair, problem, worth)
     return sorted(found, key=lambda one: -one.log_evidence)
+
+
+def _least(one: Looked, most: float) -> float:
+    """Return the log evidence above "no gap" from which an effect is fitted, for what it costs."""
+    return max(_PROMISING, 0.5 * most) if one.name in _DEAR else _PROMISING
+
+
+def _dearer(pair: Fit) -> float:
+    """Return what a pair has to promise more than others, for what it costs to refine it."""
+    return _WORSE + _TWICE if _DEAR & set(pair.names) else 0.0
 
 
 def _each(
@@ -172,6 +186,8 @@ def _near(problem: Problem, fit: Fit) -> Fit:
     none = null_evidence(problem.residual, problem.nuisances)
     chi_square = misfit(problem.residual, problem.nuisances)
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
+    if not any(axis.is_size for one in fit.candidates for axis in one.axes):
+        return _along_any(problem, fit, wanted)
     near = fit
     for _ in range(_APPROACHES):
         ratio = left_over(near.signature, problem.nuisances) / wanted
@@ -192,10 +208,46 @@ def _matched(problem: Problem, fit: Fit) -> Fit:
     for _ in range(_MATCHES):
         weighted = problem.nuisances.whiten(fit.signature)
         seen, own = float(weighted @ problem.residual), float(weighted @ fit.signature)
-        if not max(seen, 0.0) ** 2 > _SEEN * own or seen * _ALIKE > own:
+        if not max(seen, 0.0) ** 2 > _SEEN * own or seen * _SHOWN > own:
             break
         fit = at(problem, fit.candidates, smaller(problem, fit, seen / own))
     return fit
+
+
+def _along_any(problem: Problem, fit: Fit, wanted: float) -> Fit:
+    """Return the most promising first look, of those from where one parameter alone was moved.
+
+    None of them is a size: a droop and an inertia both make a drive yield less, and one of the two
+    may do so in a form that has nothing of what there is to explain.
+    """
+    if left_over(fit.signature, problem.nuisances) < _MUCH * wanted:
+        return fit
+    ways = [_along(problem, fit, wanted, axis) for axis in range(len(fit.units))]
+    return max(
+        (one for one in ways if one is not None),
+        key=lambda one: expected_evidence(problem, one),
+        default=fit,
+    )
+
+
+def _along(problem: Problem, fit: Fit, wanted: float, axis: int) -> Fit | None:
+    """Return a look from where one parameter makes the effect as large as wanted, if it can."""
+    weighted = problem.nuisances.whiten(fit.signature)
+    rises = float(weighted @ fit.columns[:, axis]) / max(float(weighted @ weighted), 1e-12)
+    if not rises:
+        return None
+    low, high = np.concatenate([one.bounds for one in fit.candidates], axis=1)[:, axis]
+    share = wanted / left_over(fit.signature, problem.nuisances)
+    large, small = float(fit.units[axis]), float(low if rises > 0.0 else high)
+    units, ratio = fit.units.copy(), math.inf
+    units[axis] = min(max(large + math.log(share) / rises, low), high)
+    for _ in range(_HALVINGS):
+        ratio = left_over(moved(problem, fit, units).signature, problem.nuisances) / wanted
+        large, small = (units[axis], small) if ratio > 1.0 else (large, units[axis])
+        if 1.0 / _ALIKE < ratio < _ALIKE or large == small:
+            break
+        units[axis] = 0.5 * (large + small)
+    return at(problem, fit.candidates, units) if ratio < _MUCH**2 else None
 
 
 def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:
@@ -231,7 +283,7 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
 
 def _refined_pair(problem: Problem, fit: Fit) -> Fit:
     """Refine a pair; with what has to be simulated in time by few steps, its slopes kept."""
-    if not all(one.kind.repeats for one in fit.candidates):
+    if _DEAR & set(fit.names) or not all(one.kind.repeats for one in fit.candidates):
         return stepped(problem, fit, _STEPS_IN_TIME)
     for units in (most_probable(fit), fit.units):
         try:

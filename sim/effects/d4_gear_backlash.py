@@ -21,9 +21,10 @@ class GearBacklash(Effect):
 
     Only where the load torque reverses, ``|Z| e^2/2`` beyond its mean: friction or a brake closes
     the gear, and at a strut phase of 90 degrees the torques of equal struts cancel. The cranks take
-    some time to cross, so that the wave is late and round. Stiffer teeth than 1e5 N m/rad with
-    little oil strike so hard that not every sample of them can be solved; theory, which has rigid
-    ones, is nearer than 0.08 of the signature there.
+    some time to cross, so that the wave is late and round. Theory, which has rigid teeth, is nearer
+    than 0.08 of the signature at 1e5 N m/rad. Stiffer ones before light cranks, or across a wide
+    clearance, strike so hard that not every sample of them can be solved; with a flywheel behind
+    the gear, 1e7 N m/rad and more can be.
     """
 
     code: ClassVar[str] = "D4"
@@ -32,9 +33,9 @@ class GearBacklash(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
 
     backlash_rad: float = parameter(0.003, 1e-7, 0.02, "rad", "whole clearance, at the crank, beta")
-    inertia_kg_m2: float = parameter(0.02, 0.005, 5.0, "kg m2", "of the cranks behind the gear")
-    stiffness_n_m_rad: float = parameter(1e4, 500.0, 1e5, "N m/rad", "of the teeth")
-    damping_n_m_s: float = parameter(20.0, 1.0, 500.0, "N m s", "of the teeth")
+    inertia_kg_m2: float = parameter(0.02, 0.005, 500.0, "kg m2", "of the cranks behind the gear")
+    stiffness_n_m_rad: float = parameter(1e4, 500.0, 1e9, "N m/rad", "of the teeth")
+    damping_n_m_s: float = parameter(20.0, 1.0, 1e6, "N m s", "of the teeth")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the gear; the backlash of one that is there already is added to."""

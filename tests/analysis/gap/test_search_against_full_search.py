@@ -8,7 +8,7 @@ import pytest
 
 from analysis.gap.candidate import Candidate, candidates
 from analysis.gap.components import GapRun, Part, Stack
-from analysis.gap.fit import Problem, at
+from analysis.gap.fit import Problem, at, refine
 from analysis.gap.forward import Simulator
 from analysis.gap.free import columns, free_numbers, with_coefficients
 from analysis.gap.gaussian import Nuisances, left_over
@@ -25,6 +25,7 @@ from analysis.gap.verdict import probabilities
 from analysis.gap.withheld import Predicted, shrinkage
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, find
+from sim.effects.d2_speed_droop import SpeedDroop
 from sim.period import Period
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig
@@ -82,6 +83,26 @@ def test_a_tenth_of_an_effect_is_found_by_the_power_of_its_size(
     tenth = at(problem, chosen, smaller(problem, whole, 0.1))
     sizes = [left_over(one.signature, problem.nuisances) for one in (whole, tenth)]
     assert 0.05 < sizes[1] / sizes[0] < 0.2
+
+
+def test_a_slight_droop_is_not_taken_for_a_large_flywheel(rig: SimulatedRig) -> None:
+    """From 0.02 rad/(s N m), and not by way of a flywheel on which no droop shows."""
+    off = build("speed-droop:droop_rad_s_n_m=5e-5,inertia_kg_m2=100")
+    problem = problem_of(rig, record(rig, [off], 34))
+    fit = look(problem, find("speed-droop")).fit
+    assert fit is not None
+    asked = left_over(problem.residual, problem.nuisances)
+    assert left_over(fit.signature, problem.nuisances) < 4.0 * asked
+    (found,) = refine(problem, fit).effects
+    assert isinstance(found, SpeedDroop)
+    assert 2e-5 < found.droop_rad_s_n_m < 2e-4
+
+
+def test_a_clearance_is_looked_at_between_teeth_that_the_load_hardly_bends() -> None:
+    (one,) = candidates(find("gear-backlash"), [0.5, 1.0])
+    assert [axis.parameter.name for axis in one.axes] == ["backlash_rad"]
+    assert one.axes[0].value(float(one.start[0])) < 1e-3
+    assert one.held["stiffness_n_m_rad"] > 1e6
 
 
 @pytest.mark.parametrize("name", ["coulomb-friction", "viscous-guides", "strut-phase-error"])
