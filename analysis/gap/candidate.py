@@ -35,6 +35,7 @@ _HELD: Final[Mapping[str, frozenset[str]]] = {
     "vortex-shedding": frozenset({"strouhal", "bandwidth", "run_index"}),
     "temperature": frozenset({"rate_k_h", "hours"}),
     "campaign-drift": frozenset({"since_zero_s"}),
+    "residual-waves": frozenset({"decay_s", "waited_s", "frequency_hz"}),  # the run before tells
 }
 # The nominal gear does not give way at all. Beside it a clearance shows, between teeth that the
 # load hardly bends and before a flywheel; softer ones would have to explain their own give first.
@@ -145,9 +146,7 @@ def _options(
         yield from ((one.name, value) for value in _CHOICES[one.name])
     elif magnitude:
         scale = _TYPICAL * _size(one, kind.parameters())
-        # The logarithm of a scatter is far from linear: one start does not see the others' slope.
-        for share in (1.0,) if kind.repeats or len(kind.parameters()) > 1 else (1.0, 0.1, 0.03):
-            yield Axis(one, 0.0, scale, False, share * (one.typical or 0.1 * scale) / scale)
+        yield Axis(one, 0.0, scale, False, (one.typical or 0.1 * scale) / scale)
     elif not kind.repeats:  # of what does not keep step only the size shows, and in which band
         yield from ((one.name, value) for value in _held(one, frequencies_hz))
     elif is_phase(one):

@@ -3,7 +3,7 @@
 What repeats with the shaft comes from the exact periodic steady state, at about half a millisecond
 a run. What does not (jitter, missed pulses, hum, drift) is simulated in time and observed as a
 recording is; only what such effects change is taken from there, with and without them on the same
-noise.
+noise. What noise does by itself is taken from several draws of it.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
-from analysis.gap.components import GapRun, Layout, Observation, Stack
+from analysis.gap.components import Component, GapRun, Layout, Observation, Part, Stack
 from analysis.gap.observe import observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
@@ -31,6 +31,11 @@ _ORDERS: Final = 8
 _POINTS: Final = 64
 _SEED: Final = 20091
 _SETTLING: Final = 3
+# What these change of a harmonic is a matter of phase or luck, as likely of the one sign as of the
+# other: nobody can tell it beforehand.
+BY_CHANCE: Final = frozenset({"trigger-jitter", "hum", "carriage-fluctuation", "residual-waves"})
+DRAWS: Final = 4  # of the noise: one may be odd, and would be so in every campaign
+_APART: Final = 100  # seeds between two draws, more than a campaign has runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +89,22 @@ class Simulator:
         run = self.stack.runs[number]
         steady = self._steady(run, (*self.on, *effects))
         repeats = run.observed.layout.steady
-        return steady if repeats.all() else np.where(repeats, steady, self._record(number))
+        return steady if repeats.all() else np.where(repeats, steady, self._usual(number))
 
     def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
         """Return what repeats with the effects that do, and on it what the others change alone."""
         run = self.stack.runs[number]
         moving = tuple(one for one in effects if not one.repeats)
-        alone, base = self._record(number, moving), self._record(number)
+        sure = tuple(one for one in moving if one.name not in BY_CHANCE)
         steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
-        return np.where(run.observed.layout.steady, steady + alone - base, alone)
+        if sure:
+            steady = steady + self._record(number, sure) - self._record(number)
+        repeats = run.observed.layout.steady
+        if repeats.all():
+            return steady
+        alone, base = self._record(number, moving), self._record(number)
+        noisy = _on_noise(run.observed.components, alone, base, self._usual(number))
+        return np.where(repeats, steady, noisy)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
@@ -100,15 +112,21 @@ class Simulator:
         return np.concatenate([self._steady(run, on) for run in self.stack.runs])
 
     @cached_property
-    def _records(self) -> dict[tuple[int, tuple[Effect, ...]], FloatArray]:
-        """Runs that were simulated in time, by number and by what does not repeat."""
+    def _records(self) -> dict[tuple[int, tuple[Effect, ...], int], FloatArray]:
+        """Runs that were simulated in time, by number, by what does not repeat, and by draw."""
         return {}
 
-    def _record(self, number: int, moving: tuple[Effect, ...] = ()) -> FloatArray:
-        key = (number, moving)
+    def _record(self, number: int, moving: tuple[Effect, ...] = (), draw: int = 0) -> FloatArray:
+        key = (number, moving, draw)
         if key not in self._records:
-            self._records[key] = self._in_time(self.stack.runs[number], (*self.on, *moving))
+            run, seed = self.stack.runs[number], _SEED + _APART * draw
+            self._records[key] = self._in_time(run, (*self.on, *moving), seed)
         return self._records[key]
+
+    def _usual(self, number: int) -> FloatArray:
+        """Return what a run shows in time without what does not repeat, as noise has it at mean."""
+        draws = [self._record(number, (), draw) for draw in range(DRAWS)]
+        return np.asarray(np.mean(draws, axis=0), np.float64)
 
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         told = replace(
@@ -121,13 +139,13 @@ class Simulator:
         state = self.solved.steady_state(rig.chain(set_point), period)
         return read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
 
-    def _in_time(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
+    def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
         from analysis.readers.dataset import from_dataset
         from sim.run import simulate
 
         rig, set_point = switch_on(effects, self.rig, run.set_point, run.place)
         if not run.turns:
-            seen = record_at_rest(rig, set_point, run, _SEED + run.place.index)
+            seen = record_at_rest(rig, set_point, run, seed + run.place.index)
             return align(seen, run.observed)
         # The run has been made: whatever the strut may carry, it did.
         oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
@@ -137,11 +155,58 @@ class Simulator:
             periods=run.periods,
             settling_periods=_SETTLING,
             sample_rate_hz=run.sample_rate_hz,
-            seed=_SEED + run.place.index,
+            seed=seed + run.place.index,
             name=run.name,
         )
         record = replace(from_dataset(dataset), set_point=run.set_point)
         return align(observe(record, quiet=False).observation, run.observed)
+
+
+# What each of these is the logarithm of, to this power, adds up like powers do.
+_POWERS: Final = {
+    Part.BETWEEN: 1.0,
+    Part.LINE: 1.0,
+    Part.CYCLE_SCATTER: 2.0,
+    Part.PERIOD_SCATTER: 2.0,
+}
+
+
+def grown(parts: Sequence[Component], change: FloatArray, share: float) -> FloatArray:
+    """Return what an effect of another size changes, by what it changes as it is.
+
+    Parameters
+    ----------
+    change
+        Of each component, shape ``(components,)``.
+    share
+        Of the effect's size: powers go with its square.
+    """
+    power = np.array([_POWERS.get(one.part, 0.0) for one in parts])
+    ratio = np.expm1(np.maximum(power * change, 0.0)) * share**2
+    logs = np.log1p(ratio) / np.where(power, power, 1.0)
+    return np.where((power > 0.0) & (change > 0.0), logs, share * change)
+
+
+def _on_noise(
+    parts: Sequence[Component], alone: FloatArray, base: FloatArray, usual: FloatArray
+) -> FloatArray:
+    """Return a record with an effect as it is on usual noise in place of its own draw.
+
+    Parameters
+    ----------
+    alone, base
+        With and without the effect on the same draw, shape ``(components,)``.
+    usual
+        Without it, at mean over the draws.
+    """
+    power = np.array([_POWERS.get(one.part, 0.0) for one in parts])
+    pulses = np.array([one.part is Part.PERIOD_SCATTER for one in parts])
+    # The same power on top of another one of the noise is the effect at another size. The pulses'
+    # deviates are scaled, not added to: what is odd about them is odd with the effect, too.
+    ratio = np.expm1(np.maximum(power * (alone - base), 0.0)) * np.exp(power * (base - usual))
+    on_usual = np.log1p(ratio) / np.where(power, power, 1.0)
+    adds = (power > 0.0) & (alone > base) & ~pulses
+    return usual + np.where(adds, on_usual, alone - base)
 
 
 def align(simulated: Observation, measured: Observation) -> FloatArray:

@@ -212,8 +212,18 @@ _LOUDNESS: Final = {
 }
 
 
+# And of its change over e times the frequency: noise is louder where it is slow.
+_COLOUR: Final = {Part.BETWEEN: 1.0, Part.CYCLE_SCATTER: 0.5}
+
+
 def _noise_levels(stack: Stack) -> Iterator[FloatArray]:
-    """Yield a column for each kind of noise of each channel, the same in all runs."""
+    """Yield columns for each kind of noise of each channel: the same in all runs, and its colour.
+
+    What is compared lies at multiples of the shaft's frequency, and so moves with it.
+    """
+    frequency = np.log([run.set_point.frequency_hz for run in stack.runs])[stack.run]
     for kind in dict.fromkeys(one for one in stack.components if one.part in _LOUDNESS):
-        own = [_LOUDNESS[kind.part] * (one == kind) for one in stack.components]
-        yield np.array(own) / stack.uncertainty
+        own = np.array([one == kind for one in stack.components]) / stack.uncertainty
+        yield _LOUDNESS[kind.part] * own
+        if kind.part in _COLOUR:
+            yield _COLOUR[kind.part] * own * (frequency - frequency.mean())

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from analysis.gap.fit import Fit, Problem, most_probable
 from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
+from analysis.gap.look import Looked
 from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.search import Looked, fitted, looked_at, paired
+from analysis.gap.search import fitted, looked_at, paired
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation, find_deviation
 from sim.effects.effect import Effect

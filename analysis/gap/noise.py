@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, Component, GapRun, Part
+from analysis.gap.forward import DRAWS
 from analysis.gap.spectrum import Loudness, loudness
 from hardware.description.channels import SHAFT_ANGLE
 from sim.acquisition import Digitiser
@@ -29,8 +30,9 @@ SIMULATION: Final = 3e-6
 ENCODER_RAD: Final = 3e-5
 _FREEDOM = 12.0  # numbers by which the usual scatter of the cycles is known
 _LINES_FREEDOM = 60.0  # and the usual power between the harmonics
-# What is simulated in time has noise of its own, as large as the record's.
-TWO_RECORDS: Final = 2.0**0.5
+# What is simulated in time has noise of its own, as large as the record's in each of its draws.
+RECORDS: Final = (1.0 + 1.0 / DRAWS) ** 0.5
+_POOLED: Final = frozenset({*STEADY_PARTS, Part.TREND})
 
 
 def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
@@ -52,11 +54,11 @@ class Usual:
     loud
         By channel, from the lines between the harmonics.
     scatter
-        By channel and kind, from the scatter of the cycles: variance times duration.
+        By channel and kind, from the scatter of the cycles: as a power density.
     """
 
     loud: Mapping[str, Loudness]
-    scatter: Mapping[tuple[str, int], float]
+    scatter: Mapping[tuple[str, Part, int], float]
 
     @classmethod
     def of(cls, runs: Sequence[GapRun]) -> "Usual":
@@ -66,7 +68,7 @@ class Usual:
             name: loudness(run.observed.quiet[name] for run in runs if name in run.observed.quiet)
             for name in names
         }
-        densities: dict[tuple[str, int], list[float]] = defaultdict(list)
+        densities: dict[tuple[str, Part, int], list[float]] = defaultdict(list)
         for run in runs:
             for key, density in _densities(run):
                 densities[key].append(density)
@@ -77,26 +79,40 @@ class Usual:
 
     def variance(self, one: Component, run: GapRun) -> tuple[float, float] | None:
         """Return a component's usual variance, and how many numbers it is known by."""
-        duration_s = run.periods / run.set_point.frequency_hz
+        share = _share(one.part, run)
         if one.channel in self.loud:
-            density = self.loud[one.channel].at(one.order * run.set_point.frequency_hz)
-            return density / duration_s * (1.0 if one.part is Part.MEAN else 2.0), _LINES_FREEDOM
-        key = (one.channel, _kind(one.part, one.order))
-        return (self.scatter[key] / duration_s, _FREEDOM) if key in self.scatter else None
+            # A trend is half a wave over the whole record.
+            order = 0.5 / run.periods if one.part is Part.TREND else one.order
+            density = self.loud[one.channel].at(order * run.set_point.frequency_hz)
+            twice = one.part in (Part.IN_PHASE, Part.QUADRATURE)
+            return density * share * (2.0 if twice else 1.0), _LINES_FREEDOM
+        key = _kind(one)
+        return (self.scatter[key] * share, _FREEDOM) if key in self.scatter else None
 
 
-def _kind(part: Part, order: int) -> int:
-    """Return the class within which noise is alike: the mean, low orders, high orders."""
-    return -1 if part is Part.MEAN else min(order, 2)
+def _kind(one: Component) -> tuple[str, Part, int]:
+    """Return the class within which noise is alike: mean, trend, low orders, high orders."""
+    alone = one.part in (Part.MEAN, Part.TREND)
+    return one.channel, one.part if alone else Part.IN_PHASE, min(one.order, 2)
 
 
-def _densities(run: GapRun) -> list[tuple[tuple[str, int], float]]:
+def _share(part: Part, run: GapRun) -> float:
+    """Return the variance of a component per power density of white noise, in Hz.
+
+    That of a line through the periods' means, for a trend per period.
+    """
+    frequency_hz, count = run.set_point.frequency_hz, run.periods
+    if part is Part.TREND:
+        return 12.0 * frequency_hz / (count * (count**2 - 1.0))
+    return frequency_hz / count
+
+
+def _densities(run: GapRun) -> list[tuple[tuple[str, Part, int], float]]:
     seen = run.observed
-    duration_s = run.periods / run.set_point.frequency_hz
     return [
-        ((one.channel, _kind(one.part, one.order)), float(sigma**2) * duration_s)
+        (_kind(one), float(sigma**2) / _share(one.part, run))
         for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
-        if one.part in STEADY_PARTS and one.channel and np.isfinite(sigma)
+        if one.part in _POOLED and one.channel and np.isfinite(sigma)
     ]
 
 
@@ -105,16 +121,16 @@ def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
     own_freedom = max(run.periods - 2.0, 0.0)
     uncertainty = seen.uncertainty.copy()
     for at, one in enumerate(seen.components):
-        if one.part not in STEADY_PARTS:
-            uncertainty[at] *= TWO_RECORDS
-            continue
-        known = usual.variance(one, run)
+        known = usual.variance(one, run) if one.part in _POOLED else None
         if known is not None:
             theirs, many = known
             own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
             freedom = own_freedom if own else 0.0
             variance = (freedom * own + many * theirs) / (freedom + many)
-            uncertainty[at] = np.sqrt(variance + _floor(run, one.channel, encoder_rad) ** 2)
+            floor = 0.0 if one.part is Part.TREND else _floor(run, one.channel, encoder_rad)
+            uncertainty[at] = np.sqrt(variance + floor**2)
+        if one.part not in STEADY_PARTS:
+            uncertainty[at] *= RECORDS
     return replace(run, observed=replace(seen, uncertainty=uncertainty))
 
 

@@ -22,12 +22,13 @@ from sim.effects.effect import Effect
 BEYOND: Final = 3.0  # standard deviations of a kind's chi-square
 _LONE: Final = 4.0  # sigma of a single component
 _BESIDE: Final = frozenset({Part.BETWEEN, Part.LINE, Part.CYCLE_SCATTER})
+_SLOW: Final = _BESIDE | {Part.TREND}  # a wave of few periods is a trend, too
 _TRACES: Final[Mapping[str, frozenset[Part]]] = {
     "trigger-jitter": frozenset({Part.PERIOD_SCATTER, Part.CYCLE_SCATTER}),
     "missed-pulse": frozenset({Part.PULSES}),
     "hum": _BESIDE,
-    "carriage-fluctuation": _BESIDE,
-    "residual-waves": _BESIDE,
+    "carriage-fluctuation": _SLOW,
+    "residual-waves": _SLOW,
     "zero-drift": frozenset({Part.TREND, Part.MEAN}),
     "campaign-drift": frozenset({Part.TREND, Part.MEAN}),
     "free-play": frozenset(STEADY_PARTS),

@@ -5,7 +5,7 @@ import pytest
 
 from analysis.gap.candidate import candidates
 from analysis.gap.diagnose import Settings, diagnose
-from analysis.gap.search import look
+from analysis.gap.look import look
 from sim.effects.catalogue import build, catalogue, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of, record

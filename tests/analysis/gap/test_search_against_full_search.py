@@ -13,12 +13,12 @@ from analysis.gap.forward import Simulator
 from analysis.gap.free import columns, free_numbers, with_coefficients
 from analysis.gap.gaussian import Nuisances, left_over
 from analysis.gap.hypotheses import Named, Odds, Weighed, balance
+from analysis.gap.look import look, smaller
 from analysis.gap.noise import pooled
 from analysis.gap.prefix import Solved
 from analysis.gap.priors import Priors
 from analysis.gap.regimes import Regime
 from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.search import look, smaller
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation
 from analysis.gap.verdict import probabilities

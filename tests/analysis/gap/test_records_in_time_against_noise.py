@@ -1,0 +1,66 @@
+"""What does not repeat with the shaft: against noise of known statistics and put-in sizes."""
+
+import numpy as np
+import pytest
+
+from analysis.gap.components import Component, Part, Stack
+from analysis.gap.fit import Problem, most_probable
+from analysis.gap.forward import DRAWS, Simulator, grown
+from analysis.gap.free import columns, free_numbers
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.look import look
+from analysis.gap.noise import pooled
+from analysis.gap.priors import Priors
+from sim.effects.a5_trigger_jitter import TriggerJitter
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import record
+
+PARTS = (Component("force_aft", Part.LINE, 2), Component("force_aft", Part.CYCLE_SCATTER, 1))
+
+
+def _problem(rig: SimulatedRig, jitter_rad: float, seed: int) -> Problem:
+    priors, free = Priors(), free_numbers(rig, Priors())
+    runs = record(rig, (TriggerJitter(jitter_rad),) if jitter_rad else (), seed)
+    usual = (TriggerJitter(priors.pulse_scatter_rad),)
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), usual)
+    nuisances = Nuisances(columns(simulator, free, priors))
+    return Problem(simulator, nuisances, tuple(one.name for one in free))
+
+
+@pytest.mark.parametrize("share", [0.1, 1.0, 5.0])
+def test_powers_of_another_size_add_up(share: float) -> None:
+    power = 7.0  # of the effect over that of the noise
+    change = np.array([np.log1p(power), 0.5 * np.log1p(power)])
+    wanted = np.log1p(power * share**2) * np.array([1.0, 0.5])
+    assert grown(PARTS, change, share) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_trend_grows_with_the_size() -> None:
+    trend = (Component("force_aft", Part.TREND),)
+    assert grown(trend, np.array([-0.3]), 2.0) == pytest.approx([-0.6])
+
+
+def test_trends_of_few_periods_have_no_heavy_tails(rig: SimulatedRig) -> None:
+    found = []
+    for seed in range(3, 6):
+        for run in pooled(record(rig, (), seed), rig):
+            at = [n for n, one in enumerate(run.observed.components) if one.part is Part.TREND]
+            found += list(run.observed.values[at] / run.observed.uncertainty[at])
+    records = (1.0 + 1.0 / DRAWS) ** 0.5
+    assert np.std(found) * records == pytest.approx(1.0, abs=0.3)
+    assert np.abs(found).max() < 4.0
+
+
+@pytest.mark.parametrize("jitter_rad", [1e-3, 1e-2])
+def test_a_look_from_one_start_finds_the_jitter(rig: SimulatedRig, jitter_rad: float) -> None:
+    fit = look(_problem(rig, jitter_rad, 5), TriggerJitter).fit
+    assert fit is not None
+    found = fit.candidates[0].axes[0].value(float(most_probable(fit)[0]))
+    assert found == pytest.approx(jitter_rad, rel=0.3)
+
+
+def test_jitter_says_nothing_of_the_harmonics_beforehand(rig: SimulatedRig) -> None:
+    simulator = _problem(rig, 0.0, 6).simulator
+    change = simulator.predict((TriggerJitter(5e-3),)) - simulator.nominal
+    assert not change[simulator.stack.steady].any()
+    assert change[~simulator.stack.steady].any()
