@@ -46,6 +46,8 @@ _FIRM: Final[Mapping[tuple[str, str], float]] = {
 }
 # A good gear's clearance: across a worn one's the cranks may strike so hard that nothing solves it.
 _BEGINS: Final[Mapping[str, float]] = {"backlash_rad": 3e-4}
+STEP: Final = 0.02  # of a prior deviation, by which a slope is found at least
+_STEP_IN_TIME = 0.5  # that of what has a sign, and is simulated in time, is found above rounding
 _SPREAD = 0.35  # of the range's logarithm, but at most two
 
 
@@ -160,6 +162,13 @@ def _held(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
         inside = (0.45 * min(frequencies_hz), 3.3 * max(frequencies_hz))
         return (one.typical, *(value for value in inside if one.low <= value <= one.high))
     return (1.0,) if is_phase(one) else (one.typical,)
+
+
+def least_step(parts: Sequence[Candidate], axis: int) -> float:
+    """Return the least step of a slope, in prior deviations."""
+    number, kind = [(one, part.kind) for part in parts for one in part.axes][axis]
+    linear = not kind.repeats and number.parameter.low < 0.0 and not is_phase(number.parameter)
+    return _STEP_IN_TIME if linear else STEP
 
 
 def is_phase(one: Parameter) -> bool:

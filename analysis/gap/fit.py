@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.candidate import Candidate
+from analysis.gap.candidate import STEP, Candidate, least_step
 from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
@@ -17,7 +17,6 @@ from sim.effects.effect import Effect
 
 FloatArray = NDArray[np.float64]
 
-_STEP = 0.02  # of a prior deviation, at least
 _STEPS = 6
 _STEPS_IN_TIME = 5  # for what has to be simulated in time, a hundred times as costly
 _FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
@@ -182,7 +181,7 @@ def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
     """Tell whether a hypothesis has one parameter, and that one is the size of its signature."""
     axes = [axis for one in parts for axis in one.axes]
     sized = len(axes) == 1 and axes[0].centre == 0.0 and not axes[0].is_log
-    return sized and parts[0].kind.repeats and abs(float(units[0])) > _STEP
+    return sized and parts[0].kind.repeats and abs(float(units[0])) > STEP
 
 
 def weighed_at(
@@ -214,7 +213,7 @@ def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
 def _slope(
     problem: Problem, parts: tuple[Candidate, ...], units: FloatArray, base: FloatArray, axis: int
 ) -> FloatArray:
-    step = max(_STEP, 0.1 * abs(float(units[axis])))
+    step = max(least_step(parts, axis), 0.1 * abs(float(units[axis])))
     for sign in (1.0, -1.0):
         aside = units.copy()
         aside[axis] += sign * step
