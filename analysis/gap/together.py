@@ -27,7 +27,7 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     free
         The nuisances' first columns; without any the fit is returned as it is.
     """
-    if not free or not all(one.kind.repeats for one in fit.candidates):
+    if not free or not any(one.kind.repeats for one in fit.candidates):
         return fit
     best = fit
     for _ in range(_ROUNDS):
@@ -54,6 +54,8 @@ def signature_on(
 ) -> FloatArray:
     """Return what the effects change on the rig as its coefficients are fitted, in sigma.
 
+    What has to be simulated in time is taken from the rig as it is believed to be.
+
     Parameters
     ----------
     shared
@@ -67,6 +69,9 @@ def signature_on(
         one.effect(value) for one, value in zip(free, values, strict=True) if one.effect
     )
     simulator = problem.simulator
+    moving = tuple(one for one in effects if not one.repeats)
+    beside = simulator.predict(moving) - simulator.nominal if moving else 0.0
     simulator = simulator.with_rig(with_coefficients(simulator.rig, free, list(shared)))
-    change = simulator.steady((*settings, *effects)) - simulator.steady(settings)
-    return problem.whitened(change)
+    steady = tuple(one for one in effects if one.repeats)
+    change = simulator.steady((*settings, *steady)) - simulator.steady(settings)
+    return problem.whitened(change + beside)

@@ -31,7 +31,8 @@ SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
 _DRAWS = 400
 _FORM_KNOWN = 1.0  # standard deviation of the logarithm of by how much a form is off
-_ELSE = 0.15  # standard deviation of what a wrong effect makes go away, about what it did so far
+_ELSE = 0.25  # standard deviation of what a wrong effect makes go away, about what it did so far
+_SURE = 0.9  # of names said to be sure were right on boards of sealed cases, and no more
 _SEED = 20260
 
 
@@ -183,9 +184,10 @@ class _Foretold:
         rows = np.array([one.channel in FORCES for one in stack.components])
         gap, root, form = (cured.mean - plain.mean)[rows], cured.root[rows], cured.form[rows]
         rng, shares = np.random.default_rng(_SEED), []
+        named = min(self._named.share, _SURE) * _DRAWS
         for number in range(_DRAWS):
-            if number >= self._named.share * _DRAWS:
-                shares.append(self._named.tried + _ELSE * float(rng.standard_normal()))
+            if number >= named:
+                shares.append(min(self._named.tried + _ELSE * float(rng.standard_normal()), 1.0))
                 continue
             off = root @ rng.standard_normal(root.shape[1])
             size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))
