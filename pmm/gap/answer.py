@@ -32,7 +32,7 @@ _TWO_SIDED = 1.96
 _DRAWS = 400
 _FORM_KNOWN = 1.0  # standard deviation of the logarithm of by how much a form is off
 _ELSE = 0.25  # standard deviation of what a wrong effect makes go away, about what it did so far
-_SURE = 0.9  # of names said to be sure were right on boards of sealed cases, and no more
+_SURE = 0.9  # on the sealed boards sure names were wrong more often than their probability says
 _SEED = 20260
 
 
