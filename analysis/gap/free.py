@@ -5,6 +5,7 @@ gain, a phase or an eccentricity without a tolerance. A difference that these ex
 no effect may take credit for it.
 """
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
@@ -162,7 +163,7 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
     stack = simulator.stack
     own = [
         *_by_run(stack, _frequencies(simulator, base, priors.frequency_relative)),
-        *_by_run(stack, _turned(stack, base, priors.reference_rad)),
+        *_by_run(stack, _turned(stack, base, 1.0) * _references(stack, priors.reference_rad)),
     ]
     return np.column_stack([*found, *sensors, *own, *_noise_levels(stack)])
 
@@ -201,6 +202,19 @@ def _turned(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
             if one.channel == SHAFT_ANGLE.name:
                 change[number] = 0.0
     return change / stack.uncertainty
+
+
+def _references(stack: Stack, usual_rad: float) -> FloatArray:
+    """Return how well each run's phase is known, at each of its observations.
+
+    No better than its pulses scatter: an interval is two of them, and a run has as many as periods.
+    """
+    known = []
+    for run in stack.runs:
+        spread = math.exp(run.observed.value("", Part.PERIOD_SCATTER))  # of the intervals, relative
+        jitter = math.sqrt(2.0) * math.pi * (spread if math.isfinite(spread) else 0.0)
+        known.append(math.hypot(usual_rad, jitter / math.sqrt(max(run.periods, 1))))
+    return np.array(known)[stack.run]
 
 
 # One standard deviation of the logarithm of what no specification tells.

@@ -28,8 +28,8 @@ class ZeroDrift(Effect):
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
     repeats: ClassVar[bool] = False
 
-    aft_n_s: float = parameter(1e-3, -0.02, 0.02, "N/s", "drift of the aft dynamometer")
-    fore_n_s: float = parameter(0.0, -0.02, 0.02, "N/s", "drift of the fore dynamometer")
+    aft_n_s: float = parameter(1e-3, -0.2, 0.2, "N/s", "drift of the aft dynamometer")
+    fore_n_s: float = parameter(0.0, -0.2, 0.2, "N/s", "drift of the fore dynamometer")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these drifts on top of what the gauges have."""
