@@ -163,7 +163,7 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
     stack = simulator.stack
     own = [
         *_by_run(stack, _frequencies(simulator, base, priors.frequency_relative)),
-        *_by_run(stack, _turned(stack, base, 1.0) * _references(stack, priors.reference_rad)),
+        *_by_run(stack, _turned(stack, base, 1.0) * references_rad(stack, priors.reference_rad)),
     ]
     return np.column_stack([*found, *sensors, *own, *_noise_levels(stack)])
 
@@ -204,7 +204,7 @@ def _turned(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
     return change / stack.uncertainty
 
 
-def _references(stack: Stack, usual_rad: float) -> FloatArray:
+def references_rad(stack: Stack, usual_rad: float) -> FloatArray:
     """Return how well each run's phase is known, at each of its observations.
 
     No better than its pulses scatter: an interval is two of them, and a run has as many as periods.
