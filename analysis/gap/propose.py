@@ -104,7 +104,7 @@ def _oscillations(
     free: Sequence[Free],
     priors: Priors,
 ) -> Iterator[Proposal]:
-    runs = [planned(problem, one, number) for number, one in enumerate(_set_points(choices))]
+    runs = [planned(problem, one, number) for number, one in enumerate(set_points(choices))]
     runs = [run for run in runs if _bearable(problem, run, choices)]
     if not runs:
         return
@@ -154,7 +154,8 @@ def _apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
     return 0.25 * (squares + squares.T)
 
 
-def _set_points(choices: Choices) -> Iterator[SetPoint]:
+def set_points(choices: Choices) -> Iterator[SetPoint]:
+    """Yield what a rig can do, in steps; in numbers of three digits, as people set them."""
     low, high = choices.frequency_hz.low, choices.frequency_hz.high
     frequencies = np.geomspace(max(low, high / 8.0), high, _FREQUENCIES)
     least, most = choices.eccentricity_m.low, choices.eccentricity_m.high
@@ -163,7 +164,17 @@ def _set_points(choices: Choices) -> Iterator[SetPoint]:
         frequencies, radii, choices.strut_phase_rad, choices.carriage_speed_m_s, choices.media
     ):
         if medium is Medium.WATER or not speed:
-            yield SetPoint(float(frequency), float(radius), phase, speed, medium)
+            yield SetPoint(
+                _settable(frequency, choices.frequency_hz),
+                _settable(radius, choices.eccentricity_m),
+                phase,
+                speed,
+                medium,
+            )
+
+
+def _settable(value: float, span: Range) -> float:
+    return min(max(float(f"{value:.3g}"), span.low), span.high)
 
 
 def _bearable(problem: Problem, run: GapRun, choices: Choices) -> bool:

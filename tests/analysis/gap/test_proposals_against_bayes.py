@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from analysis.gap.propose import ENOUGH, gained
+from analysis.gap.propose import ENOUGH, Choices, gained, set_points
+from hardware.description.oscillator import Range
 
 FloatArray = NDArray[np.float64]
 Pairs = dict[tuple[int, int], float]
@@ -54,3 +55,9 @@ def test_what_is_gained_lies_between_nothing_and_enough(
     pairs = [(i, j) for i in range(len(shares)) for j in range(i + 1, len(shares))]
     apart = {pair: data.draw(st.floats(0.0, 100.0)) for pair in pairs}
     assert -1e-9 <= gained(shares, table(len(shares), apart)) <= ENOUGH + 1e-9
+
+
+def test_what_is_proposed_can_be_set_on_a_dial() -> None:
+    found = list(set_points(Choices(Range(0.25, 1.9996), Range(0.013, 0.06))))
+    assert {one.frequency_hz for one in found} == {0.25, 0.707, 1.9996}  # no step past a limit
+    assert {one.eccentricity_m for one in found} == {0.013, 0.06}
