@@ -122,11 +122,12 @@ def built(parts: Sequence[Candidate], units: FloatArray) -> tuple[Effect, ...]:
 
 def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
     """Return parameters drawn back into their plausible ranges."""
-    low, high = _bounds(parts)
+    low, high = bounds(parts)
     return np.asarray(np.clip(units, low, high), np.float64)
 
 
-def _bounds(parts: Sequence[Candidate]) -> FloatArray:
+def bounds(parts: Sequence[Candidate]) -> FloatArray:
+    """Return the plausible ranges of all parameters in prior units, shape ``(2, p)``."""
     return np.concatenate([one.bounds for one in parts], axis=1)
 
 
@@ -135,7 +136,7 @@ def most_probable(fit: Fit) -> FloatArray:
 
     A parameter that would leave its range is held at its end, and the others are found anew.
     """
-    low, high = _bounds(fit.candidates)
+    low, high = bounds(fit.candidates)
     precision = np.linalg.inv(fit.posterior.covariance)
     target = precision @ fit.posterior.mean
     units, free = fit.posterior.mean.copy(), np.ones(len(fit.units), dtype=bool)

@@ -171,6 +171,15 @@ _POWERS: Final = {
 }
 
 
+def _powers(parts: Sequence[Component]) -> FloatArray:
+    return np.array([_POWERS.get(one.part, 0.0) for one in parts])
+
+
+def _logarithms(ratio: FloatArray, power: FloatArray) -> FloatArray:
+    """Return by how much components rise to which a share of their power is added."""
+    return np.asarray(np.log1p(ratio) / np.where(power, power, 1.0), np.float64)
+
+
 def grown(parts: Sequence[Component], change: FloatArray, share: float) -> FloatArray:
     """Return what an effect of another size changes, by what it changes as it is.
 
@@ -181,9 +190,9 @@ def grown(parts: Sequence[Component], change: FloatArray, share: float) -> Float
     share
         Of the effect's size: powers go with its square.
     """
-    power = np.array([_POWERS.get(one.part, 0.0) for one in parts])
+    power = _powers(parts)
     ratio = np.expm1(np.maximum(power * change, 0.0)) * share**2
-    logs = np.log1p(ratio) / np.where(power, power, 1.0)
+    logs = _logarithms(ratio, power)
     return np.where((power > 0.0) & (change > 0.0), logs, share * change)
 
 
@@ -199,12 +208,12 @@ def _on_noise(
     usual
         Without it, at mean over the draws.
     """
-    power = np.array([_POWERS.get(one.part, 0.0) for one in parts])
+    power = _powers(parts)
     pulses = np.array([one.part is Part.PERIOD_SCATTER for one in parts])
     # The same power on top of another one of the noise is the effect at another size. The pulses'
     # deviates are scaled, not added to: what is odd about them is odd with the effect, too.
     ratio = np.expm1(np.maximum(power * (alone - base), 0.0)) * np.exp(power * (base - usual))
-    on_usual = np.log1p(ratio) / np.where(power, power, 1.0)
+    on_usual = _logarithms(ratio, power)
     adds = (power > 0.0) & (alone > base) & ~pulses
     return usual + np.where(adds, on_usual, alone - base)
 

@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.candidate import Candidate, candidates
-from analysis.gap.fit import Fit, Problem, at, expected_evidence, inside, most_probable, moved
+from analysis.gap.fit import (
+    Fit,
+    Problem,
+    at,
+    bounds,
+    expected_evidence,
+    inside,
+    most_probable,
+    moved,
+)
 from analysis.gap.forward import grown
 from analysis.gap.gaussian import left_over, misfit, null_evidence
 from hardware.description.errors import PmmError
@@ -148,7 +157,7 @@ def _along(problem: Problem, fit: Fit, wanted: float, axis: int) -> Fit | None:
     rises = float(weighted @ fit.columns[:, axis]) / max(float(weighted @ weighted), 1e-12)
     if not rises:
         return None
-    low, high = np.concatenate([one.bounds for one in fit.candidates], axis=1)[:, axis]
+    low, high = bounds(fit.candidates)[:, axis]
     share = wanted / left_over(fit.signature, problem.nuisances)
     large, small = float(fit.units[axis]), float(low if rises > 0.0 else high)
     units, ratio = fit.units.copy(), math.inf
