@@ -48,7 +48,7 @@ _FIRM: Final[Mapping[tuple[str, str], float]] = {
 _BEGINS: Final[Mapping[str, float]] = {"backlash_rad": 3e-4}
 STEP: Final = 0.02  # of a prior deviation, by which a slope is found at least
 _STEP_IN_TIME = 0.5  # that of what has a sign, and is simulated in time, is found above rounding
-_SPREAD = 0.35  # of the range's logarithm, but at most two
+_SPREAD = 0.35  # of the range's logarithm
 
 
 @dataclass(frozen=True)
@@ -192,7 +192,7 @@ def turned(candidate: Candidate) -> Iterator[FloatArray]:
 
 
 def _positive(one: Parameter, frequencies_hz: Sequence[float]) -> Iterator[Axis]:
-    deviation = min(_SPREAD * math.log(one.high / one.low), 2.0)
+    deviation = _SPREAD * math.log(one.high / one.low)
     starts = [_BEGINS.get(one.name, one.typical)]
     if one.name == "slosh_hz":
         starts += [1.15 * max(frequencies_hz), math.sqrt(max(frequencies_hz) * min(frequencies_hz))]

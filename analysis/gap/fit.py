@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.candidate import STEP, Candidate, least_step
+from analysis.gap.candidate import STEP, Axis, Candidate, least_step
 from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
-from analysis.gap.gaussian import Nuisances, Posterior, misfit, posterior
+from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
@@ -101,7 +101,23 @@ class Fit:
     @property
     def log_evidence(self) -> float:
         """Natural log of the density of the data by Laplace, but for a constant that all share."""
-        return -0.5 * (self.cost + self.shared) + self.posterior.log_volume
+        return -0.5 * (self.cost + self.shared) + self.log_volume
+
+    @cached_property
+    def log_volume(self) -> float:
+        """Log of what is left of the priors' volume, whatever the scale of the effects' sizes."""
+        sizes, start = np.array([x.is_size for x in self._axes], dtype=bool), 0
+        groups = []
+        for one in self.candidates:
+            own = np.zeros(len(sizes), dtype=bool)
+            own[start : start + len(one.axes)] = True
+            groups.append(own & sizes)
+            start += len(one.axes)
+        return self.posterior.log_volume + any_size(self.posterior, groups)
+
+    @property
+    def _axes(self) -> tuple[Axis, ...]:
+        return tuple(axis for one in self.candidates for axis in one.axes)
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -231,7 +247,7 @@ def expected_evidence(problem: Problem, fit: Fit) -> float:
     For a first look at many effects: it takes no further simulation.
     """
     cost = _linear_cost(problem, fit, most_probable(fit))
-    return -0.5 * (cost + fit.shared) + fit.posterior.log_volume
+    return -0.5 * (cost + fit.shared) + fit.log_volume
 
 
 def refine(problem: Problem, fit: Fit) -> Fit:

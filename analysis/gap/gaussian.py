@@ -8,13 +8,21 @@ with the nuisances' columns N and the effect's columns J both in units of their 
 over b and t leaves a Gaussian, whose density at the measured r is the evidence.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+
+_APART: Final = 3.0  # from one width of a size's prior to the next
+_HARDLY: Final = 3.0  # sigma of a prior deviation's signature, below which there is no next one
+_MOST_SCALES: Final = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +79,50 @@ class Posterior:
     def log_volume(self) -> float:
         """Half the log of the covariance's determinant: what is left of the prior's volume."""
         return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
+
+
+def any_size(found: Posterior, groups: Sequence[NDArray[np.bool_]]) -> float:
+    """Return the log evidence gained by not knowing by orders of magnitude how large effects are.
+
+    A size's prior is a mixture of normals: as wide as it is, a third of that, and so on down to
+    where the effect would hardly be seen, each as likely as the others. One wide normal would ask
+    more evidence of an effect the better a rig shows it.
+
+    Parameters
+    ----------
+    found
+        Under unit normal priors.
+    groups
+        For each effect which parameters are sizes, of shape ``(p,)``; those share their scale.
+    """
+    told = np.linalg.inv(found.covariance)
+    informs = told @ found.mean
+    told = told - np.eye(len(told))
+    scales = [_scales(np.diagonal(told)[group]) for group in groups]
+    each = [
+        np.ones(len(told))
+        + sum((width - 1.0) * group for width, group in zip(one, groups, strict=True))
+        for one in product(*scales)
+    ]
+    logs = _under_priors(told, informs, np.array(each))
+    wide = _under_priors(told, informs, np.ones((1, len(told))))[0]
+    return float(np.logaddexp.reduce(logs) - math.log(len(logs)) - wide)
+
+
+def _scales(squares: FloatArray) -> FloatArray:
+    """Return the widths of a mixture, by the squared signatures of a prior deviation."""
+    shown = math.sqrt(max(float(squares.max(initial=0.0)), 0.0))
+    steps = math.log(max(shown / _HARDLY, 1.0)) / math.log(_APART)
+    return _APART ** -np.arange(min(int(steps), _MOST_SCALES) + 1.0)
+
+
+def _under_priors(told: FloatArray, informs: FloatArray, widths: FloatArray) -> FloatArray:
+    """Return log evidences but for a constant; prior widths of shape ``(priors, p)``."""
+    precision = np.eye(len(told)) + widths[:, :, None] * told * widths[:, None, :]
+    pulls = widths * informs
+    solved = np.linalg.solve(precision, pulls[:, :, None])[:, :, 0]
+    found = 0.5 * np.sum(pulls * solved, axis=1) - 0.5 * np.linalg.slogdet(precision)[1]
+    return np.asarray(found, np.float64)
 
 
 def posterior(residual: FloatArray, columns: FloatArray, nuisances: Nuisances) -> Posterior:

@@ -213,6 +213,6 @@ def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
     found = replace(fit, columns=columns, posterior=posterior(target, columns, nuisances))
     units = most_probable(found)
     cost = misfit(target - columns @ units, nuisances) + float(units @ units)
-    log_density = -0.5 * (cost + nuisances.log_determinant) + found.posterior.log_volume
+    log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
     log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
     return Named(replace(fit, form=share), log_density, share, _NOTHING)

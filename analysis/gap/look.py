@@ -124,12 +124,14 @@ def _near(problem: Problem, fit: Fit) -> Fit:
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
     if not any(axis.is_size for one in fit.candidates for axis in one.axes):
         return _along_any(problem, fit, wanted)
+    # Seen from far too large, a phase is known far too well.
+    straight = all(axis.is_size for one in fit.candidates for axis in one.axes)
     near = fit
     for _ in range(_APPROACHES):
         ratio = left_over(near.signature, problem.nuisances) / wanted
         if ratio < _MUCH:
             break
-        if expected_evidence(problem, near) > none - _HOPELESS:
+        if straight and expected_evidence(problem, near) > none - _HOPELESS:
             return fit
         near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
     return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)

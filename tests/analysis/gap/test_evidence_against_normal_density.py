@@ -1,5 +1,6 @@
 """The evidence is the density of a multivariate normal, computed directly."""
 
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import multivariate_normal
 
-from analysis.gap.gaussian import Nuisances, cosine, left_over, null_evidence, rooted
+from analysis.gap.gaussian import (
+    Nuisances,
+    any_size,
+    cosine,
+    left_over,
+    null_evidence,
+    posterior,
+    rooted,
+)
 from analysis.gap.polynomial import log_evidence
 
 COUNT = 9
@@ -40,6 +49,31 @@ def test_of_an_effect_beside_them(seed: int) -> None:
     problem = SimpleNamespace(residual=residual, nuisances=Nuisances(wide))
     found = log_evidence(problem, columns, np.ones(COUNT, dtype=bool))
     assert found == pytest.approx(direct + SHARED, abs=1e-7)
+
+
+@given(seeds)
+def test_of_effects_of_any_size_is_that_of_a_mixture_of_widths(seed: int) -> None:
+    residual, wide, columns = drawn(seed)
+    columns = columns * [100.0, 4.0]
+    covariance = np.eye(COUNT) + wide @ wide.T
+    shown = [np.sqrt(one @ np.linalg.solve(covariance, one)) for one in columns.T]
+    widths = [[3.0**-k for k in range(7) if not k or one * 3.0**-k >= 3.0] for one in shown]
+    direct = [
+        multivariate_normal.logpdf(residual, cov=covariance + (columns * pair**2) @ columns.T)
+        for pair in map(np.array, product(*widths))
+    ]
+    whole = multivariate_normal.logpdf(residual, cov=covariance + columns @ columns.T)
+    gained = np.logaddexp.reduce(direct) - np.log(len(direct)) - whole
+    found = posterior(residual, columns, Nuisances(wide))
+    groups = [np.array([True, False]), np.array([False, True])]
+    assert any_size(found, groups) == pytest.approx(gained, abs=1e-6)
+
+
+@given(seeds)
+def test_what_has_no_size_gains_nothing(seed: int) -> None:
+    residual, wide, columns = drawn(seed)
+    found = posterior(residual, columns, Nuisances(wide))
+    assert any_size(found, [np.zeros(2, dtype=bool)]) == pytest.approx(0.0, abs=1e-9)
 
 
 @given(seeds)
