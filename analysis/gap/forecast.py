@@ -20,7 +20,7 @@ from sim.effects.campaign import CampaignRun
 
 FloatArray = NDArray[np.float64]
 
-LEAST_FORM: Final = 0.03  # of itself, by which any effect's signature is off on a real rig
+LEAST_FORM: Final = 0.05  # of itself, by which any effect's signature is off on a real rig
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,14 +36,14 @@ HIDDEN: Final = (
 class Odds:
     """Prior probabilities; the catalogue's share is spread evenly over its effects.
 
-    They are those of a rig that is looked after: two campaigns in five have no gap, one in
-    eight has one that no catalogue knows.
+    Whoever asks has a reason to: one campaign in eight has no gap, and of the gaps one in five is
+    such that no catalogue knows it.
     """
 
-    none: float = 0.40
-    single: float = 0.38
-    pair: float = 0.09
-    unknown: float = 0.13
+    none: float = 0.12
+    single: float = 0.56
+    pair: float = 0.14
+    unknown: float = 0.18
 
 
 _NOTHING = Deviation({}, np.zeros(0), 0.0)
