@@ -94,6 +94,19 @@ def test_the_page_has_a_column_for_each_score_and_links_to_all_figures(docs: Pat
     assert "### SNR 3 to 10" in lines
 
 
+def test_a_score_from_before_a_column_has_a_dash_there(docs: Path) -> None:
+    path = docs / "scores" / "aaaaaaa.json"
+    rows = json.loads(path.read_text())["rows"]
+    for row in rows:
+        for one in row["bins"]:
+            one["figures"].pop("ranked_by_class", None)
+    _changed(path, rows=rows)
+    lines = page(all_scores(docs)).splitlines()
+    newer = "0.8 [0.38, 0.96] n 5 of 0.92"
+    assert f"| top-1 by class | {newer} | {newer} |" in lines
+    assert f"| best name by class | - | {newer} |" in lines
+
+
 def test_every_table_of_the_page_is_even(docs: Path) -> None:
     lines = page(all_scores(docs)).splitlines()
     tables = 0

@@ -10,7 +10,7 @@ from typing import Final
 from pmm.gap.scoring.answers import UNKNOWN, Answer
 from pmm.gap.scoring.intervals import Figure, mean, median, share
 from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.right import brier, by_class, exactly, is_stated, named, stated
+from pmm.gap.scoring.right import best_name, brier, by_class, exactly, is_stated, named, stated
 from pmm.gap.scoring.shrinkage import Shrunk
 
 CLEAR: Final = 10.0  # sigma left of each member of a pair, its rivals taken out
@@ -185,6 +185,9 @@ COLUMNS: Final = (
            ceiling="top_1"),
     Column("top_1_by_class", "top-1 by class",
            _when(lambda e: e.in_catalogue, lambda e: e.answer.said in by_class(e.truth)),
+           ceiling="top_1_by_class"),
+    Column("ranked_by_class", "best name by class",
+           _when(lambda e: e.in_catalogue, lambda e: best_name(e.answer) in by_class(e.truth)),
            ceiling="top_1_by_class"),
     Column("top_1_stated", "top-1 by stated class",
            _when(lambda e: e.in_catalogue, lambda e: is_stated(e.answer, e.truth))),

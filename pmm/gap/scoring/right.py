@@ -14,6 +14,17 @@ def named(answer: str) -> tuple[str, ...]:
     return () if answer in silent else tuple(sorted(answer.split("+")))
 
 
+def best_name(answer: Answer) -> str | None:
+    """Return the most probable effect or pair, verdicts left aside; of equal ones as in ``said``.
+
+    ``None`` where no effect has a probability above 0, or the answer failed.
+    """
+    shares = {name: share for name, share in answer.probabilities.items() if named(name)}
+    best = min(shares, key=lambda name: (-shares[name], name), default=None)
+    # A probability of 0 says no more than an entry that is not there.
+    return best if best is not None and shares[best] > 0.0 else None
+
+
 def exactly(truth: Truth) -> frozenset[str]:
     """Return the answers that the key calls right, written as in an answer."""
     names = {"+".join(sorted(one)) for one in truth.right if one}

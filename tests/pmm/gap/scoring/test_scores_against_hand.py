@@ -8,8 +8,12 @@ from typing import Any
 
 import pytest
 
+from pmm.gap.scoring.answers import Answer
 from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.columns import COLUMNS
+from pmm.gap.scoring.columns import COLUMNS, Entry
+from pmm.gap.scoring.files import checked
+from pmm.gap.scoring.keys import Truth
+from pmm.gap.scoring.right import best_name
 from pmm.gap.scoring.score import Score, score
 from tests.pmm.gap.scoring import handmade
 
@@ -43,14 +47,36 @@ def test_mean_ceiling_and_the_hidden_are_as_on_the_page(found: Score) -> None:
     assert stated is not None
     assert row.mean == pytest.approx(float(stated[1]), abs=1e-9)
     by_class = row.figure("all", "top_1_by_class")
+    ranked = row.figure("all", "ranked_by_class")
     hidden = row.figure("hidden", "brier")
     assert by_class is not None
+    assert ranked is not None
     assert hidden is not None
     assert by_class.ceiling == pytest.approx(0.92)
+    assert ranked.ceiling == by_class.ceiling
     assert hidden.value == pytest.approx(0.98)
     assert {one.key: one.cases for one in row.bins} == {
         "no_gap": 3, "coefficients": 1, "hidden": 1, "low": 1, "middle": 3, "high": 3, "all": 11,
     }  # fmt: skip
+
+
+def test_a_right_name_behind_none_is_ranked_right(found: Score) -> None:
+    hidden = {one.key: one for one in found.rows[0].bins}["hidden"].figures
+    ranked, said = hidden["ranked_by_class"], hidden["top_1_by_class"]
+    assert (ranked.value, ranked.count, ranked.ceiling) == (1.0, 1, 0.1)
+    assert (said.value, said.count, said.ceiling) == (0.0, 1, 0.1)
+
+
+@pytest.mark.parametrize("row", handmade.page_table("said", "best name"), ids=lambda r: r["said"])
+def test_best_names_are_those_of_the_page(row: handmade.Row) -> None:
+    case = next(r for r in handmade.page_table("case", "kind") if r["case"] == "case-0007")
+    shares = {name: float(p) for name, p in map(str.split, row["said"].split(","))}
+    said = Answer("sealed-answer-1", "case-0007", shares, {})
+    truth = checked(Truth, handmade.PAGE, {**handmade.truth(case), "right": [["cable"]],
+                                           "classes": {"cable": ["cable"]}})  # fmt: skip
+    column = next(one for one in COLUMNS if one.key == "ranked_by_class")
+    assert (best_name(said) or "") == row["best name"]
+    assert list(column.values(Entry(said, truth))) == [float(row["counts"])]
 
 
 def test_angles_split_what_is_outside_the_catalogue(found: Score) -> None:
