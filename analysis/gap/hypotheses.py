@@ -36,13 +36,13 @@ HIDDEN: Final = (
 class Odds:
     """Prior probabilities; the catalogue's share is spread evenly over its effects.
 
-    Whoever asks has a reason to: one campaign in eight has no gap, and of the gaps one in five is
-    such that no catalogue knows it.
+    Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
+    that no catalogue knows it, one in ten is two effects.
     """
 
     none: float = 0.12
-    single: float = 0.56
-    pair: float = 0.14
+    single: float = 0.61
+    pair: float = 0.09
     unknown: float = 0.18
 
 
