@@ -55,7 +55,8 @@ class Jobs(NamingGroup):
 def gap() -> None:
     """Find out why rig and simulation differ, and check how well that is done.
 
-    A campaign in place of a job is diagnosed: "pmm gap CAMPAIGN" is "pmm gap diagnose CAMPAIGN".
+    A campaign in place of a job is diagnosed: "pmm gap CAMPAIGN" is "pmm gap diagnose CAMPAIGN",
+    whose options "pmm gap diagnose --help" lists.
 
     \b
     pmm gap my-campaign --page gap.html

@@ -14,8 +14,7 @@ import click
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import error_line, messages
-
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+from pmm.parallel import one_thread
 
 
 @dataclass(frozen=True)
@@ -102,16 +101,9 @@ def _each(jobs: Sequence[tuple[Path, Path, tuple[str, ...]]], workers: int) -> I
     if workers == 1:
         yield from (answer_one(*job) for job in jobs)
         return
-    with ProcessPoolExecutor(workers, get_context("spawn"), _single_threaded) as pool:
+    with ProcessPoolExecutor(workers, get_context("spawn"), one_thread) as pool:
         for done in as_completed([pool.submit(answer_one, *job) for job in jobs]):
             yield done.result()
-
-
-def _single_threaded() -> None:
-    """Leave the cores to the processes: threads of their own would only take turns."""
-    import os
-
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
 
 
 def answer_one(case: Path, target: Path, left_out: tuple[str, ...] = ()) -> str:

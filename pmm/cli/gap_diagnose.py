@@ -47,6 +47,9 @@ def diagnose(**options: Any) -> None:
 
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
     """  # noqa: D301
+    from pmm.parallel import one_thread
+
+    one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.gap_diagnose_work import Request, run
 
     run(Request(**options))
