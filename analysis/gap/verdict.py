@@ -19,7 +19,7 @@ COEFFICIENTS: Final = "coefficients"
 TOLERATED: Final = 0.45  # remainder over signature at which a name is worth half
 _STEEP = 6.0
 _EARNEST: Final = 0.8  # of pairs: the best of some thousand imitates what no catalogue has
-SLIGHT: Final = 0.1  # of its partner's signature: as likely the partner's own form
+SLIGHT: Final = 0.02  # of its partner's signature: as likely the partner's own form
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
 

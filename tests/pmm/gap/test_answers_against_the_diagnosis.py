@@ -32,7 +32,7 @@ def test_coefficients_that_had_to_be_moved_are_the_answer(
     far = rewritten(made(tmp_path), tmp_path, *FAR)
     (tmp_path / "one").mkdir()
     shares = answered(far, tmp_path / "one", monkeypatch)["probabilities"]
-    assert shares["coefficients"] > 0.9
+    assert shares["coefficients"] > 0.8
     assert "none" not in shares
     assert sum(shares.values()) == pytest.approx(1.0)
 
