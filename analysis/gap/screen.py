@@ -5,7 +5,7 @@ be solved together with it. Both take some hundred times as long as the rest. Ea
 a kind of its own; where nothing of that kind is beyond u, it is not there to be found.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from typing import Final
 
@@ -33,8 +33,10 @@ _TRACES: Final[Mapping[str, frozenset[Part]]] = {
     "campaign-drift": frozenset({Part.TREND, Part.MEAN}),
     "free-play": frozenset(STEADY_PARTS),
 }
-# What they do, the shaft and the struts do, and more of it than the forces show.
-_OF_THE_DRIVE: Final = frozenset({"speed-droop", "load-ripple", "gear-backlash"})
+# What they do, the shaft and the struts do, and more of it than the forces show. Impacts between
+# teeth the shaft does before all else; they are the dearest to simulate.
+_OF_THE_DRIVE: Final = frozenset({"speed-droop", "load-ripple"})
+_OF_THE_SHAFT: Final = frozenset({"gear-backlash"})
 _MOTION: Final = frozenset({SHAFT_ANGLE.name, *STRUTS})
 
 
@@ -49,10 +51,13 @@ class Shown:
     moves
         Whether shaft or struts do, or the frequency; forces speak for them where nothing else is
         recorded.
+    turns
+        Whether the shaft does, or the frequency; where the shaft is not recorded, as ``moves``.
     """
 
     parts: frozenset[Part]
     moves: bool
+    turns: bool
 
 
 def shown(problem: Problem) -> Shown:
@@ -63,10 +68,16 @@ def shown(problem: Problem) -> Shown:
     for at, one in enumerate(stack.components):
         kinds.setdefault(one, []).append(at)
     seen = [one for one, rows in kinds.items() if _deviates(left, rows)]
-    motion = _MOTION & {one.channel for one in kinds}
-    steady = [one for one in seen if one.part in STEADY_PARTS]
-    moves = any(one.channel in motion or not (one.channel and motion) for one in steady)
-    return Shown(frozenset(one.part for one in seen), moves)
+    recorded = {one.channel for one in kinds}
+    steady = [one.channel for one in seen if one.part in STEADY_PARTS]
+    moves = _show(steady, _MOTION & recorded)
+    turns = _show(steady, {SHAFT_ANGLE.name} & recorded or _MOTION & recorded)
+    return Shown(frozenset(one.part for one in seen), moves, turns)
+
+
+def _show(deviating: Iterable[str], channels: Set[str]) -> bool:
+    """Tell whether any of these channels deviates, or the frequency; any at all where none is."""
+    return any(one in channels or not (one and channels) for one in deviating)
 
 
 def _deviates(left: NDArray[np.float64], rows: list[int]) -> bool:
@@ -77,6 +88,8 @@ def _deviates(left: NDArray[np.float64], rows: list[int]) -> bool:
 
 def worth_a_look(kind: type[Effect], seen: Shown) -> bool:
     """Tell whether an effect can be among what deviates; always so if a look at it is cheap."""
+    if kind.name in _OF_THE_SHAFT:
+        return seen.turns
     if kind.name in _OF_THE_DRIVE:
         return seen.moves
     if kind.name in _TRACES:
