@@ -69,6 +69,20 @@ def test_of_effects_of_any_size_is_that_of_a_mixture_of_widths(seed: int) -> Non
     assert any_size(found, groups) == pytest.approx(gained, abs=1e-6)
 
 
+@pytest.mark.parametrize("sigma", [2.0, 3.0, 4.0, 5.0])
+def test_a_rig_that_shows_an_effect_better_asks_hardly_more_evidence_of_it(sigma: float) -> None:
+    """With ten times the signature one wide normal asks ln 10 more, the mixture ln 5/3."""
+    gained, wide = [], []
+    for shown in (30.0, 300.0):
+        found = posterior(
+            np.array([sigma, 0.0]), np.array([[shown], [0.0]]), Nuisances(np.zeros((2, 1)))
+        )
+        wide.append(0.5 * sigma * shown * found.mean[0] + found.log_volume)
+        gained.append(wide[-1] + any_size(found, [np.array([True])]))
+    assert wide[0] - wide[1] == pytest.approx(np.log(10.0), abs=0.02)
+    assert gained[0] - gained[1] == pytest.approx(np.log(5.0 / 3.0), abs=0.15)
+
+
 @given(seeds)
 def test_what_has_no_size_gains_nothing(seed: int) -> None:
     residual, wide, columns = drawn(seed)

@@ -70,6 +70,15 @@ def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> Non
     assert worth_a_look(find("load-ripple"), seen)
 
 
+@pytest.mark.parametrize(("said", "shows"), [("speed-ripple", True), ("connecting-rod", False)])
+def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
+    said: str, shows: bool, rig: SimulatedRig
+) -> None:
+    seen = shown(_scattering(rig, record(rig, [build(said)], 34)))
+    assert worth_a_look(find("gear-backlash"), seen) is shows
+    assert worth_a_look(find("load-ripple"), seen)  # the struts tell of either
+
+
 @pytest.mark.parametrize(
     "name", ["load-ripple", "coulomb-friction", "quadratic-damping", "joint-play", "speed-ripple"]
 )

@@ -1,0 +1,60 @@
+"""An effect of some sigma is named, however large the catalogue takes it to be usually."""
+
+import numpy as np
+import pytest
+
+from analysis.gap.components import GapRun
+from analysis.gap.diagnose import Settings, diagnose
+from analysis.gap.fit import Problem
+from analysis.gap.gaussian import left_over
+from analysis.gap.verdict import NONE
+from sim.effects.catalogue import build, find
+from sim.effects.effect import Effect
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of, record
+
+SIGMA = 7.0
+SEEDS = (41, 42, 43)
+KNOWN = ("coulomb-friction", "speed-ripple", "zero-offset", "amplifier-lag", "quadratic-damping")
+# Each is put in far smaller than the catalogue takes it to be usually.
+WEAK = (
+    "coulomb-friction:friction_n={}",
+    "speed-ripple:relative={}",
+    "zero-offset:aft_n={},fore_n=0",
+)
+
+
+@pytest.fixture(scope="module")
+def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
+    return problem_of(rig, clean)
+
+
+def sized(problem: Problem, said: str) -> Effect:
+    """Return the effect at the size at which it is as many sigma as wanted, by bisection."""
+    low, high = -9.0, 0.0
+    for _ in range(24):
+        middle = 0.5 * (low + high)
+        change = problem.simulator.predict((build(said.format(10.0**middle)),))
+        size = left_over(problem.whitened(change - problem.simulator.nominal), problem.nuisances)
+        low, high = (middle, high) if size < SIGMA else (low, middle)
+    return build(said.format(10.0**low))
+
+
+@pytest.mark.parametrize("said", WEAK)
+def test_it_is_named(said: str, rig: SimulatedRig, problem: Problem) -> None:
+    there = sized(problem, said)
+    known = {name: find(name) for name in KNOWN}
+    found = [diagnose(rig, record(rig, [there], seed), Settings(known)) for seed in SEEDS]
+    named = [one.probabilities.best for one in found]
+    # At 7 sigma beside noise of 1 all three are above 4.5 but twice in a hundred.
+    assert named == [there.name] * len(SEEDS)
+
+
+def test_a_third_of_it_is_not(rig: SimulatedRig, problem: Problem) -> None:
+    """At 2.3 sigma nothing can be told from chance: whoever names it there names noise."""
+    whole = sized(problem, WEAK[0])
+    friction = build(f"coulomb-friction:friction_n={whole.friction_n / 3.0}")
+    known = {name: find(name) for name in KNOWN}
+    found = [diagnose(rig, record(rig, [friction], seed), Settings(known)) for seed in SEEDS]
+    assert NONE in [one.probabilities.best for one in found]
+    assert np.mean([one.probabilities.by_answer[NONE] for one in found]) > 0.2
