@@ -25,6 +25,7 @@ FloatArray = NDArray[np.float64]
 _LEVELS: Final = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
 _BEFORE, _AFTER = PALETTE[1], PALETTE[0]
 _LEAST_U: Final = 0.05  # where a gap of nothing is drawn on a logarithmic axis
+_FEW_DECADES: Final = 30.0  # highest over lowest value of an axis
 
 
 def heat_map(report: GapReport) -> "Figure":
@@ -121,10 +122,15 @@ def walk_figure(report: GapReport) -> "Figure":
 
 
 def _logarithmic(axes: "Axes") -> None:
-    """Scale the abscissa by decades with plain numbers."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+    """Scale the abscissa by decades with plain numbers, three to a decade where there are few."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     axes.set_xscale("log")
+    low, high = axes.get_xlim()
+    low, high = min(low, 0.45), max(high, 2.2)  # so that there are numbers beside the 1
+    axes.set_xlim(low, high)
+    if high < _FEW_DECADES * low:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
