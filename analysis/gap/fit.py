@@ -12,15 +12,9 @@ from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior
-from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
 FloatArray = NDArray[np.float64]
-
-_STEPS = 6
-_STEPS_IN_TIME = 5  # for what has to be simulated in time, a hundred times as costly
-_FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
-_SETTLED = 0.05  # change of the log posterior at which a fit ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,60 +240,12 @@ def expected_evidence(problem: Problem, fit: Fit) -> float:
 
     For a first look at many effects: it takes no further simulation.
     """
-    cost = _linear_cost(problem, fit, most_probable(fit))
+    cost = linear_cost(problem, fit, most_probable(fit))
     return -0.5 * (cost + fit.shared) + fit.log_volume
 
 
-def refine(problem: Problem, fit: Fit) -> Fit:
-    """Improve a fit by damped Gauss-Newton steps through the simulator.
-
-    The slopes are kept as long as a step brings most of what they promise, and for what does not
-    repeat with the shaft to the end.
-    """
-    repeats = all(one.kind.repeats for one in fit.candidates)
-    best, stale = fit, False
-    for _ in range(_STEPS if repeats else _STEPS_IN_TIME):
-        better, fulfilled = _step(problem, best)
-        if better is None:
-            if not stale:
-                break
-            best, stale = at(problem, best.candidates, best.units), False
-            continue
-        gain, best, stale = best.cost - better.cost, better, True
-        if gain < _SETTLED:
-            break
-        if fulfilled < _FULFILLED:
-            best, stale = at(problem, best.candidates, best.units), False
-    return at(problem, best.candidates, best.units) if stale and repeats else best
-
-
-def stepped(problem: Problem, fit: Fit, steps: int) -> Fit:
-    """Return a fit after some steps with the slopes that it has; itself if none betters it."""
-    best = fit
-    for _ in range(steps):
-        better, _ = _step(problem, best)
-        if better is None or best.cost - better.cost < _SETTLED:
-            return best if better is None else better
-        best = better
-    return best
-
-
-def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
-    """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps."""
-    towards = most_probable(fit) - fit.units
-    promise = fit.cost - _linear_cost(problem, fit, fit.units + towards)
-    for share in (1.0, 0.4, 0.1, 0.02):
-        units = fit.units + share * towards
-        try:
-            better = moved(problem, fit, units)
-        except PmmError:
-            continue
-        if better.cost < fit.cost:
-            return better, (fit.cost - better.cost) / max(promise, 1e-9)
-    return None, 0.0
-
-
-def _linear_cost(problem: Problem, fit: Fit, units: FloatArray) -> float:
+def linear_cost(problem: Problem, fit: Fit, units: FloatArray) -> float:
+    """Return what a fit would cost at other parameters, to first order."""
     left = fit.linearised(problem.residual) - fit.columns @ units
     return misfit(left, problem.nuisances) + float(units @ units)
 

@@ -17,6 +17,7 @@ from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.search import fitted, looked_at, paired
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation, find_deviation
+from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
 FloatArray = NDArray[np.float64]
@@ -168,13 +169,16 @@ def _named_all(problem: Problem, fits: Sequence[Fit], none: float) -> tuple[Name
 def balance(problem: Problem, fit: Fit) -> float:
     """Return the smaller effect's signature over the larger one's, each by itself.
 
-    1 for a single effect, and where one does not repeat with the shaft: it cannot pass for the form
-    of one that does.
+    1 for a single effect, and where one does not repeat with the shaft, or cannot be simulated by
+    itself: it cannot pass for the other's form.
     """
     if len(fit.candidates) < 2 or not all(one.kind.repeats for one in fit.candidates):
         return 1.0
     nominal = problem.simulator.nominal
-    alone = [problem.simulator.predict((one,)) - nominal for one in fit.effects]
+    try:
+        alone = [problem.simulator.predict((one,)) - nominal for one in fit.effects]
+    except PmmError:
+        return 1.0
     sizes = [left_over(problem.whitened(one), problem.nuisances) for one in alone]
     return min(sizes) / max(*sizes, 1e-12)
 

@@ -16,10 +16,9 @@ from analysis.gap.fit import (
     expected_evidence,
     joined,
     most_probable,
-    refine,
-    stepped,
 )
 from analysis.gap.look import Looked, look
+from analysis.gap.refine import refine, stepped
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 

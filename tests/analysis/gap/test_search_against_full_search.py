@@ -1,6 +1,7 @@
 """What the search leaves out or reuses to be quick changes no number that it should not."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from analysis.gap.candidate import Candidate, candidates
 from analysis.gap.components import GapRun, Part, Stack
-from analysis.gap.fit import Problem, at, refine
+from analysis.gap.fit import Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import columns, free_numbers, with_coefficients
 from analysis.gap.gaussian import Nuisances, left_over
@@ -17,15 +18,18 @@ from analysis.gap.look import look, smaller
 from analysis.gap.noise import pooled
 from analysis.gap.prefix import Solved
 from analysis.gap.priors import Priors
+from analysis.gap.refine import refine
 from analysis.gap.regimes import Regime
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation
 from analysis.gap.verdict import probabilities
 from analysis.gap.withheld import Predicted, shrinkage
+from hardware.description.errors import ConfigurationError
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, find
 from sim.effects.d2_speed_droop import SpeedDroop
+from sim.effects.effect import Effect
 from sim.period import Period
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig
@@ -175,6 +179,25 @@ def test_a_slight_partner_counts_for_the_other_effect(
         assert found.best == best
         assert sum(found.by_answer.values()) == pytest.approx(1.0)
     assert 0.0 < balance(problem, both) <= 1.0
+
+
+def test_what_cannot_be_simulated_here_ends_no_diagnosis(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = problem_of(rig, clean)
+    parts = [next(iter(candidates(find(name), []))) for name in ("coulomb-friction", "cable")]
+    both = at(problem, tuple(parts), np.concatenate([one.start for one in parts]))
+
+    def fails(simulator: Simulator, effects: Sequence[Effect]) -> np.ndarray:
+        raise ConfigurationError("the teeth strike too hard")
+
+    share = balance(problem, both)
+    nominal = problem.simulator.nominal
+    monkeypatch.setattr(Simulator, "predict", fails)
+    assert share < 1.0
+    assert nominal is problem.simulator.nominal
+    assert balance(problem, both) == 1.0
+    assert refine(problem, both).units == pytest.approx(both.units)
 
 
 def test_a_gap_of_nothing_is_nothing_within_its_noise() -> None:
