@@ -100,17 +100,15 @@ class Fit:
     @cached_property
     def log_volume(self) -> float:
         """Log of what is left of the priors' volume, whatever the scale of the effects' sizes."""
-        sizes, start = np.array([x.is_size for x in self._axes], dtype=bool), 0
-        groups = []
-        for one in self.candidates:
-            own = np.zeros(len(sizes), dtype=bool)
-            own[start : start + len(one.axes)] = True
-            groups.append(own & sizes)
-            start += len(one.axes)
+        sizes = np.array([one.is_size for one in self.axes], dtype=bool)
+        numbers = np.arange(len(self.candidates))
+        whose = np.repeat(numbers, [len(one.axes) for one in self.candidates])
+        groups = [sizes & (whose == number) for number in numbers]
         return self.posterior.log_volume + any_size(self.posterior, groups)
 
     @property
-    def _axes(self) -> tuple[Axis, ...]:
+    def axes(self) -> tuple[Axis, ...]:
+        """The free parameters of all effects, in the order of ``units``."""
         return tuple(axis for one in self.candidates for axis in one.axes)
 
     @property
@@ -147,7 +145,7 @@ def most_probable(fit: Fit) -> FloatArray:
     A parameter that would leave its range is held at its end, and the others are found anew.
     """
     low, high = bounds(fit.candidates)
-    precision = np.linalg.inv(fit.posterior.covariance)
+    precision = fit.posterior.precision
     target = precision @ fit.posterior.mean
     units, free = fit.posterior.mean.copy(), np.ones(len(fit.units), dtype=bool)
     for _ in range(len(units)):

@@ -75,6 +75,11 @@ class Posterior:
     mean: FloatArray
     covariance: FloatArray
 
+    @cached_property
+    def precision(self) -> FloatArray:
+        """Inverse of the covariance, that of the prior in it."""
+        return np.asarray(np.linalg.inv(self.covariance), np.float64)
+
     @property
     def log_volume(self) -> float:
         """Half the log of the covariance's determinant: what is left of the prior's volume."""
@@ -95,9 +100,8 @@ def any_size(found: Posterior, groups: Sequence[NDArray[np.bool_]]) -> float:
     groups
         For each effect which parameters are sizes, of shape ``(p,)``; those share their scale.
     """
-    told = np.linalg.inv(found.covariance)
-    informs = told @ found.mean
-    told = told - np.eye(len(told))
+    informs = found.precision @ found.mean
+    told = found.precision - np.eye(len(informs))
     scales = [_scales(np.diagonal(told)[group]) for group in groups]
     each = [
         np.ones(len(told))
@@ -105,8 +109,8 @@ def any_size(found: Posterior, groups: Sequence[NDArray[np.bool_]]) -> float:
         for one in product(*scales)
     ]
     logs = _under_priors(told, informs, np.array(each))
-    wide = _under_priors(told, informs, np.ones((1, len(told))))[0]
-    return float(np.logaddexp.reduce(logs) - math.log(len(logs)) - wide)
+    # The first has every width as it is.
+    return float(np.logaddexp.reduce(logs) - math.log(len(logs)) - logs[0])
 
 
 def _scales(squares: FloatArray) -> FloatArray:

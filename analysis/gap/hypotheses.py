@@ -214,9 +214,10 @@ def _in_own_form(problem: Problem, fit: Fit, share: float) -> Named:
     nuisances = Nuisances(problem.nuisances.columns * weight[:, None])
     columns = fit.columns * weight[:, None]
     target = fit.linearised(problem.residual) * weight
-    found = replace(fit, columns=columns, posterior=posterior(target, columns, nuisances))
+    best, shared = posterior(target, columns, nuisances), nuisances.log_determinant
+    found = replace(fit, columns=columns, posterior=best, shared=shared)
     units = most_probable(found)
     cost = misfit(target - columns @ units, nuisances) + float(units @ units)
-    log_density = -0.5 * (cost + nuisances.log_determinant) + found.log_volume
+    log_density = replace(found, cost=cost).log_evidence
     log_density += float(np.sum(np.log(weight))) - (math.log(len(FORMS)) if share else 0.0)
     return Named(replace(fit, form=share), log_density, share, _NOTHING)

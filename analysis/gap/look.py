@@ -122,10 +122,10 @@ def _near(problem: Problem, fit: Fit) -> Fit:
     none = null_evidence(problem.residual, problem.nuisances)
     chi_square = misfit(problem.residual, problem.nuisances)
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
-    if not any(axis.is_size for one in fit.candidates for axis in one.axes):
+    if not any(one.is_size for one in fit.axes):
         return _along_any(problem, fit, wanted)
     # Seen from far too large, a phase is known far too well.
-    straight = all(axis.is_size for one in fit.candidates for axis in one.axes)
+    straight = all(one.is_size for one in fit.axes)
     near = fit
     for _ in range(_APPROACHES):
         ratio = left_over(near.signature, problem.nuisances) / wanted
@@ -181,8 +181,7 @@ def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:
     """
     weighted = problem.nuisances.whiten(fit.signature)
     slopes = weighted @ fit.columns / max(float(weighted @ fit.signature), 1e-12)
-    axes = [axis for one in fit.candidates for axis in one.axes]
-    sizes = np.array([one.is_size for one in axes], dtype=bool)
+    sizes = np.array([one.is_size for one in fit.axes], dtype=bool)
     units = fit.units.copy()
     power = float(slopes[sizes] @ units[sizes])
     if power > _LEAST_POWER:

@@ -181,7 +181,7 @@ def _step(problem: Problem, base: Hypothesis) -> Hypothesis | None:
 def _most_probable(base: Hypothesis) -> FloatArray:
     """Return the best parameters within their ranges; those at an end are held there."""
     low, high = np.concatenate([one.bounds for one in base.causes], axis=1)
-    precision = np.linalg.inv(base.posterior.covariance)
+    precision = base.posterior.precision
     target = precision @ base.posterior.mean
     units, free = base.posterior.mean.copy(), np.ones(base.units.size, dtype=bool)
     for _ in range(units.size):
