@@ -73,6 +73,12 @@ class Gauge:
         """Return the gauge with a zero that stays where it was taken."""
         return replace(self, zero_drift_n_s=0.0, zero_drifted_n=0.0) if self._drifts else self
 
+    def drifting_from(self, time_s: float) -> "Gauge":
+        """Return the gauge with a zero that drifts by as much at this time as before at time 0."""
+        if not self.zero_drift_n_s:
+            return self
+        return replace(self, zero_drifted_n=self.zero_drifted_n - self.zero_drift_n_s * time_s)
+
 
 @dataclass(frozen=True)
 class Dynamometers:
@@ -96,6 +102,11 @@ class Dynamometers:
         signals.DYNAMOMETER_FORCE_AFT,
         signals.DYNAMOMETER_FORCE_FORE,
     )
+
+    def drifting_from(self, time_s: float) -> "Dynamometers":
+        """Return the dynamometers with both zeros' clocks begun at this time."""
+        aft, fore = self.aft.drifting_from(time_s), self.fore.drifting_from(time_s)
+        return replace(self, aft=aft, fore=fore)
 
     def start(self, sample_rate_hz: float, seed: int) -> DynamometerState:
         """Return the state before the first sample."""

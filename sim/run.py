@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +47,8 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        In the schema of :mod:`hardware.description.dataset`; its clock starts with the record.
+        In the schema of :mod:`hardware.description.dataset`; its clock starts with the record, and
+        so does the drift of the dynamometers' zeros.
 
     Raises
     ------
@@ -56,10 +57,11 @@ def simulate(
         or if another argument is out of range.
     """
     _check_arguments(set_point, periods, settling_periods, sample_rate_hz, seed)
-    chain = rig.chain(set_point, drift_rad=drift_rad)
     samples_per_period = sample_rate_hz / set_point.frequency_hz
     skipped = math.ceil(settling_periods * samples_per_period)
     count = math.ceil((periods + 1) * samples_per_period) + 1
+    zeroed = replace(rig, dynamometers=rig.dynamometers.drifting_from(skipped / sample_rate_hz))
+    chain = zeroed.chain(set_point, drift_rad=drift_rad)
     _, run = chain.run(chain.start(sample_rate_hz, seed), skipped + count)
     _check_strut_forces(rig, run)
     flags = _overloads(rig, run) + _ramp_in_record(rig, skipped / sample_rate_hz)

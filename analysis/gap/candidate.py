@@ -48,6 +48,7 @@ _FIRM: Final[Mapping[tuple[str, str], float]] = {
 _BEGINS: Final[Mapping[str, float]] = {"backlash_rad": 3e-4}
 STEP: Final = 0.02  # of a prior deviation, by which a slope is found at least
 _STEP_IN_TIME = 0.5  # that of what has a sign, and is simulated in time, is found above rounding
+_RANGED = 0.5  # of the range of a size: its standard deviation at most
 _SPREAD = 0.35  # of the range's logarithm
 
 
@@ -111,6 +112,13 @@ class Candidate:
             for one, unit in zip(self.axes, units, strict=True)
         }
         return self.kind(**values, **self.held)
+
+    @property
+    def reach(self) -> float:
+        """Largest plausible standard deviation of its sizes, in prior deviations; 1 at least."""
+        sizes = np.array([axis.is_size for axis in self.axes], dtype=bool)
+        ends = np.abs(self.bounds[:, sizes]).max(axis=0)
+        return max(_RANGED * float(ends.min(initial=np.inf)), 1.0) if len(ends) else 1.0
 
     @property
     def bounds(self) -> FloatArray:

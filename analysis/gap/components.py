@@ -134,6 +134,8 @@ class GapRun:
         Where it stands in its campaign, for effects that build up or die out.
     periods, sample_rate_hz
         Of the stretch that was analysed: what a simulated record has to match.
+    lead_s
+        From the beginning of the record, where its zero was taken, to that stretch.
     stands_at_m
         Of a record at rest (:mod:`analysis.gap.at_rest`): where its aft and fore strut stand;
         ``None`` where the shaft turns.
@@ -145,6 +147,7 @@ class GapRun:
     observed: Observation
     periods: int
     sample_rate_hz: float
+    lead_s: float = 0.0
     stands_at_m: tuple[float, float] | None = None
 
     @property

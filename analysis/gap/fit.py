@@ -104,7 +104,8 @@ class Fit:
         numbers = np.arange(len(self.candidates))
         whose = np.repeat(numbers, [len(one.axes) for one in self.candidates])
         groups = [sizes & (whose == number) for number in numbers]
-        return self.posterior.log_volume + any_size(self.posterior, groups)
+        reaches = [one.reach for one in self.candidates]
+        return self.posterior.log_volume + any_size(self.posterior, groups, reaches)
 
     @property
     def axes(self) -> tuple[Axis, ...]:

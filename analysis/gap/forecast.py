@@ -67,8 +67,8 @@ def planned(problem: Problem, set_point: SetPoint, number: int) -> GapRun:
     noise = near.observed.uncertainty[kept] * math.sqrt(longer)
     place = CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
     observed = Observation(parts, np.zeros(len(parts)), noise)
-    return GapRun(
-        f"further {number}", set_point, place, observed, near.periods, near.sample_rate_hz
+    return replace(
+        near, name=f"further {number}", set_point=set_point, place=place, observed=observed
     )
 
 

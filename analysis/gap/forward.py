@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
 from analysis.gap.components import Component, GapRun, Layout, Observation, Part, Stack
-from analysis.gap.observe import observe
+from analysis.gap.observe import FORCES, observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on
@@ -159,7 +159,17 @@ class Simulator:
             name=run.name,
         )
         record = replace(from_dataset(dataset), set_point=run.set_point)
-        return align(observe(record, quiet=False).observation, run.observed)
+        seen = observe(record, quiet=False)
+        later_s = run.lead_s - seen.lead_s
+        return align(seen.observation, run.observed) + _drifted(rig, run.observed, later_s)
+
+
+def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:
+    """Return what the forces' zeros drift by in some time, as a change of their means."""
+    gauges = zip(FORCES, (rig.dynamometers.aft, rig.dynamometers.fore), strict=True)
+    drift = {name: gauge.zero_drift_n_s * later_s for name, gauge in gauges}
+    means = [one.part is Part.MEAN for one in measured.components]
+    return np.array([drift.get(one.channel, 0.0) for one in measured.components]) * means
 
 
 # What each of these is the logarithm of, to this power, adds up like powers do.

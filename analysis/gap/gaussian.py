@@ -86,12 +86,15 @@ class Posterior:
         return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
 
 
-def any_size(found: Posterior, groups: Sequence[NDArray[np.bool_]]) -> float:
+def any_size(
+    found: Posterior, groups: Sequence[NDArray[np.bool_]], reaches: Sequence[float]
+) -> float:
     """Return the log evidence gained by not knowing by orders of magnitude how large effects are.
 
-    A size's prior is a mixture of normals: as wide as it is, a third of that, and so on down to
-    where the effect would hardly be seen, each as likely as the others. One wide normal would ask
-    more evidence of an effect the better a rig shows it.
+    A size's prior is a mixture of normals: as wide as it is, thrice that up to what is plausible, a
+    third of that and so on down to where the effect would hardly be seen, each as likely as the
+    others. One wide normal would ask more evidence of an effect the better a rig shows it, and the
+    more, the further it is from what is typical.
 
     Parameters
     ----------
@@ -99,25 +102,29 @@ def any_size(found: Posterior, groups: Sequence[NDArray[np.bool_]]) -> float:
         Under unit normal priors.
     groups
         For each effect which parameters are sizes, of shape ``(p,)``; those share their scale.
+    reaches
+        For each effect the largest plausible standard deviation.
     """
     informs = found.precision @ found.mean
     told = found.precision - np.eye(len(informs))
-    scales = [_scales(np.diagonal(told)[group]) for group in groups]
+    scales = [
+        _scales(np.diagonal(told)[group], reach)
+        for group, reach in zip(groups, reaches, strict=True)
+    ]
     each = [
         np.ones(len(told))
         + sum((width - 1.0) * group for width, group in zip(one, groups, strict=True))
         for one in product(*scales)
     ]
-    logs = _under_priors(told, informs, np.array(each))
-    # The first has every width as it is.
-    return float(np.logaddexp.reduce(logs) - math.log(len(logs)) - logs[0])
+    logs = _under_priors(told, informs, np.array([np.ones(len(told)), *each]))
+    return float(np.logaddexp.reduce(logs[1:]) - math.log(len(each)) - logs[0])
 
 
-def _scales(squares: FloatArray) -> FloatArray:
+def _scales(squares: FloatArray, reach: float) -> FloatArray:
     """Return the widths of a mixture, by the squared signatures of a prior deviation."""
     shown = math.sqrt(max(float(squares.max(initial=0.0)), 0.0))
-    steps = math.log(max(shown / _HARDLY, 1.0)) / math.log(_APART)
-    return _APART ** -np.arange(min(int(steps), _MOST_SCALES) + 1.0)
+    down, up = (math.log(max(one, 1.0)) / math.log(_APART) for one in (shown / _HARDLY, reach))
+    return _APART ** np.arange(-min(int(down), _MOST_SCALES), int(up) + 1.0)
 
 
 def _under_priors(told: FloatArray, informs: FloatArray, widths: FloatArray) -> FloatArray:

@@ -50,6 +50,12 @@ class Observed:
     analysis: Analysis
 
     @property
+    def lead_s(self) -> float:
+        """Time from the beginning of the record to the whole periods that were analysed."""
+        began_s = float(self.analysis.recording.time_s()[0])
+        return float(self.analysis.steady_sums.opened_s[0]) - began_s
+
+    @property
     def reference_channel(self) -> str | None:
         """The channel whose fundamental is phase 0; ``None`` with a photocell."""
         reference = self.analysis.reference

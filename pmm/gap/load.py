@@ -132,4 +132,5 @@ def _gap_runs(campaign: Campaign, found: Sequence[tuple[Run, Observed]]) -> Iter
             one.observation,
             one.analysis.stretch.period_count,
             one.analysis.recording.sample_rate_hz,
+            one.lead_s,
         )

@@ -18,8 +18,8 @@ class ZeroDrift(Effect):
 
     It does not repeat with the shaft. The signature is what an analysis finds that takes whole
     periods from a pulse on and fits no trend: independent of how many periods these are. The zero
-    is taken anew before each run; the mean, which grows with the time since then, is left out of
-    it. One that is taken once for a campaign is ``campaign-drift``.
+    is taken anew as each record begins; the mean, which grows with the time since then, is left out
+    of it. One that is taken once for a campaign is ``campaign-drift``.
     """
 
     code: ClassVar[str] = "M6"

@@ -54,7 +54,7 @@ def one_run(
     )
     seen = observe(replace(from_dataset(dataset), set_point=point))
     periods = seen.analysis.stretch.period_count
-    return GapRun(f"r{number}", point, place, seen.observation, periods, 64.0)
+    return GapRun(f"r{number}", point, place, seen.observation, periods, 64.0, seen.lead_s)
 
 
 def problem_of(rig: SimulatedRig, runs: Sequence[GapRun]) -> Problem:

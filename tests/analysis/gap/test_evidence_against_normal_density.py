@@ -51,13 +51,14 @@ def test_of_an_effect_beside_them(seed: int) -> None:
     assert found == pytest.approx(direct + SHARED, abs=1e-7)
 
 
-@given(seeds)
-def test_of_effects_of_any_size_is_that_of_a_mixture_of_widths(seed: int) -> None:
+@given(seeds, st.sampled_from([1.0, 2.9, 3.1, 40.0]))
+def test_of_effects_of_any_size_is_that_of_a_mixture_of_widths(seed: int, reach: float) -> None:
     residual, wide, columns = drawn(seed)
     columns = columns * [100.0, 4.0]
     covariance = np.eye(COUNT) + wide @ wide.T
     shown = [np.sqrt(one @ np.linalg.solve(covariance, one)) for one in columns.T]
-    widths = [[3.0**-k for k in range(7) if not k or one * 3.0**-k >= 3.0] for one in shown]
+    down = [[3.0**-k for k in range(7) if not k or one * 3.0**-k >= 3.0] for one in shown]
+    widths = [down[0], down[1] + [3.0**k for k in range(1, 9) if 3.0**k <= reach]]
     direct = [
         multivariate_normal.logpdf(residual, cov=covariance + (columns * pair**2) @ columns.T)
         for pair in map(np.array, product(*widths))
@@ -66,7 +67,7 @@ def test_of_effects_of_any_size_is_that_of_a_mixture_of_widths(seed: int) -> Non
     gained = np.logaddexp.reduce(direct) - np.log(len(direct)) - whole
     found = posterior(residual, columns, Nuisances(wide))
     groups = [np.array([True, False]), np.array([False, True])]
-    assert any_size(found, groups) == pytest.approx(gained, abs=1e-6)
+    assert any_size(found, groups, [1.0, reach]) == pytest.approx(gained, abs=1e-6)
 
 
 @pytest.mark.parametrize("sigma", [2.0, 3.0, 4.0, 5.0])
@@ -78,7 +79,7 @@ def test_a_rig_that_shows_an_effect_better_asks_hardly_more_evidence_of_it(sigma
             np.array([sigma, 0.0]), np.array([[shown], [0.0]]), Nuisances(np.zeros((2, 1)))
         )
         wide.append(0.5 * sigma * shown * found.mean[0] + found.log_volume)
-        gained.append(wide[-1] + any_size(found, [np.array([True])]))
+        gained.append(wide[-1] + any_size(found, [np.array([True])], [1.0]))
     assert wide[0] - wide[1] == pytest.approx(np.log(10.0), abs=0.02)
     assert gained[0] - gained[1] == pytest.approx(np.log(5.0 / 3.0), abs=0.15)
 
@@ -87,7 +88,22 @@ def test_a_rig_that_shows_an_effect_better_asks_hardly_more_evidence_of_it(sigma
 def test_what_has_no_size_gains_nothing(seed: int) -> None:
     residual, wide, columns = drawn(seed)
     found = posterior(residual, columns, Nuisances(wide))
-    assert any_size(found, [np.zeros(2, dtype=bool)]) == pytest.approx(0.0, abs=1e-9)
+    assert any_size(found, [np.zeros(2, dtype=bool)], [1.0]) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("times", [1.0, 10.0, 50.0])
+def test_an_effect_far_beyond_the_typical_pays_for_the_orders_of_magnitude_only(
+    times: float,
+) -> None:
+    """One wide normal asks times^2/2 more of it, the mixture less than ln 11."""
+    shown, nuisances = 30.0, Nuisances(np.zeros((2, 1)))
+    residual, columns = np.array([times * shown, 0.0]), np.array([[shown], [0.0]])
+    found = posterior(residual, columns, nuisances)
+    explained = 0.5 * float(residual @ columns @ found.mean) + found.log_volume
+    gained = explained + any_size(found, [np.array([True])], [100.0])
+    known = 0.5 * residual[0] ** 2 - np.log(times * shown)
+    assert explained - known == pytest.approx(-0.5 * times**2 + np.log(times), rel=2e-3)
+    assert -np.log(11.0) < gained - known < 0.0
 
 
 @given(seeds)
