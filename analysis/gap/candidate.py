@@ -2,12 +2,12 @@
 
 A parameter that can be zero has a normal prior about zero (no effect) whose width is a few typical
 values; one that has to be positive (a stiffness, a frequency) a log-normal one about the typical
-value. A whole number is a choice, not a parameter: each choice is a start of its own.
+value. What an effect holds is a choice, not a parameter: each choice is a start of its own.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
@@ -20,32 +20,6 @@ FloatArray = NDArray[np.float64]
 
 _EVEN = math.pi / math.sqrt(3.0)  # standard deviation of an even distribution on the circle
 _TYPICAL = 3.0  # a prior's standard deviation, in typical values
-_CHOICES: Final[Mapping[str, tuple[float, ...]]] = {
-    "order": (1.0, 2.0, 3.0),
-    "poles": (1.0,),
-    "every": (5.0, 10.0, 20.0),
-    "cycles": (10.0,),
-}
-# What hardly shows beside its siblings, or only as a product with one of them: held at its usual
-# value. Some are costly too: a loaded drive takes a hundred times as long as a set one.
-_HELD: Final[Mapping[str, frozenset[str]]] = {
-    "torque-cogging": frozenset({"inertia_kg_m2"}),
-    "gear-backlash": frozenset({"inertia_kg_m2", "stiffness_n_m_rad", "damping_n_m_s"}),
-    "free-play": frozenset({"stiffness_n_m", "damping_n_s_m"}),
-    "vortex-shedding": frozenset({"strouhal", "bandwidth", "run_index"}),
-    "temperature": frozenset({"rate_k_h", "hours"}),
-    "campaign-drift": frozenset({"since_zero_s"}),
-    "residual-waves": frozenset({"decay_s", "waited_s", "frequency_hz"}),  # the run before tells
-}
-# The nominal gear does not give way at all. Beside it a clearance shows, between teeth that the
-# load hardly bends and before a flywheel; softer ones would have to explain their own give first.
-_FIRM: Final[Mapping[tuple[str, str], float]] = {
-    ("gear-backlash", "inertia_kg_m2"): 20.0,
-    ("gear-backlash", "stiffness_n_m_rad"): 1e7,
-    ("gear-backlash", "damping_n_m_s"): 2e3,
-}
-# A good gear's clearance: across a worn one's the cranks may strike so hard that nothing solves it.
-_BEGINS: Final[Mapping[str, float]] = {"backlash_rad": 3e-4}
 STEP: Final = 0.02  # of a prior deviation, by which a slope is found at least
 _STEP_IN_TIME = 0.5  # that of what has a sign, and is simulated in time, is found above rounding
 _RANGED = 0.5  # of the range of a size: its standard deviation at most
@@ -68,7 +42,7 @@ class Axis:
     centre: float
     deviation: float
     is_log: bool
-    start: float
+    start: float = 0.0
 
     @property
     def is_size(self) -> bool:
@@ -146,30 +120,53 @@ def candidates(kind: type[Effect], frequencies_hz: Sequence[float]) -> Iterator[
 def _options(
     kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
 ) -> Iterator[Axis | tuple[str, float]]:
-    magnitude = one.low <= 0.0 and not is_phase(one)
-    if is_share(one):
-        yield from (Axis(one, 0.5, 0.5, False, start) for start in (1.0, -1.0))
-        return
-    if one.name in _HELD.get(kind.name, ()):
-        yield one.name, _FIRM.get((kind.name, one.name), one.typical)
-    elif one.name in _CHOICES:
-        yield from ((one.name, value) for value in _CHOICES[one.name])
-    elif magnitude:
-        scale = _TYPICAL * _size(one, kind.parameters())
-        yield Axis(one, 0.0, scale, False, (one.typical or 0.1 * scale) / scale)
-    elif not kind.repeats:  # of what does not keep step only the size shows, and in which band
-        yield from ((one.name, value) for value in _held(one, frequencies_hz))
-    elif is_phase(one):
-        yield Axis(one, 0.0, _EVEN, False, 0.0)
+    axis = _axis(one, kind.parameters())
+    # Of what does not keep step only the size shows, and in which band.
+    sizes = axis.is_size or is_share(one)
+    if one.held:
+        yield from ((one.name, value) for value in one.starts or (one.typical,))
+    elif not (kind.repeats or sizes):
+        yield from ((one.name, value) for value in one.starts or _bands(one, frequencies_hz))
     else:
-        yield from _positive(one, frequencies_hz)
+        begins = _begins(axis, frequencies_hz)
+        yield from (replace(axis, start=axis.unit(value)) for value in begins)
 
 
-def _held(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
-    if one.name == "frequency_hz":
+def _bands(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
+    if one.unit == "Hz":
         inside = (0.45 * min(frequencies_hz), 3.3 * max(frequencies_hz))
         return (one.typical, *(value for value in inside if one.low <= value <= one.high))
     return (1.0,) if is_phase(one) else (one.typical,)
+
+
+def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
+    """Return a parameter with its prior, begun at the middle of it."""
+    if is_share(one):
+        return Axis(one, 0.5, 0.5, is_log=False)
+    if is_phase(one):
+        return Axis(one, 0.0, _EVEN, is_log=False)
+    if one.low <= 0.0:
+        return Axis(one, 0.0, _TYPICAL * _size(one, siblings), is_log=False)
+    return Axis(one, math.log(one.typical), _SPREAD * math.log(one.high / one.low), is_log=True)
+
+
+def _begins(axis: Axis, frequencies_hz: Sequence[float]) -> Sequence[float]:
+    """Return the values from which a parameter is fitted."""
+    one = axis.parameter
+    usual = one.starts or _usual(axis)
+    if not one.resonance:
+        return usual
+    low, high = min(frequencies_hz), max(frequencies_hz)
+    return (*usual, 1.15 * high, math.sqrt(high * low))
+
+
+def _usual(axis: Axis) -> tuple[float, ...]:
+    one = axis.parameter
+    if is_share(one):
+        return (one.high, one.low)
+    if is_phase(one):
+        return (0.0,)
+    return (one.typical or 0.1 * axis.deviation,)
 
 
 def least_step(parts: Sequence[Candidate], axis: int) -> float:
@@ -197,16 +194,6 @@ def turned(candidate: Candidate) -> Iterator[FloatArray]:
                 start = candidate.start
                 start[at] = turn / _EVEN
                 yield start
-
-
-def _positive(one: Parameter, frequencies_hz: Sequence[float]) -> Iterator[Axis]:
-    deviation = _SPREAD * math.log(one.high / one.low)
-    starts = [_BEGINS.get(one.name, one.typical)]
-    if one.name == "slosh_hz":
-        starts += [1.15 * max(frequencies_hz), math.sqrt(max(frequencies_hz) * min(frequencies_hz))]
-    centre = math.log(one.typical)
-    for start in starts:
-        yield Axis(one, centre, deviation, True, (math.log(start) - centre) / deviation)
 
 
 def _size(one: Parameter, siblings: tuple[Parameter, ...]) -> float:

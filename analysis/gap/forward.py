@@ -31,9 +31,6 @@ _ORDERS: Final = 8
 _POINTS: Final = 64
 _SEED: Final = 20091
 _SETTLING: Final = 3
-# What these change of a harmonic is a matter of phase or luck, as likely of the one sign as of the
-# other: nobody can tell it beforehand.
-BY_CHANCE: Final = frozenset({"trigger-jitter", "hum", "carriage-fluctuation", "residual-waves"})
 DRAWS: Final = 4  # of the noise: one may be odd, and would be so in every campaign
 _APART: Final = 100  # seeds between two draws, more than a campaign has runs
 
@@ -95,7 +92,7 @@ class Simulator:
         """Return what repeats with the effects that do, and on it what the others change alone."""
         run = self.stack.runs[number]
         moving = tuple(one for one in effects if not one.repeats)
-        sure = tuple(one for one in moving if one.name not in BY_CHANCE)
+        sure = tuple(one for one in moving if not one.by_chance)
         steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
         if sure:
             steady = steady + self._record(number, sure) - self._record(number)

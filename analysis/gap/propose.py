@@ -9,7 +9,7 @@ however far it throws the rest.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
@@ -43,7 +43,7 @@ class Choices:
     Attributes
     ----------
     special
-        Of ``"rest"``, ``"check-weight"``, ``"injection"`` and ``"preload"``.
+        Of :class:`sim.effects.effect.Measurement`.
     """
 
     frequency_hz: Range
@@ -72,17 +72,6 @@ class Proposal:
     preload_n: float
     gain: float
     reason: str
-
-
-# What a special measurement shows by itself, whatever the effect's size.
-_SHOWN: Final[Mapping[str, frozenset[str]]] = {
-    "rest": frozenset({"zero-offset", "zero-drift", "hum", "residual-waves", "temperature"}),
-    "check-weight": frozenset(
-        {"gain-error", "cross-talk", "quadratic-gauge", "gauge-hysteresis", "saturation"}
-    ),
-    "injection": frozenset({"amplifier-lag", "channel-skew", "hum", "saturation"}),
-    "preload": frozenset({"joint-play", "gear-backlash", "inertia-play"}),
-}
 
 
 def proposals(
@@ -203,5 +192,5 @@ def _special(leading: Leading, choices: Choices) -> Iterator[Proposal]:
 
 
 def _tells(kind: str, fit: Fit | None) -> frozenset[str]:
-    names = frozenset(() if fit is None else fit.names)
-    return names & _SHOWN.get(kind, frozenset())
+    parts = () if fit is None else fit.candidates
+    return frozenset(one.name for one in parts if kind in one.kind.shown_by)

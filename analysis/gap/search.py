@@ -33,7 +33,6 @@ _TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred ti
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
 _STARTS: Final = 3  # effects to which partners are sought
 _STEPS_IN_TIME: Final = 3
-_DEAR: Final = frozenset({"gear-backlash"})  # repeats, but is run in time until it does
 
 
 def looked_at(
@@ -58,7 +57,7 @@ def fitted(
         one.fit
         for number, one in enumerate(ranked)
         if one.fit is not None
-        and (number < _LEAST or one.expected > none + _least(one, ranked[0].expected - none))
+        and (number < _LEAST or one.expected > none + _least(one.fit, ranked[0].expected - none))
     ]
     found = _each(executor, _refined, problem, leaders)
     return sorted(found, key=lambda one: -one.log_evidence)
@@ -94,14 +93,18 @@ def paired(
     return sorted(found, key=lambda one: -one.log_evidence)
 
 
-def _least(one: Looked, most: float) -> float:
+def _is_costly(fit: Fit) -> bool:
+    return any(one.kind.costly for one in fit.candidates)
+
+
+def _least(fit: Fit, most: float) -> float:
     """Return the log evidence above "no gap" from which an effect is fitted, for what it costs."""
-    return max(_PROMISING, 0.5 * most) if one.name in _DEAR else _PROMISING
+    return max(_PROMISING, 0.5 * most) if _is_costly(fit) else _PROMISING
 
 
 def _dearer(pair: Fit) -> float:
     """Return what a pair has to promise more than others, for what it costs to refine it."""
-    return _WORSE + _TWICE if _DEAR & set(pair.names) else 0.0
+    return _WORSE + _TWICE if _is_costly(pair) else 0.0
 
 
 def _each(
@@ -128,7 +131,7 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
 
 def _refined_pair(problem: Problem, fit: Fit) -> Fit:
     """Refine a pair; with what has to be simulated in time by few steps, its slopes kept."""
-    if _DEAR & set(fit.names) or not all(one.kind.repeats for one in fit.candidates):
+    if _is_costly(fit) or not all(one.kind.repeats for one in fit.candidates):
         return stepped(problem, fit, _STEPS_IN_TIME)
     for units in (most_probable(fit), fit.units):
         try:

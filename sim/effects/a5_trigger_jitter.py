@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -28,6 +28,8 @@ class TriggerJitter(Effect):
     title: ClassVar[str] = "Jitter of the photocell's pulses"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
     repeats: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = True
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.PERIODS, Trace.CYCLES)
 
     jitter_rad: float = parameter(5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft")
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -25,8 +25,17 @@ class MissedPulse(Effect):
     title: ClassVar[str] = "Missed pulses of the photocell"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
     repeats: ClassVar[bool] = False
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.PULSES,)
 
-    every: float = parameter(20.0, 3.0, 10000.0, "1", "N, rounded: one pulse in so many is missing")
+    every: float = parameter(
+        20.0,
+        3.0,
+        10000.0,
+        "1",
+        "N, rounded: one pulse in so many is missing",
+        starts=(5.0, 10.0, 20.0),
+        held=True,
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with such a photocell; the more frequent miss stands."""

@@ -31,7 +31,9 @@ class LateGate(Effect):
     repeats: ClassVar[bool] = False
 
     fraction: float = parameter(0.1, 0.001, 0.9, "1", "d: part of a cycle by which it is too long")
-    cycles: float = parameter(10.0, 1.0, 1000.0, "1", "m: cycles that are wanted, rounded")
+    cycles: float = parameter(
+        10.0, 1.0, 1000.0, "1", "m: cycles that are wanted, rounded", held=True
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with another pulse after each one that closes the gate.

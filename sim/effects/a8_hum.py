@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Digitiser
-from sim.effects.effect import Effect, Lines, Signature, StageName, parameter
+from sim.effects.effect import Effect, Lines, Measurement, Signature, StageName, Trace, parameter
 from sim.effects.measured import with_force_channels
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.rig import SimulatedRig
@@ -28,6 +28,9 @@ class Hum(Effect):
     title: ClassVar[str] = "Hum of the mains, and its alias"
     stage: ClassVar[StageName] = StageName.ACQUISITION
     repeats: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = True
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES)
+    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST, Measurement.INJECTION)
 
     amplitude_n: float = parameter(0.2, 0.0, 20.0, "N", "amplitude in both force channels")
     frequency_hz: float = parameter(50.0, 1.0, 2000.0, "Hz", "frequency of the mains, or of what")

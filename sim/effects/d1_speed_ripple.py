@@ -27,7 +27,9 @@ class SpeedRippleEffect(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
 
     relative: float = parameter(0.005, 0.0, 0.03, "1", "amplitude of the speed over its mean")
-    order: float = parameter(1.0, 0.1, 10.0, "1", "times a revolution")
+    order: float = parameter(
+        1.0, 0.1, 10.0, "1", "times a revolution", starts=(1.0, 2.0, 3.0), held=True
+    )
     phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -28,10 +28,12 @@ class TorqueCogging(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
 
     torque_n_m: float = parameter(0.5, 0.0, 20.0, "N m", "amplitude of the torque, at the crank")
-    order: float = parameter(1.0, 1.0, 10.0, "1", "times a revolution, a whole number")
+    order: float = parameter(
+        1.0, 1.0, 10.0, "1", "times a revolution, a whole number", starts=(1.0, 2.0, 3.0), held=True
+    )
     phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
     inertia_kg_m2: float = parameter(
-        5.0, 0.5, 500.0, "kg m2", "of the motor, at the crank, where the rig has none"
+        5.0, 0.5, 500.0, "kg m2", "of the motor, at the crank, where the rig has none", held=True
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

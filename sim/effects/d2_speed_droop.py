@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.motor import droop
@@ -24,6 +24,7 @@ class SpeedDroop(Effect):
     name: ClassVar[str] = "speed-droop"
     title: ClassVar[str] = "Mean speed that falls under load"
     stage: ClassVar[StageName] = StageName.DRIVE
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
 
     droop_rad_s_n_m: float = parameter(0.02, 1e-7, 0.5, "rad/(s N m)", "speed lost per mean torque")
     inertia_kg_m2: float = parameter(

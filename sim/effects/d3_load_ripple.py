@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.motor import droop
@@ -26,6 +26,7 @@ class LoadRipple(Effect):
     name: ClassVar[str] = "load-ripple"
     title: ClassVar[str] = "Speed that varies with the load over a revolution"
     stage: ClassVar[StageName] = StageName.DRIVE
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
 
     inertia_kg_m2: float = parameter(5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank")
     hold_hz: float = parameter(

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Measurement, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
@@ -31,11 +31,25 @@ class GearBacklash(Effect):
     name: ClassVar[str] = "gear-backlash"
     title: ClassVar[str] = "Backlash of the gear before the cranks"
     stage: ClassVar[StageName] = StageName.DRIVE
+    costly: ClassVar[bool] = True
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.SHAFT,)
+    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.PRELOAD,)
 
-    backlash_rad: float = parameter(0.003, 1e-7, 0.02, "rad", "whole clearance, at the crank, beta")
-    inertia_kg_m2: float = parameter(0.02, 0.005, 500.0, "kg m2", "of the cranks behind the gear")
-    stiffness_n_m_rad: float = parameter(1e4, 500.0, 1e9, "N m/rad", "of the teeth")
-    damping_n_m_s: float = parameter(20.0, 1.0, 1e6, "N m s", "of the teeth")
+    # The nominal gear does not give way at all. Beside it the clearance of a good gear shows, and
+    # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain
+    # their own give first, and across a worn one the cranks may strike too hard to be solved.
+    backlash_rad: float = parameter(
+        0.003, 1e-7, 0.02, "rad", "whole clearance, at the crank, beta", starts=(3e-4,)
+    )
+    inertia_kg_m2: float = parameter(
+        0.02, 0.005, 500.0, "kg m2", "of the cranks behind the gear", starts=(20.0,), held=True
+    )
+    stiffness_n_m_rad: float = parameter(
+        1e4, 500.0, 1e9, "N m/rad", "of the teeth", starts=(1e7,), held=True
+    )
+    damping_n_m_s: float = parameter(
+        20.0, 1.0, 1e6, "N m s", "of the teeth", starts=(2e3,), held=True
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the gear; the backlash of one that is there already is added to."""

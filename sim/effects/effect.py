@@ -38,6 +38,29 @@ class StageName(StrEnum):
     CARRIAGE = "carriage"
 
 
+class Trace(StrEnum):
+    """Where in recordings something deviates by more than noise."""
+
+    STEADY = "steady"  # means, harmonics and the frequency, whatever the channel
+    MEAN = "mean"
+    TREND = "trend"  # a mean that changes over a run
+    PULSES = "pulses"  # of the photocell, that are missing
+    PERIODS = "periods"  # their scatter
+    CYCLES = "cycles"  # their harmonics' scatter
+    BESIDE = "beside"  # lines and power between the harmonics
+    MOTION = "motion"  # of struts or shaft
+    SHAFT = "shaft"  # it turns unevenly, or at another frequency
+
+
+class Measurement(StrEnum):
+    """What can be measured besides oscillations."""
+
+    REST = "rest"
+    CHECK_WEIGHT = "check-weight"
+    INJECTION = "injection"  # of a signal in place of the bridges
+    PRELOAD = "preload"  # a dead weight that takes up play
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect.
@@ -48,6 +71,13 @@ class Parameter:
         A usual value, and the plausible range.
     unit
         SI; ``"1"`` for a ratio.
+    starts
+        Where a diagnosis begins, from each by itself; where the kind of number suggests if empty.
+    held
+        True for one that a diagnosis keeps where it begins, the typical value if ``starts`` is
+        empty: a whole number, or what hardly shows beside the other parameters.
+    resonance
+        True for a resonance's frequency: a diagnosis begins among those of the runs, too.
     """
 
     name: str
@@ -56,17 +86,42 @@ class Parameter:
     low: float
     high: float
     meaning: str
+    starts: tuple[float, ...] = ()
+    held: bool = False
+    resonance: bool = False
 
 
 def _unit(one: Parameter) -> str:
     return "" if one.unit == "1" else f" {one.unit}"
 
 
-def parameter(typical: float, low: float, high: float, unit: str, meaning: str) -> Any:
-    """Declare a field of an effect; its default is the typical value."""
-    return field(
-        default=typical, metadata={"unit": unit, "low": low, "high": high, "meaning": meaning}
-    )
+def parameter(
+    typical: float,
+    low: float,
+    high: float,
+    unit: str,
+    meaning: str,
+    *,
+    starts: tuple[float, ...] = (),
+    held: bool = False,
+    resonance: bool = False,
+) -> Any:
+    """Declare a field of an effect, a :class:`Parameter`; its default is the typical value.
+
+    Raises
+    ------
+    ConfigurationError
+        If a start lies outside the plausible range.
+    """
+    for one in starts:
+        if not low <= one <= high:
+            raise ConfigurationError(
+                f"parameter {meaning!r}: its start {one:g} is outside the plausible range "
+                f"{low:g} to {high:g}"
+            )
+    told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
+    sought = {"starts": starts, "held": held, "resonance": resonance}
+    return field(default=typical, metadata=told | sought)
 
 
 @dataclass(frozen=True)
@@ -89,6 +144,18 @@ class Effect(ABC):
         description says.
     changes_others
         True for one that changes what all others do, too: it is switched on after them.
+    by_chance
+        True for one that does not repeat, and changes a harmonic by its phase or by luck, as likely
+        to the one side as to the other: nobody can tell it beforehand.
+    costly
+        True for one that repeats, but is run in time until it does: it has to promise more than
+        others do before a diagnosis fits it.
+    shows_in
+        For one that takes long to simulate: at least one of these deviates where it is at work, or
+        a diagnosis does not look at it. If empty it is always looked at; what does not repeat,
+        where anything deviates.
+    shown_by
+        Measurements that show it by themselves, whatever its size.
 
     Raises
     ------
@@ -102,6 +169,10 @@ class Effect(ABC):
     stage: ClassVar[StageName]
     repeats: ClassVar[bool] = True
     changes_others: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = False
+    costly: ClassVar[bool] = False
+    shows_in: ClassVar[tuple[Trace, ...]] = ()
+    shown_by: ClassVar[tuple[Measurement, ...]] = ()
 
     def __post_init__(self) -> None:
         for one in self.parameters():
@@ -116,14 +187,7 @@ class Effect(ABC):
     def parameters(cls) -> tuple[Parameter, ...]:
         """Return the parameters, in order."""
         return tuple(
-            Parameter(
-                one.name,
-                one.metadata["unit"],
-                float(one.default),  # type: ignore[arg-type]
-                one.metadata["low"],
-                one.metadata["high"],
-                one.metadata["meaning"],
-            )
+            Parameter(name=one.name, typical=float(one.default), **one.metadata)  # type: ignore[arg-type]
             for one in fields(cls)
         )
 

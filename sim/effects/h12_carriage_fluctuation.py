@@ -10,7 +10,7 @@ from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.carriage import Fluctuation
-from sim.effects.effect import Effect, Lines, Signature, StageName, parameter
+from sim.effects.effect import Effect, Lines, Signature, StageName, Trace, parameter
 from sim.effects.hydrodynamic import per_speed
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.rig import SimulatedRig
@@ -28,6 +28,9 @@ class CarriageFluctuation(Effect):
     title: ClassVar[str] = "Fluctuation of the carriage's speed"
     stage: ClassVar[StageName] = StageName.CARRIAGE
     repeats: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = True
+    # A wave of few periods is a trend, too.
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
 
     relative: float = parameter(0.003, 0.0, 0.05, "1", "r, of the mean speed")
     frequency_hz: float = parameter(0.37, 0.005, 50.0, "Hz", "W/(2 pi)")

@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.acting import Point
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Lines, Signature, StageName, parameter
+from sim.effects.effect import Effect, Lines, Measurement, Signature, StageName, Trace, parameter
 from sim.effects.hydrodynamic import with_laws
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.laws import Tone
@@ -32,11 +32,17 @@ class ResidualWaves(Effect):
     title: ClassVar[str] = "Waves left by the run before"
     stage: ClassVar[StageName] = StageName.MODEL
     repeats: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = True
+    # A wave of few periods is a trend, too.
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
+    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
 
     force_n: float = parameter(3.0, 0.0, 100.0, "N", "amplitude when the run before has ended")
-    decay_s: float = parameter(200.0, 10.0, 3600.0, "s", "time in which it falls to 1/e")
-    waited_s: float = parameter(300.0, 0.0, LONGEST_WAIT_S, "s", "since the run before has ended")
-    frequency_hz: float = parameter(0.63, 0.01, 3.0, "Hz", "of the waves")
+    decay_s: float = parameter(200.0, 10.0, 3600.0, "s", "time in which it falls to 1/e", held=True)
+    waited_s: float = parameter(
+        300.0, 0.0, LONGEST_WAIT_S, "s", "since the run before has ended", held=True
+    )
+    frequency_hz: float = parameter(0.63, 0.01, 3.0, "Hz", "of the waves", held=True)
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 
     @property

@@ -41,12 +41,14 @@ class VortexShedding(Effect):
         0.5, 0.0, 50.0, "N s2/m2", "amplitude at each strut, root 2 of its r.m.s., over U^2"
     )
     diameter_m: float = parameter(0.04, 0.005, 0.5, "m", "d of a strut")
-    strouhal: float = parameter(0.2, 0.1, 0.35, "1", "St")
+    strouhal: float = parameter(0.2, 0.1, 0.35, "1", "St", held=True)
     step_n: float = parameter(0.0, -20.0, 20.0, "N", "mean at each strut when it ventilates")
     ventilation_m_s: float = parameter(1.5, 0.1, 20.0, "m/s", "speed at which that begins")
-    bandwidth: float = parameter(0.1, 0.0, 0.3, "1", "standard deviation of the band over St U/d")
+    bandwidth: float = parameter(
+        0.1, 0.0, 0.3, "1", "standard deviation of the band over St U/d", held=True
+    )
     run_index: float = parameter(
-        0.0, 0.0, _LAST_RUN, "1", "number of the run, which seeds the phases"
+        0.0, 0.0, _LAST_RUN, "1", "number of the run, which seeds the phases", held=True
     )
 
     def at_run(self, run: CampaignRun) -> Self:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Measurement, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
 from sim.linear import ComplexArray
@@ -31,11 +31,17 @@ class FreePlay(Effect):
     name: ClassVar[str] = "free-play"
     title: ClassVar[str] = "Play in the struts' last joints, crossed by inertia"
     stage: ClassVar[StageName] = StageName.MECHANISM
+    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.STEADY,)
+    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.PRELOAD,)
 
     half_play_m: float = parameter(5e-5, 1e-7, 1e-3, "m", "clearance to either side, h")
     preload_n: float = parameter(0.0, 0.0, 1000.0, "N", "force that presses the joint to one side")
-    stiffness_n_m: float = parameter(2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid")
-    damping_n_s_m: float = parameter(5000.0, 100.0, 5e4, "N s/m", "of a gauge, where it is rigid")
+    stiffness_n_m: float = parameter(
+        2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid", held=True
+    )
+    damping_n_s_m: float = parameter(
+        5000.0, 100.0, 5e4, "N s/m", "of a gauge, where it is rigid", held=True
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both joints; play that is there already is added to."""

@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.dynamometer import Gauge
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
 from sim.effects.hydrodynamic import radiation_of, scaled, through_water
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
@@ -35,9 +35,12 @@ class Temperature(Effect):
     title: ClassVar[str] = "Temperature: gain, zero, viscosity and density over the run order"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
     changes_others: ClassVar[bool] = True
+    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
 
-    rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature")
-    hours: float = parameter(4.0, 0.0, 240.0, "h", "time since it was as in the calibration")
+    rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature", held=True)
+    hours: float = parameter(
+        4.0, 0.0, 240.0, "h", "time since it was as in the calibration", held=True
+    )
     gain_1_k: float = parameter(2e-4, -2e-3, 2e-3, "1/K", "gain of the gauges")
     zero_n_k: float = parameter(0.05, -1.0, 1.0, "N/K", "zero of the gauges")
     damping_1_k: float = parameter(-3e-3, -0.02, 0.02, "1/K", "damping, by the viscosity")

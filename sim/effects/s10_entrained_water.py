@@ -25,7 +25,7 @@ class EntrainedWater(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     mass_kg: float = parameter(1.5, 0.0, 20.0, "kg", "mass of the water that sloshes")
-    slosh_hz: float = parameter(1.2, 0.1, 10.0, "Hz", "frequency of its sloshing")
+    slosh_hz: float = parameter(1.2, 0.1, 10.0, "Hz", "frequency of its sloshing", resonance=True)
     damping_ratio: float = parameter(0.03, 0.001, 0.5, "1", "of its sloshing, to critical")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
