@@ -4,8 +4,9 @@ The first look is linear. Only what could still win is fitted in full: it costs 
 much as a look, and a campaign without a gap has nothing that promises to beat "no gap".
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import Final, TypeVar
 
 from analysis.gap.candidate import turned
@@ -31,7 +32,9 @@ _LEAST: Final = 2  # effects that are fitted in any case: an answer and its riva
 _PROMISING: Final = 0.5  # log evidence above "no gap" from which an effect is fitted
 _TWICE: Final = 3.0  # and from which a pair is: its prior odds are a hundred times longer
 _WORSE: Final = 3.0  # log evidence under the best single effect down to which a pair is
-_STARTS: Final = 3  # effects to which partners are sought
+_STARTS: Final = 3  # effects to which partners are sought at first
+_LED: Final = 2  # pairs to whose members they are sought next,
+_EXCHANGES: Final = 4  # and how often, the first time counted
 _STEPS_IN_TIME: Final = 3
 
 
@@ -70,27 +73,56 @@ def paired(
     none: float,
     executor: Executor | None,
 ) -> list[Fit]:
-    """Add to the leading effects whatever promises most beside them; greedy, by linear steps.
+    """Put effects together in pairs by what they promise beside each other, by linear steps.
 
-    Fitted in full are those that promise to do better than one effect alone. An effect is tried
-    from where it was first seen and from where it was fitted: alone, it may have gone astray after
-    what its partner does.
+    The leading effects are given each partner; then each member of the pairs that promise most is,
+    and so on: of two large effects neither need lead alone. Fitted in full are pairs that promise
+    to do better than one effect. An effect is tried from where it was first seen and from where it
+    was fitted: alone, it may have gone astray after what its partner does.
     """
-    chances: dict[frozenset[str], tuple[float, Fit]] = {}
     partners = [*(one.fit for one in seen if one.fit is not None), *singles]
-    for first in singles[:_STARTS]:
+    least = max([none + _TWICE, *(one.log_evidence - _WORSE for one in singles)])
+    chances: dict[frozenset[str], _Chance] = {}
+    firsts, tried = list(singles[:_STARTS]), set[str]()
+    for _ in range(_EXCHANGES):
+        _join(problem, firsts, partners, chances)
+        tried |= {one.names[0] for one in firsts}
+        members = {name for one in _promising(chances, least)[:_LED] for name in one.fit.names}
+        firsts = [one for one in partners if one.names[0] in members - tried]
+    worth = _promising(chances, least)[:PARTNERS]
+    found = _each(executor, _refined_pair, problem, worth)
+    return sorted(found, key=lambda one: -one.log_evidence)
+
+
+@dataclass(frozen=True, eq=False)
+class _Chance:
+    """A pair as it is seen at first, and the log evidence that it promises."""
+
+    promise: float
+    fit: Fit
+
+
+def _join(
+    problem: Problem,
+    firsts: Sequence[Fit],
+    partners: Sequence[Fit],
+    chances: dict[frozenset[str], _Chance],
+) -> None:
+    """Give each effect each partner; of two ways to see the same pair the better one is kept."""
+    for first in firsts:
         for second in partners:
             if second.names != first.names:
                 key = frozenset((*first.names, *second.names))
                 both = joined(problem, first, second)
-                score = expected_evidence(problem, both)
-                if key not in chances or score > chances[key][0]:
-                    chances[key] = (score, both)
-    best = sorted(chances.values(), key=lambda one: -one[0])[:PARTNERS]
-    least = max([none + _TWICE, *(one.log_evidence - _WORSE for one in singles)])
-    worth = [both for score, both in best if score > least + _dearer(both)]
-    found = _each(executor, _refined_pair, problem, worth)
-    return sorted(found, key=lambda one: -one.log_evidence)
+                promise = expected_evidence(problem, both)
+                if key not in chances or promise > chances[key].promise:
+                    chances[key] = _Chance(promise, both)
+
+
+def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:
+    """Return the pairs that are worth their cost, most promising first."""
+    worth = [one for one in chances.values() if one.promise > least + _dearer(one.fit)]
+    return sorted(worth, key=lambda one: -one.promise)
 
 
 def _is_costly(fit: Fit) -> bool:
@@ -129,13 +161,22 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
     return max(found, key=lambda one: one.log_evidence)
 
 
-def _refined_pair(problem: Problem, fit: Fit) -> Fit:
-    """Refine a pair; with what has to be simulated in time by few steps, its slopes kept."""
+def _refined_pair(problem: Problem, chance: _Chance) -> Fit:
+    """Refine a pair; with what has to be simulated in time by few steps, its slopes kept.
+
+    From where a linear step leads and, if that does not keep what was promised, from where the
+    effects were seen.
+    """
+    fit = chance.fit
     if _is_costly(fit) or not all(one.kind.repeats for one in fit.candidates):
         return stepped(problem, fit, _STEPS_IN_TIME)
+    best = fit
     for units in (most_probable(fit), fit.units):
         try:
-            return refine(problem, at(problem, fit.candidates, units))
+            found = refine(problem, at(problem, fit.candidates, units))
         except PmmError:
             continue
-    return fit
+        best = found if best is fit else max(best, found, key=lambda one: one.log_evidence)
+        if best.log_evidence > chance.promise - _WORSE:
+            break
+    return best

@@ -20,7 +20,8 @@ class Hum(Effect):
     """A line at the mains' frequency, sampled as it is: it folds to ``|f - k f_s|``.
 
     It is no multiple of the shaft's frequency and has no harmonic of its own. Where it folds onto
-    one, a slightly other frequency of the shaft moves the harmonic and leaves the line.
+    one, a slightly other frequency of the shaft moves the harmonic and leaves the line. A diagnosis
+    looks for it at the frequencies that mains have: a line elsewhere is something else.
     """
 
     code: ClassVar[str] = "A8"
@@ -33,7 +34,15 @@ class Hum(Effect):
     shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST, Measurement.INJECTION)
 
     amplitude_n: float = parameter(0.2, 0.0, 20.0, "N", "amplitude in both force channels")
-    frequency_hz: float = parameter(50.0, 1.0, 2000.0, "Hz", "frequency of the mains, or of what")
+    frequency_hz: float = parameter(
+        50.0,
+        1.0,
+        2000.0,
+        "Hz",
+        "frequency of the mains, or of what",
+        held=True,
+        starts=(50.0, 60.0),
+    )
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
