@@ -78,7 +78,8 @@ class Diagnosis:
     rival
         The next best one of another class: the control of the withheld runs.
     classes
-        What these runs cannot tell from each effect of ``best``, with sigma left.
+        What these runs cannot tell from each effect of ``best``, beside the other if there are two,
+        with sigma left.
     shift
         Prior deviations by which each coefficient and setting moves.
     before, after
@@ -99,6 +100,19 @@ class Diagnosis:
     shrinkage: Shrinkage | None
     rival_shrinkage: Shrinkage | None
     proposals: tuple[Proposal, ...]
+
+    @property
+    def cause(self) -> Fit | None:
+        """What the answer names as the cause; ``None`` where it names none, or says "unknown"."""
+        if self.best is None or self.probabilities.best == UNKNOWN:
+            return None
+        return self.best.fit
+
+    @property
+    def left(self) -> FloatArray:
+        """What the cause leaves of the difference, in sigma, shape ``(observations,)``."""
+        whole = self.problem.residual
+        return whole if self.cause is None else whole - self.cause.signature
 
 
 def diagnose(
@@ -175,7 +189,7 @@ def _concluded(
 ) -> Diagnosis:
     fits = [one.fit for one in weighed.looked if one.fit is not None]
     best, ranked = _best(weighed, found)
-    classes = {} if best is None else _classes(problem, best.fit, fits)
+    classes = {} if best is None else equivalents(problem, best.fit, fits)
     rival = _rival(best, ranked, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
@@ -227,14 +241,6 @@ def _rival(
         return ranked[0] if ranked else None
     alike = {*best.fit.names, *(name for own in classes.values() for name, _ in own)}
     return next((one for one in ranked if not set(one.fit.names) & alike), None)
-
-
-def _classes(
-    problem: Problem, fit: Fit, others: Sequence[Fit]
-) -> dict[str, tuple[tuple[str, float], ...]]:
-    if len(fit.candidates) > 1:
-        return dict.fromkeys(fit.names, ())
-    return {fit.names[0]: equivalents(problem, fit, others)}
 
 
 def _unknown_stage(problem: Problem, weighed: Weighed) -> str:

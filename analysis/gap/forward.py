@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
-from analysis.gap.components import Component, GapRun, Layout, Observation, Part, Stack
-from analysis.gap.observe import FORCES, observe
+from analysis.gap.components import FORCES, Component, GapRun, Layout, Observation, Part, Stack
+from analysis.gap.observe import observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on
@@ -156,9 +156,9 @@ class Simulator:
             name=run.name,
         )
         record = replace(from_dataset(dataset), set_point=run.set_point)
-        seen = observe(record, quiet=False)
-        later_s = run.lead_s - seen.lead_s
-        return align(seen.observation, run.observed) + _drifted(rig, run.observed, later_s)
+        found = observe(record, quiet=False)
+        later_s = run.lead_s - found.lead_s
+        return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
 
 
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:

@@ -11,6 +11,7 @@ import numpy as np
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import misfit, posterior
 from analysis.gap.hypotheses import Named, Weighed
+from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
 NONE: Final = "none"
@@ -92,28 +93,52 @@ def answer_of(fit: Fit) -> str:
     return "+".join(sorted(fit.names))
 
 
-def equivalents(problem: Problem, fit: Fit, others: Sequence[Fit]) -> tuple[tuple[str, float], ...]:
-    """Return which effects pass for a fitted one in these runs, with what they leave of it.
+def equivalents(
+    problem: Problem, fit: Fit, others: Sequence[Fit]
+) -> dict[str, tuple[tuple[str, float], ...]]:
+    """Return which effects pass in these runs for a fitted one, or for each effect of a pair.
+
+    Beside the other effect of a pair, which may change with it.
 
     Returns
     -------
-    tuple
-        Names and sigma left of the fitted signature when the other takes what it can; those below
-        ``ALIKE``, best first.
+    dict
+        For each effect, names and sigma left of its fitted signature when the other takes what it
+        can; those below ``ALIKE``, best first. Empty for what cannot be simulated by itself.
     """
-    found = []
-    for other in others:
-        if other.names != fit.names:
-            left = _left(problem, fit, other)
-            if left < ALIKE:
-                found.append((other.names[0], left))
-    return tuple(sorted(found, key=lambda one: one[1]))
+    found: dict[str, tuple[tuple[str, float], ...]] = {}
+    for number, name in enumerate(fit.names):
+        try:
+            own, beside = _alone(problem, fit, number)
+        except PmmError:
+            found[name] = ()
+            continue
+        left = [
+            (other.names[0], _left(problem, own, beside, other))
+            for other in others
+            if other.names[0] not in fit.names
+        ]
+        alike = [pair for pair in left if pair[1] < ALIKE]
+        found[name] = tuple(sorted(alike, key=lambda pair: pair[1]))
+    return found
 
 
-def _left(problem: Problem, fit: Fit, other: Fit) -> float:
-    target = fit.signature - other.signature + other.columns @ other.units
-    best = posterior(target, other.columns, problem.nuisances).mean
-    return math.sqrt(max(misfit(target - other.columns @ best, problem.nuisances), 0.0))
+def _alone(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return what one effect of a fit adds to the rest of it, and the columns of the rest."""
+    rest = tuple(one for at, one in enumerate(fit.effects) if at != number)
+    whose = np.repeat(range(len(fit.candidates)), [len(one.axes) for one in fit.candidates])
+    if not rest:
+        return fit.signature, fit.columns[:, whose != number]
+    change = problem.simulator.predict(rest) - problem.simulator.nominal
+    return fit.signature - problem.whitened(change), fit.columns[:, whose != number]
+
+
+def _left(problem: Problem, own: np.ndarray, beside: np.ndarray, other: Fit) -> float:
+    """Return what is left of a signature, in sigma, when another effect takes what it can."""
+    target = own - other.signature + other.columns @ other.units
+    columns = np.hstack((other.columns, beside))
+    best = posterior(target, columns, problem.nuisances).mean
+    return math.sqrt(max(misfit(target - columns @ best, problem.nuisances), 0.0))
 
 
 def stage_probabilities(

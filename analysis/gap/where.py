@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
-from analysis.gap.components import Component, GapRun, Part
+from analysis.gap.components import FORCES, Component, GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.observe import FORCES, SPEED, STRUTS
+from analysis.gap.observe import SPEED, STRUTS
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import Medium
 from sim import signals

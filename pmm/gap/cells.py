@@ -40,10 +40,10 @@ def step_row(one: Gap) -> StepRow:
     return StepRow(one.what, one.rms, one.count, one.beyond, one.worst)
 
 
-def remains(examined: Examined, after: FloatArray) -> Iterator[StepRow]:
-    """Yield what is left after the best answer, step by step along the chain."""
+def remains(examined: Examined) -> Iterator[StepRow]:
+    """Yield what the cause that is named leaves, step by step along the chain."""
     problem = examined.diagnosis.problem
-    left = left_by_step(problem, after)
+    left = left_by_step(problem, examined.diagnosis.left)
     parts = problem.simulator.stack.components
     for what in CHAIN:
         rows = np.array([step_of(one) == what for one in parts])
@@ -51,7 +51,7 @@ def remains(examined: Examined, after: FloatArray) -> Iterator[StepRow]:
             yield step_row(gap_of(parts, left, what, rows))
 
 
-def heat_cells(examined: Examined, after: FloatArray) -> Iterator[Cell]:
+def heat_cells(examined: Examined) -> Iterator[Cell]:
     """Yield both parts of a harmonic as one number, and what has no parts by itself."""
     problem = examined.diagnosis.problem
     stack = problem.simulator.stack
@@ -60,7 +60,10 @@ def heat_cells(examined: Examined, after: FloatArray) -> Iterator[Cell]:
         if step_of(one) != BESIDE:
             key = (step_of(one), one.channel, one.order, stack.runs[run].name)
             sizes.setdefault(key, []).append(at)
-    first, second = left_by_step(problem, problem.residual), left_by_step(problem, after)
+    first, second = (
+        left_by_step(problem, problem.residual),
+        left_by_step(problem, examined.diagnosis.left),
+    )
     for (stage, channel, order, run), rows in sizes.items():
         old, new = (float(np.sqrt(np.mean(left[rows] ** 2))) for left in (first, second))
         yield Cell(stage, channel, order, run, old, new)

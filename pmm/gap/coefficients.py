@@ -31,7 +31,7 @@ class CoefficientRow:
     stated
         What the campaign says.
     without, with_effect
-        Fitted to the campaign without and with the best answer; the same where it names no effect.
+        Fitted to the campaign without and with the cause; the same where the answer names none.
     u_without, u_with
         Their standard uncertainties.
     """
@@ -48,12 +48,12 @@ class CoefficientRow:
 def coefficient_rows(examined: Examined) -> Iterator[CoefficientRow]:
     """Yield every free coefficient of model and water."""
     found = examined.diagnosis
-    problem, best = found.problem, found.best
+    problem, cause = found.problem, found.cause
     plain = _fitted(problem.residual, problem.nuisances.columns)
     cured = plain
-    if best is not None:
-        both = np.hstack((problem.nuisances.columns, best.fit.columns))
-        cured = _fitted(best.fit.linearised(problem.residual), both)
+    if cause is not None:
+        both = np.hstack((problem.nuisances.columns, cause.columns))
+        cured = _fitted(cause.linearised(problem.residual), both)
     for at, one in enumerate(examined.free):
         if not one.is_coefficient:
             continue

@@ -129,10 +129,7 @@ def examine(
     progress("predicting withheld runs")
     free = free_numbers(there.rig, priors)
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
-    residual = found.problem.residual
-    if found.best is not None:
-        residual = residual - found.best.fit.signature
-    described = describe(found.problem, residual)
+    described = describe(found.problem, found.left)
     return Examined(ready, free, found, judgement, described, known)
 
 

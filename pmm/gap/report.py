@@ -1,8 +1,9 @@
 """An examined campaign as plain rows: the same numbers for the table, the JSON and the page."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -124,7 +125,6 @@ def gap_report(examined: Examined) -> GapReport:
     """Put an examined campaign in rows."""
     found = examined.diagnosis
     problem = found.problem
-    after = problem.residual if found.best is None else problem.residual - found.best.fit.signature
     verdict = _verdict(examined)
     return GapReport(
         examined.campaign.name,
@@ -142,8 +142,8 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(_controls(examined)),
         tuple(_regimes(examined)),
         tuple(coefficient_rows(examined)),
-        tuple(remains(examined, after)),
-        tuple(heat_cells(examined, after)),
+        tuple(remains(examined)),
+        tuple(heat_cells(examined)),
         examined.description,
         tuple(_next(one) for one in found.proposals[:5]),
     )
@@ -166,11 +166,27 @@ def _sentence(examined: Examined, verdict: str) -> str:
         near = found.best
         like = "" if near is None else f"; nearest, but not it: {joined(answer_of(near.fit))}"
         return f"{said}; most likely in {stage}{like}"
-    best = next(iter(shares))
-    alike = sorted({name for members in found.classes.values() for name, _ in members})
-    others = f" or {', '.join(alike)}, which these runs cannot tell from it;" if alike else ";"
-    share = shares[best] + sum(shares.get(name, 0.0) for name in alike)
-    return f"{joined(best)}{others} probability {share:.2f}; or whatever has its signature"
+    alike = {
+        name: sorted(other for other, _ in found.classes.get(name, ()))
+        for name in next(iter(shares)).split("+")
+    }
+    groups = [[name, *others] for name, others in alike.items()]
+    answers = {"+".join(sorted(one)) for one in product(*groups)}
+    share = sum(shares.get(name, 0.0) for name in answers)
+    return f"{_in_classes(alike)} probability {share:.2f}; or whatever has its signature"
+
+
+def _in_classes(alike: Mapping[str, Sequence[str]]) -> str:
+    """Return an answer as people read it, with what its runs cannot tell from each effect."""
+    if not any(alike.values()):
+        return f"{' and '.join(alike)};"
+    if len(alike) == 1:
+        ((name, others),) = alike.items()
+        return f"{name} or {', '.join(others)}, which these runs cannot tell from it;"
+    said = " and ".join(
+        f"{name} (or {', '.join(others)})" if others else name for name, others in alike.items()
+    )
+    return f"{said}, which these runs cannot tell from what is in brackets;"
 
 
 def joined(answer: str) -> str:
@@ -184,8 +200,9 @@ def _notes(examined: Examined) -> Iterator[str]:
     if far:
         said = ", ".join(f"{name} {moved.moved[name]:+.4g}" for name in far)
         yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
-    best = examined.diagnosis.best
-    if best is not None and best.remainder > 0.2:
+    found = examined.diagnosis
+    best = found.best
+    if best is not None and found.cause is not None and best.remainder > 0.2:
         yield (
             f"{joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
             "unexplained: its form is not quite that of the catalogue"
@@ -204,12 +221,17 @@ def _ranking(examined: Examined) -> Iterator[Ranked]:
     ]
     for name in kept:
         fit = fits.get(name)
-        alike = dict(found.classes.get(name, ())) if name == ranked[0] else {}
+        members = found.classes if name == ranked[0] else {}
+        alike = {other: left for group in members.values() for other, left in group}
         stage = "" if fit is None else " and ".join(
             dict.fromkeys(one.kind.stage.value for one in fit.candidates)
         )  # fmt: skip
         effects = [] if fit is None else list(effect_rows(fit))
-        measure = list(separating_measurements([name, *alike]))
+        measure = [
+            how
+            for own, group in members.items()
+            for how in separating_measurements([own, *(other for other, _ in group)])
+        ]
         yield Ranked(name, float(shares[name]), stage, effects, alike, measure)
 
 
@@ -217,7 +239,8 @@ def _controls(examined: Examined) -> Iterator[ControlRow]:
     found, judged = examined.diagnosis, examined.judged
     rows: list[tuple[str, Sequence[Predicted]]] = []
     if found.best is not None:
-        rows.append((joined(answer_of(found.best.fit)), judged.cured))
+        near = "nearest, but not it: " if found.cause is None else ""
+        rows.append((near + joined(answer_of(found.best.fit)), judged.cured))
     if found.rival is not None:
         rows.append((f"second best: {joined(answer_of(found.rival.fit))}", judged.rival))
     rows.append(("free polynomial", judged.free_form))
