@@ -232,7 +232,7 @@ def _free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) ->
 
 
 def _band(name: str, number: int, power: FloatArray) -> Found:
-    if power.size < _FEW_LINES:
+    if power.size < _FEW_LINES or not power.any():
         return
     # Noise makes exponentially distributed powers; under a Hann taper two lines in three count.
     count = 0.66 * power.size

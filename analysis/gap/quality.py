@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import FORCES, GapRun, Part, Stack
 from analysis.gap.forward import Simulator
-from analysis.gap.observe import STRUTS
+from analysis.gap.observe import SPEED, STRUTS
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, recentred
 from hardware.description.setpoint import Medium
@@ -37,6 +37,13 @@ UNITS: Final[Mapping[float, str]] = {
     0.01: "m in place of cm",
     0.001: "kN in place of N, or m in place of mm",
 }
+SPEED_UNITS: Final[Mapping[float, str]] = {
+    1000.0: "mm/s in place of m/s",
+    100.0: "cm/s in place of m/s",
+    3.6: "km/h in place of m/s",
+    1.94384: "knots in place of m/s",
+    1.0 / 3.6: "m/s where km/h was meant",
+}
 _NEAR: Final = 0.2  # of a unit's factor, in the logarithm
 _ODD: Final = math.log(1.8)  # a ratio that no gap of a working rig reaches in one run alone
 _ALIKE: Final = 0.15  # spread of the other runs' ratios up to which one that is odd stands out
@@ -44,6 +51,7 @@ _TURNED_RAD: Final = 1.0
 _SIGN_RAD: Final = 2.6
 _LOUD: Final = 20.0  # times the usual scatter
 _OFF_FREQUENCY: Final = 0.02
+_NOTHING: Final = math.log(1e-6)  # of what is simulated: rounding
 _FEW: Final = 3
 _HARMONIC: Final = (Part.IN_PHASE, Part.QUADRATURE)
 _SMALL: Final = 0.1  # of those terms: a prediction below it is a difference of large ones
@@ -84,7 +92,7 @@ def doubts(
         return ()
     stack = Stack.of(runs)
     nominal = Simulator(rig, stack, tuple(on), reference_channel).steady(())
-    found = list(_of_frequency(runs))
+    found = [*_of_frequency(runs), *_of_speed(runs)]
     for channel in (*STRUTS, *FORCES):
         found += _of_channel(rig, stack, nominal, channel)
     found += _of_scatter(runs)
@@ -136,6 +144,9 @@ def _of_channel(
         said = f"{math.exp(usual):.3g} times what is simulated, in all runs: {UNITS[factor]}?"
         yield Doubt("", channel, f"{said} Say the column's unit in the campaign")
     turns = _middle_turn(list(ratios.values()))
+    if abs(cmath.phase(turns)) > _SIGN_RAD and abs(usual) < _ODD:
+        said = "its sign is the opposite of what is simulated, in all runs"
+        yield Doubt("", channel, f"{said}: the column's, or a photocell half a turn off?")
     for name, ratio in ratios.items():
         others = [size for other, size in sizes.items() if other != name]
         own = ratio / turns / math.exp(usual)
@@ -147,6 +158,8 @@ def _of_channel(
 def _reason(size: float, turn_rad: float, spread: float) -> str:
     """Return what is wrong with a ratio, against that of the other runs; empty if nothing is."""
     factor = _unit(size)
+    if size < _NOTHING:
+        return "it does not move"
     said = f"{math.exp(size):.3g} times as large as the other runs let expect"
     if factor is not None and spread < 2.0 * _ALIKE:
         return f"{said}: {UNITS[factor]}?"
@@ -159,8 +172,8 @@ def _reason(size: float, turn_rad: float, spread: float) -> str:
     return ""
 
 
-def _unit(size: float) -> float | None:
-    near = min(UNITS, key=lambda one: abs(math.log(one) - size))
+def _unit(size: float, units: Mapping[float, str] = UNITS) -> float | None:
+    near = min(units, key=lambda one: abs(math.log(one) - size))
     return near if abs(math.log(near) - size) < _NEAR else None
 
 
@@ -227,6 +240,24 @@ def _of_frequency(runs: Sequence[GapRun]) -> Iterator[Doubt]:
             yield Doubt(
                 run.name, "", f"made at {made:.4g} Hz, not at the {told:g} Hz that are told"
             )
+
+
+def _of_speed(runs: Sequence[GapRun]) -> Iterator[Doubt]:
+    """Yield doubts of the carriage's speed, which was told and is recorded."""
+    told = {run.name: run.set_point.carriage_speed_m_s for run in runs}
+    seen = {run.name: run.observed.value(SPEED, Part.MEAN) for run in runs}
+    ratios = {name: seen[name] / told[name] for name in seen if told[name] and seen[name]}
+    ratios = {name: one for name, one in ratios.items() if math.isfinite(one)}
+    if not ratios:
+        return
+    usual = float(np.median(list(ratios.values())))
+    for name, ratio in {"": usual, **ratios}.items():
+        factor = _unit(math.log(abs(ratio)), SPEED_UNITS)
+        other = "" if factor is None else f": {SPEED_UNITS[factor]}?"
+        if other or ratio < 0.0:
+            yield Doubt(name, SPEED, f"{ratio:.3g} times what was told{other or ': its sign?'}")
+            if not name:
+                return
 
 
 def _of_scatter(runs: Sequence[GapRun]) -> Iterator[Doubt]:

@@ -70,6 +70,46 @@ def test_all_files_in_other_units(rig: SimulatedRig, clean: tuple[GapRun, ...]) 
     assert "in all runs" in found.reason
 
 
+@pytest.mark.parametrize("channel", ["force_aft", "displacement_fore"])
+def test_all_files_with_the_wrong_sign(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], channel: str
+) -> None:
+    (found,) = doubts(rig, [scaled(run, channel, -1.0) for run in clean])
+    assert (found.run, found.channel) == ("", channel)
+    assert "sign is the opposite of what is simulated, in all runs" in found.reason
+
+
+def test_a_channel_that_stands_still(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    found = doubts(rig, changed(clean, 0, lambda run: scaled(run, "force_aft", 1e-13)))
+    assert [(one.run, one.reason) for one in found] == [("r0", "it does not move")]
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1000.0, "mm/s in place of m/s"),
+        (3.6, "km/h in place of m/s"),
+        (1.94, "knots in place of m/s"),
+        (-1.0, "its sign"),
+    ],
+)
+def test_carriage_speed_in_other_units(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], factor: float, said: str
+) -> None:
+    one = doubts(rig, changed(clean, 2, lambda run: scaled(run, "carriage_speed", factor)))
+    every = doubts(rig, [scaled(run, "carriage_speed", factor) for run in clean])
+    assert [(found.run, found.channel) for found in one] == [("r2", "carriage_speed")]
+    assert [(found.run, found.channel) for found in every] == [("", "carriage_speed")]
+    assert said in one[0].reason
+    assert said in every[0].reason
+
+
+def test_a_carriage_that_is_five_per_cent_off_is_no_fault_of_a_file(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    assert doubts(rig, [scaled(run, "carriage_speed", 1.05) for run in clean]) == ()
+
+
 def test_a_run_at_another_frequency(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     told = replace(clean[1].set_point, frequency_hz=1.1)
     run = record(rig, (), 3, [clean[1].set_point])[0]
