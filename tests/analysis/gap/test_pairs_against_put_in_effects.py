@@ -34,6 +34,19 @@ def test_both_are_named(rig: SimulatedRig, said: tuple[str, str], seed: int) -> 
     assert found.probabilities.best == "+".join(sorted(one.split(":")[0] for one in said))
 
 
+def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
+    """Friction and quadratic damping make a cubic one, a lag and a skew the best single answers."""
+    said = ("coulomb-friction:friction_n=0.5", "quadratic-damping:translation_n_s2_m2=300")
+    runs = record(rig, [build(one) for one in said], 84)
+    names = ("coulomb-friction", "quadratic-damping", "cubic-damping", "amplifier-lag",
+             "channel-skew", "viscous-guides", "strut-tare", "memory", "cable")  # fmt: skip
+    found = diagnose(rig, runs, Settings({name: find(name) for name in names}))
+    assert found.probabilities.best == "coulomb-friction+quadratic-damping"
+    assert "cable" in dict(found.classes["coulomb-friction"])
+    assert found.rival is not None
+    assert not {"cable", *found.best.fit.names} & set(found.rival.fit.names)
+
+
 def test_every_start_is_within_its_range() -> None:
     for kind in catalogue().values():
         for one in candidates(kind, [0.5, 1.0]):
