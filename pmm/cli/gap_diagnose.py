@@ -32,6 +32,7 @@ import click
     "(m/s) or medium, and predict them; repeatable.  [default: each regime in its turn]",
 )
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
+@click.option("--plan", metavar="FILE.toml", help="Write the proposed runs as a plan for pmm run.")
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")
 @click.option("--scheduler", metavar="ADDRESS", help="A Dask scheduler in place of processes.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
@@ -43,6 +44,7 @@ def diagnose(**options: Any) -> None:
 
     \b
     pmm gap my-campaign --hold-out frequency=1.1 --page gap.html
+    pmm gap my-campaign --plan next/plan.toml
     pmm gap add my-campaign
 
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.

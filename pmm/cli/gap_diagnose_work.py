@@ -13,7 +13,7 @@ from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
 from pmm.gap.examine import Examined, Options, examine
-from pmm.gap.report import gap_report
+from pmm.gap.report import PROPOSED, gap_report
 from pmm.parallel import open_executor
 
 
@@ -27,6 +27,7 @@ class Request:
     sensors: str | None
     hold_out: tuple[str, ...]
     page: str | None
+    plan: str | None
     jobs: int | None
     scheduler: str | None
     as_json: bool
@@ -44,7 +45,10 @@ def run(request: Request) -> None:
     """
     if request.page is not None:
         check_folder(Path(request.page).parent, "--page")
-    report = gap_report(examined(request))
+    if request.plan is not None:
+        check_folder(Path(request.plan).parent, "--plan")
+    found = examined(request)
+    report = gap_report(found)
     if request.as_json:
         click.echo(json.dumps(report.as_dict(), indent=1, allow_nan=False))
     else:
@@ -59,6 +63,17 @@ def run(request: Request) -> None:
         command = pasted("gap", request.campaign, "--page", request.page)
         write_gap_page(report, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
+    if request.plan is not None:
+        _write_plan(found, Path(request.plan))
+
+
+def _write_plan(found: Examined, path: Path) -> None:
+    from pmm.gap.next_plan import RIG_FILE, plan_text
+
+    proposed = found.diagnosis.proposals[:PROPOSED]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(plan_text(f"{found.campaign.name}-next", proposed), encoding="utf-8")
+    messages().print(f"plan: {path}; put the rig's {RIG_FILE} beside it, then: pmm plan check")
 
 
 def examined(request: Request) -> Examined:

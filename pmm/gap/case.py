@@ -73,14 +73,22 @@ class Case:
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
     def choices(self, campaign: Campaign) -> Choices | None:
-        """Return what the rig can do next; from the oscillator's limits where nothing is said."""
+        """Return what the rig can do next.
+
+        Where nothing is said, what the oscillator can, without the carriage and at the highest
+        speed of the campaign.
+        """
         oscillator = campaign.oscillator
         if oscillator is None:
             return None
         limit_n = oscillator.force_per_strut_n
         if self.rig is None:
+            fastest_m_s = max((run.carriage_speed_m_s for run in campaign.runs), default=0.0)
             return Choices(
-                oscillator.frequency_hz, oscillator.eccentricity_m, force_limit_n=limit_n
+                oscillator.frequency_hz,
+                oscillator.eccentricity_m,
+                carriage_speed_m_s=tuple(sorted({0.0, fastest_m_s})),
+                force_limit_n=limit_n,
             )
         speeds = self.rig.carriage_speed_m_s
         return Choices(

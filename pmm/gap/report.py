@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 JSON_SCHEMA: Final = "pmm-gap-1"
 _SHOWN: Final = 8  # hypotheses of the ranking
 _LEAST: Final = 1e-4
+PROPOSED: Final = 5  # runs
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(remains(examined)),
         tuple(heat_cells(examined)),
         examined.description,
-        tuple(_next(one) for one in found.proposals[:5]),
+        tuple(_next(one) for one in found.proposals[:PROPOSED]),
     )
 
 

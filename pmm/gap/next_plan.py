@@ -1,0 +1,65 @@
+"""Proposed runs as a plan that ``pmm plan check`` and ``pmm run`` take (docs/plans.md)."""
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from analysis.gap.propose import Proposal
+from hardware.description.setpoint import Medium
+from pmm.gap.answer import next_run
+from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.toml_text import toml_table
+from sim.effects.effect import Measurement
+
+RIG_FILE: Final = "rig.toml"
+_REST_S: Final = 60.0
+
+
+def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
+    """Return a plan of the proposed runs, most telling first.
+
+    Each is an entry of its own under a comment with what it is expected to be worth. What no plan
+    can do, a signal in place of the bridges, is a comment alone.
+
+    Parameters
+    ----------
+    name
+        Of the campaign that is to be made.
+    """
+    head = toml_table("", {"name": name, "rig": RIG_FILE}).split("\n", 1)[1]
+    parts = [
+        "# What pmm gap proposes next. The rig's file is named here; docs/plans.md has every key.\n"
+        + head
+    ]
+    for number, one in enumerate(proposals, 1):
+        table = _entry(one, f"next-{number}")
+        worth = f"# {one.gain:.1f} expected log odds between the leading answers\n"
+        done = "# by hand: a sine into all force amplifiers in place of the bridges\n"
+        parts.append(worth + (toml_table("runs", table, array=True) if table else done))
+    return "\n".join(parts)
+
+
+def _entry(one: Proposal, name: str) -> dict[str, Any]:
+    """Return a proposal as an entry of a plan; empty where a plan has no such run."""
+    if one.set_point is None:
+        return _special(one, name)
+    point = one.set_point
+    dry = point.medium is Medium.AIR
+    return {
+        "kind": str(RunKind.DRY if dry else RunKind.OSCILLATION),
+        "motion": str(Motion.PHASE),
+        "name": name,
+        "frequencies_hz": point.frequency_hz,
+        "amplitudes_m": point.eccentricity_m,
+        "strut_phases_rad": point.strut_phase_rad,
+        "speeds_m_s": point.carriage_speed_m_s or None,
+        "prompt": f"Hang {one.preload_n:g} N on the model" if one.preload_n else None,
+    }
+
+
+def _special(one: Proposal, name: str) -> dict[str, Any]:
+    if one.kind == Measurement.REST:
+        return {"kind": str(RunKind.ZERO), "name": name, "duration_s": _REST_S}
+    if one.kind == Measurement.CHECK_WEIGHT:
+        loads_n = [0.0, next_run(one)["weight_n"]]
+        return {"kind": str(RunKind.CHECK_WEIGHT), "name": name, "loads_n": loads_n}
+    return {}

@@ -1,0 +1,61 @@
+"""Proposed runs as a plan: what ``pmm plan`` reads from it is what was proposed."""
+
+import math
+from pathlib import Path
+from shutil import copy
+
+import pytest
+from click.testing import CliRunner
+
+from analysis.gap.propose import Proposal
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.cli import cli
+from pmm.gap.next_plan import plan_text
+from pmm.plan.kinds import RunKind
+from pmm.plan.plan import read_plan
+from tests.pmm.plan.plans import EXAMPLES
+
+POINTS = (
+    SetPoint(0.5, 0.02, 0.0, 1.2),
+    SetPoint(0.5, 0.02, math.pi / 2.0, 0.0),
+    SetPoint(0.8, 0.012, math.pi, 0.0, Medium.AIR),
+)
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    ran = [Proposal("oscillation", one, 0.0, 5.0, "") for one in POINTS]
+    special = [Proposal(kind, None, 0.0, 3.0, "") for kind in ("rest", "check-weight", "injection")]
+    copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
+    copy(EXAMPLES / "vertical" / "simulated.toml", tmp_path)
+    path = tmp_path / "plan.toml"
+    path.write_text(plan_text("next", [*ran, *special]), encoding="utf-8")
+    return path
+
+
+def test_every_run_is_as_it_was_proposed(plan: Path) -> None:
+    runs = [one for one in read_plan(plan).runs if one.name.startswith("next-")]
+    turning = [one for one in runs if one.kind.oscillates]
+    assert [one.set_point for one in turning] == [*POINTS]
+    assert [one.kind for one in turning] == [RunKind.OSCILLATION] * 2 + [RunKind.DRY]
+    assert {one.kind for one in runs} >= {RunKind.ZERO, RunKind.CHECK_WEIGHT}
+    loads_n = {one.load.force_n for one in runs if one.load is not None}
+    assert loads_n == {0.0, 50.0}
+
+
+def test_what_no_plan_can_do_is_said(plan: Path) -> None:
+    assert "# by hand: a sine into all force amplifiers" in plan.read_text(encoding="utf-8")
+
+
+def test_a_dead_weight_is_asked_for(tmp_path: Path) -> None:
+    copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
+    path = tmp_path / "plan.toml"
+    proposed = [Proposal("oscillation", POINTS[1], 50.0, 5.0, "")]
+    path.write_text(plan_text("next", proposed), encoding="utf-8")
+    assert "Hang 50 N on the model" in {said for one in read_plan(path).runs for said in one.prompts}
+
+
+def test_the_rig_can_run_it(plan: Path) -> None:
+    found = CliRunner().invoke(cli, ["plan", "check", str(plan)], catch_exceptions=False)
+    assert found.exit_code == 0, found.output
+    assert "the rig can run it" in found.output
