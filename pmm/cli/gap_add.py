@@ -4,6 +4,8 @@ from typing import Any
 
 import click
 
+from pmm.cli.gap_options import looks
+
 
 @click.command()
 @click.argument("campaign", metavar="CAMPAIGN")
@@ -12,14 +14,15 @@ import click
     metavar="NAME",
     help="Fit and add this effect.  [default: the one that is found]",
 )
-@click.option("--effects-file", metavar="FILE.py", help="A Python file with effects of your own.")
+@looks
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
 def add(**options: Any) -> None:
     """Write an effect with its fitted parameters into the campaign file.
 
     The next "pmm gap CAMPAIGN" and "pmm simulate" start from it. The file as it was is kept beside
-    it as campaign.toml.1 (.2, ...). Where no effect is found nothing is written.
+    it as campaign.toml.1 (.2, ...). Where no effect is found nothing is written. The options that
+    "pmm gap CAMPAIGN" was given are given here too, so that the same effect is found.
 
     Exit status: 0 added; 1 no effect is found; 2 the request was wrong.
     """

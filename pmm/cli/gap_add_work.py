@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import click
@@ -12,9 +12,10 @@ from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE
 from pmm.campaign_file import read_campaign
 from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import output
-from pmm.gap.examine import Examined, Options, examine
+from pmm.gap.examine import Examined, examine
 from pmm.gap.report import gap_report
 from pmm.parallel import open_executor
 from sim.effects.effect import Effect
@@ -23,12 +24,11 @@ JSON_SCHEMA = "pmm-gap-add-1"
 
 
 @dataclass(frozen=True)
-class Request:
+class Request(Looks):
     """The options of the command, by their names there."""
 
     campaign: str
     effect: str | None
-    effects_file: str | None
     jobs: int | None
     as_json: bool
 
@@ -45,6 +45,8 @@ def run(request: Request) -> None:
     """
     folder = Path(request.campaign)
     path = folder / CAMPAIGN_FILE if folder.is_dir() else folder
+    if not path.exists():
+        raise ConfigurationError(f"{path}: no such folder or campaign file")
     if not os.access(path, os.W_OK):
         raise ConfigurationError(f"{path}: cannot be written to")
     if request.effect is not None:
@@ -61,17 +63,18 @@ def run(request: Request) -> None:
         said = ", ".join(f"{key} = {value:.6g}" for key, value in asdict(one).items())
         output().print(f"added {one.name}: {said}", soft_wrap=True)
     output().print(f"{path}; as it was: {kept}", soft_wrap=True)
-    output().print(pasted("gap", request.campaign), soft_wrap=True)
+    files = [word for one in request.files for word in ("--effects", one)]
+    output().print(pasted("gap", request.campaign, *files), soft_wrap=True)
 
 
 def _examined(request: Request, path: Path) -> Examined:
-    named = () if request.effect is None else (request.effect,)
-    more = () if request.effects_file is None else (request.effects_file,)
-    jobs = request.jobs or 1
-    if more and jobs > 1:
-        raise ConfigurationError("--effects-file: effects of your own need --jobs 1")
+    options, jobs = request.options, request.jobs or 1
+    if request.effect is not None:
+        options = replace(options, effects=(request.effect, *request.files))
+    if request.files and jobs > 1:
+        raise ConfigurationError("--effects: effects of your own need --jobs 1")
     with progress() as told, open_executor(jobs) as executor:
-        return examine(path, Options((*named, *more)), None if jobs == 1 else executor, told)
+        return examine(path, options, None if jobs == 1 else executor, told)
 
 
 def _effects(examined: Examined, request: Request) -> Sequence[Effect]:

@@ -4,33 +4,12 @@ from typing import Any
 
 import click
 
+from pmm.cli.gap_options import looks
+
 
 @click.command()
 @click.argument("campaign", metavar="CAMPAIGN")
-@click.option(
-    "--effects",
-    multiple=True,
-    metavar="NAME|FILE.py",
-    help="Consider this effect only, or those of a Python file of your own too; repeatable.",
-)
-@click.option(
-    "--without",
-    multiple=True,
-    metavar="NAME",
-    help="Take an effect out of the catalogue; repeatable.",
-)
-@click.option(
-    "--sensors",
-    metavar="NAME,NAME",
-    help='Use these channels only; "photocell" is one.  [default: all]',
-)
-@click.option(
-    "--hold-out",
-    multiple=True,
-    metavar="RUN|KEY=VALUE",
-    help="Withhold this run, or those with this frequency (Hz), amplitude (mm), phase (deg), speed "
-    "(m/s) or medium, and predict them; repeatable.  [default: each regime in its turn]",
-)
+@looks
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plan", metavar="FILE.toml", help="Write the proposed runs as a plan for pmm run.")
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")

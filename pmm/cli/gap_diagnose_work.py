@@ -10,22 +10,19 @@ import click
 
 from hardware.description.errors import ConfigurationError
 from pmm.cli.folders import check_folder
+from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.gap.examine import Examined, Options, examine
+from pmm.gap.examine import Examined, examine
 from pmm.gap.report import PROPOSED, gap_report
 from pmm.parallel import open_executor
 
 
 @dataclass(frozen=True)
-class Request:
+class Request(Looks):
     """The options of the command, by their names there."""
 
     campaign: str
-    effects: tuple[str, ...]
-    without: tuple[str, ...]
-    sensors: str | None
-    hold_out: tuple[str, ...]
     page: str | None
     plan: str | None
     jobs: int | None
@@ -56,11 +53,12 @@ def run(request: Request) -> None:
 
         print_report(output(), report)
         if report.verdict == "effect":
-            output().print(pasted("gap", "add", request.campaign), soft_wrap=True)
+            added = pasted("gap", "add", request.campaign, *request.words())
+            output().print(added, soft_wrap=True)
     if request.page is not None:
         from pmm.report.gap_page import write_gap_page
 
-        command = pasted("gap", request.campaign, "--page", request.page)
+        command = pasted("gap", request.campaign, *request.words(), "--page", request.page)
         write_gap_page(report, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
     if request.plan is not None:
@@ -78,23 +76,20 @@ def _write_plan(found: Examined, path: Path) -> None:
 
 def examined(request: Request) -> Examined:
     """Examine the campaign that is asked for, with progress on a terminal."""
-    sensors = tuple(one.strip() for one in (request.sensors or "").split(",") if one.strip())
-    options = Options(request.effects, request.without, sensors, request.hold_out)
     jobs = _jobs(request)
     with (
         progress() as told,
         open_executor(jobs, request.scheduler) as executor,
     ):
         alone = jobs == 1 and request.scheduler is None
-        return examine(Path(request.campaign), options, None if alone else executor, told)
+        return examine(Path(request.campaign), request.options, None if alone else executor, told)
 
 
 def _jobs(request: Request) -> int | None:
-    files = [one for one in request.effects if one.endswith(".py")]
-    if files and (request.scheduler is not None or (request.jobs or 1) > 1):
+    if request.files and (request.scheduler is not None or (request.jobs or 1) > 1):
         raise ConfigurationError(
-            f"--effects {files[0]}: effects of your own are known in this process only; leave "
-            "--jobs and --scheduler out"
+            f"--effects {request.files[0]}: effects of your own are known in this process only; "
+            "leave --jobs and --scheduler out"
         )
     return request.jobs if request.scheduler is not None else request.jobs or 1
 

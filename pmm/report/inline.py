@@ -54,6 +54,6 @@ def _local(name: str) -> str:
 def _prefixed(name: str, value: str, prefix: str) -> str:
     if name == "id":
         return f"{prefix}-{value}"
-    if name == "href":
+    if name == "href" and value.startswith("#"):
         return f"#{prefix}-{value.removeprefix('#')}"
     return _REFERENCE.sub(lambda found: f"url(#{prefix}-{found[1]})", value)

@@ -126,7 +126,7 @@ def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
     assert document["ranking"][0]["answer"] == "rubber-boot"
     size = document["ranking"][0]["effects"][0]["parameters"]["stiffening_n_m2"]
     assert size["low"] < 6000.0 < size["high"]
-    added = run("gap", "add", rig, "--effect", "rubber-boot", "--effects-file", own)
+    added = run("gap", "add", rig, "--effect", "rubber-boot", "--effects", own)
     assert added.exit_code == 0, added.output
     again = run("gap", rig, *FEW, "--effects", own)
     assert again.stdout.startswith("gap: no gap beyond u")

@@ -1,0 +1,78 @@
+"""What of a campaign and of the catalogue a diagnosis looks at: options that commands share."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import click
+
+from pmm.gap.examine import Options
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Looks:
+    """The options, by their names on the command line."""
+
+    effects: tuple[str, ...]
+    without: tuple[str, ...]
+    sensors: str | None
+    hold_out: tuple[str, ...]
+
+    @property
+    def options(self) -> Options:
+        """What the diagnosis is told."""
+        names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
+        return Options(self.effects, self.without, names, self.hold_out)
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Files with effects of the user's own."""
+        return tuple(one for one in self.effects if one.endswith(".py"))
+
+    def words(self) -> Iterator[str]:
+        """Yield the options as they are typed."""
+        for name, values in (
+            ("--effects", self.effects),
+            ("--without", self.without),
+            ("--sensors", (self.sensors,) if self.sensors else ()),
+            ("--hold-out", self.hold_out),
+        ):
+            for value in values:
+                yield from (name, value)
+
+
+def looks(command: F) -> F:
+    """Give a command the options of :class:`Looks`."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+_OPTIONS = (
+    click.option(
+        "--effects",
+        multiple=True,
+        metavar="NAME|FILE.py",
+        help="Consider this effect only, or those of a Python file of your own too; repeatable.",
+    ),
+    click.option(
+        "--without",
+        multiple=True,
+        metavar="NAME",
+        help="Take an effect out of the catalogue; repeatable.",
+    ),
+    click.option(
+        "--sensors",
+        metavar="NAME,NAME",
+        help='Use these channels only; "photocell" is one.  [default: all]',
+    ),
+    click.option(
+        "--hold-out",
+        multiple=True,
+        metavar="RUN|KEY=VALUE",
+        help="Withhold this run, or those with this frequency (Hz), amplitude (mm), phase (deg), "
+        "speed (m/s) or medium, and predict them; repeatable.  [default: each regime in its turn]",
+    ),
+)
