@@ -101,33 +101,20 @@ class Candidate:
         return np.array(pairs).reshape(-1, 2).T
 
 
-def candidates(
-    kind: type[Effect], frequencies_hz: Sequence[float], lines_hz: Sequence[float] = ()
-) -> Iterator[Candidate]:
+def candidates(kind: type[Effect], frequencies_hz: Sequence[float]) -> Iterator[Candidate]:
     """Yield an effect's starts: one for each choice, and resonances among the runs.
 
     Parameters
     ----------
     frequencies_hz
         Of the runs; a parameter that is a resonance starts among them as well.
-    lines_hz
-        Beside the harmonics, common to the recordings; what is the frequency of such a line starts
-        there as well.
     """
-    parameters = [_beginning_at(one, lines_hz) for one in kind.parameters()]
+    parameters = kind.parameters()
     options = [list(_options(kind, one, frequencies_hz)) for one in parameters]
     for chosen in product(*options):
         axes = tuple(one for one in chosen if isinstance(one, Axis))
         held = {name: value for one in chosen if not isinstance(one, Axis) for name, value in [one]}
         yield Candidate(kind, axes, held)
-
-
-def _beginning_at(one: Parameter, lines_hz: Sequence[float]) -> Parameter:
-    """Return a parameter that starts at the recordings' lines as well, if it is a line's."""
-    inside = [value for value in lines_hz if one.low <= value <= one.high]
-    if not (one.line and inside):
-        return one
-    return replace(one, starts=(*(one.starts or (one.typical,)), *inside))
 
 
 def _options(

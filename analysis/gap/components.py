@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.spectrum import Lines, common_line
+from analysis.gap.spectrum import Lines
 from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
@@ -193,13 +193,6 @@ class Stack:
     def turning(self) -> tuple[GapRun, ...]:
         """The runs that oscillate."""
         return tuple(one for one in self.runs if one.turns)
-
-    @cached_property
-    def lines_hz(self) -> tuple[float, ...]:
-        """Frequency of the line that the forces have in common beside the harmonics, if any."""
-        quiet = [one.observed.quiet for one in self.turning]
-        found = common_line([lines[name] for lines in quiet for name in FORCES if name in lines])
-        return () if found is None else (found,)
 
     @cached_property
     def steady(self) -> NDArray[np.bool_]:

@@ -82,8 +82,7 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
 def _starts(problem: Problem, kind: type[Effect]) -> list[tuple[Candidate, FloatArray]]:
     """Return where looks at an effect begin; the most promising one of what is costly."""
     frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
-    lines_hz = problem.simulator.stack.lines_hz
-    ones = list(candidates(kind, sorted(set(frequencies)), lines_hz))
+    ones = list(candidates(kind, sorted(set(frequencies))))
     if kind.repeats:
         return [(one, one.start) for one in ones]
     found = [_sized(problem, one) for one in ones]

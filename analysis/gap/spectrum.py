@@ -20,8 +20,6 @@ _CORNERS = 9
 _SWEEPS = 5
 _LOUD = 9.0  # times its density, which one line of noise in ten thousand reaches
 _LEAST = 1e-3  # of the usual density
-_FEW = 5  # lines, with which a record can tell nothing of one of them
-_STANDS_OUT = float(np.log(4.0))  # which the mean of many records of noise does not reach
 _MEDIAN = float(np.log(2.0))  # of a line's power over its mean, for Gaussian noise
 
 
@@ -74,37 +72,6 @@ def repeating(angle_rad: FloatArray, orders: int) -> FloatArray:
     turn = np.linspace(-1.0, 1.0, len(angle_rad))
     waves = [wave(n * angle_rad) for n in range(1, orders + 1) for wave in (np.sin, np.cos)]
     return np.asarray(np.linalg.qr(np.column_stack((np.ones_like(turn), turn, *waves)))[0])
-
-
-def common_line(records: Iterable[Lines]) -> float | None:
-    """Return the frequency at which the records are loudest together, in Hz.
-
-    The mean over the records of the logarithm of the power there, over each record's usual power;
-    ``None`` where nothing stands out of the noise of half of them. A line within a bin of a
-    harmonic is not seen in that record, and counts in the others.
-    """
-    records = [one for one in records if len(one.density) > _FEW]
-    if not records:
-        return None
-    bins_hz = [float(np.diff(one.frequency_hz).min()) for one in records]
-    low_hz, high_hz = min(bins_hz), max(float(one.frequency_hz[-1]) for one in records)
-    grid_hz = np.arange(low_hz, high_hz, 0.25 * low_hz)
-    heard = np.array(
-        [_loud_at(grid_hz, one, bin_hz) for one, bin_hz in zip(records, bins_hz, strict=True)]
-    )
-    seen = np.isfinite(heard)
-    count = seen.sum(axis=0)
-    mean = np.where(seen, heard, 0.0).sum(axis=0) / np.maximum(count, 1)
-    loud = np.where(2 * count >= len(records), mean, -np.inf)
-    return float(grid_hz[int(np.argmax(loud))]) if loud.max() > _STANDS_OUT else None
-
-
-def _loud_at(grid_hz: FloatArray, one: Lines, bin_hz: float) -> FloatArray:
-    """Return the log of a record's largest power within a bin, over its usual one; else NaN."""
-    relative = np.log(one.density * _MEDIAN / np.median(one.density))
-    near = np.abs(grid_hz[:, None] - one.frequency_hz[None, :]) <= 0.75 * bin_hz
-    powers = np.where(near, relative[None, :], -np.inf).max(axis=1)
-    return np.where(near.any(axis=1), powers, np.nan)
 
 
 @dataclass(frozen=True)

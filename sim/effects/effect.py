@@ -78,9 +78,6 @@ class Parameter:
         empty: a whole number, or what hardly shows beside the other parameters.
     resonance
         True for a resonance's frequency: a diagnosis begins among those of the runs, too.
-    line
-        True for the frequency of what does not turn with the shaft: a diagnosis begins at the line
-        that the recordings have in common, too, where they have one.
     """
 
     name: str
@@ -92,7 +89,6 @@ class Parameter:
     starts: tuple[float, ...] = ()
     held: bool = False
     resonance: bool = False
-    line: bool = False
 
 
 def _unit(one: Parameter) -> str:
@@ -109,7 +105,6 @@ def parameter(
     starts: tuple[float, ...] = (),
     held: bool = False,
     resonance: bool = False,
-    line: bool = False,
 ) -> Any:
     """Declare a field of an effect, a :class:`Parameter`; its default is the typical value.
 
@@ -125,7 +120,7 @@ def parameter(
                 f"{low:g} to {high:g}"
             )
     told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
-    sought = {"starts": starts, "held": held, "resonance": resonance, "line": line}
+    sought = {"starts": starts, "held": held, "resonance": resonance}
     return field(default=typical, metadata=told | sought)
 
 

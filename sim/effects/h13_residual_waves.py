@@ -24,8 +24,7 @@ class ResidualWaves(Effect):
 
     In a campaign, frequency and waiting time are those of the run's place in it, and the first run
     finds calm water. Repeats with another waiting time scatter; where both runs have the same
-    frequency, it is in the harmonic itself. What outlasts a long wait stands between the walls at a
-    frequency of the tank's own, whatever was run before; the first run meets it too.
+    frequency, it is in the harmonic itself.
     """
 
     code: ClassVar[str] = "H13"
@@ -45,14 +44,6 @@ class ResidualWaves(Effect):
     )
     frequency_hz: float = parameter(0.63, 0.01, 3.0, "Hz", "of the waves", held=True)
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
-    standing_hz: float = parameter(
-        0.0, 0.0, 2.0, "Hz", "of the tank's own waves; 0: of the run before", held=True, line=True
-    )
-
-    @property
-    def heard_hz(self) -> float:
-        """Frequency of the force."""
-        return self.standing_hz or self.frequency_hz
 
     @property
     def left_n(self) -> float:
@@ -62,14 +53,14 @@ class ResidualWaves(Effect):
     def at_run(self, run: CampaignRun) -> Self:
         """Return the effect with the waves that this run meets."""
         if run.before is None:
-            return self if self.standing_hz else replace(self, force_n=0.0)
+            return replace(self, force_n=0.0)
         # After two hours nothing is left.
         waited = min(run.waited_s, LONGEST_WAIT_S)
         return replace(self, waited_s=waited, frequency_hz=run.before.frequency_hz)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this force on the model's heave or sway."""
-        tone = Tone(self.left_n, self.heard_hz, self.phase_rad, self.decay_s)
+        tone = Tone(self.left_n, self.frequency_hz, self.phase_rad, self.decay_s)
         return with_laws(rig, (Point.TRANSLATION, tone))
 
     def signature(self, situation: Situation) -> Signature:
@@ -81,4 +72,4 @@ class ResidualWaves(Effect):
         if not situation.in_water:
             return {}
         half = 0.5 * self.left_n * complex(np.exp(1j * self.phase_rad))
-        return dict.fromkeys(((name, self.heard_hz) for name in STRUT_FORCES), half)
+        return dict.fromkeys(((name, self.frequency_hz) for name in STRUT_FORCES), half)

@@ -174,27 +174,6 @@ def test_residual_waves_over_a_campaign() -> None:
     assert sizes[1] / sizes[0] == pytest.approx(np.exp(-2.4), rel=1e-12)
 
 
-def test_standing_waves_over_a_campaign() -> None:
-    """The tank's own frequency in every run, the first too."""
-    set_points = [SetPoint(0.5, 0.02), SetPoint(0.8, 0.02), SetPoint(0.8, 0.03)]
-    effect = ResidualWaves(3.0, 100.0, 300.0, standing_hz=0.47)
-    situation = Situation.of(VERTICAL, set_points[-1])
-    for run in in_order(set_points, 120.0, 300.0):
-        theory = effect.at_run(run).lines(situation)
-        assert {frequency for _, frequency in theory} == {0.47}
-        assert [abs(one) for one in theory.values()] == pytest.approx([1.5 * np.exp(-3.0)] * 2)
-
-
-@pytest.mark.parametrize("standing_hz", [0.0, 0.63])
-def test_standing_waves_act_as_those_of_a_run_at_their_frequency(standing_hz: float) -> None:
-    set_point = SetPoint(*MOTIONS[1])
-    other = ResidualWaves(3.0, 60.0, 90.0, 0.63, 0.4)
-    effect = ResidualWaves(3.0, 60.0, 90.0, 0.3 if standing_hz else 0.63, 0.4, standing_hz)
-    forces = [in_time(one.change(VERTICAL, set_point), set_point, 3, 20) for one in (effect, other)]
-    for name in ("force_aft", "force_fore"):
-        np.testing.assert_array_equal(*(one.signals[name] for one in forces))
-
-
 @pytest.mark.parametrize("speed", [0.0, 0.3, 1.1])
 def test_vortices_without_a_width_in_the_time_domain(speed: float) -> None:
     set_point = SetPoint(0.9, 0.02, 1.0, speed)
