@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.fit import Fit, Problem
+from analysis.gap.free import Free
 from analysis.gap.gaussian import misfit, posterior
 from analysis.gap.hypotheses import Named, Weighed
 from hardware.description.errors import PmmError
@@ -21,6 +22,7 @@ TOLERATED: Final = 0.45  # remainder over signature at which a name is worth hal
 _STEEP = 6.0
 _EARNEST: Final = 0.8  # of pairs: the best of some thousand imitates what no catalogue has
 SLIGHT: Final = 0.02  # of its partner's signature: as likely the partner's own form
+_UNBOUND: Final = 1e4  # prior deviations: as good as no prior
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
 
@@ -120,6 +122,28 @@ def equivalents(
         ]
         alike = [pair for pair in left if pair[1] < ALIKE]
         found[name] = tuple(sorted(alike, key=lambda pair: pair[1]))
+    return found
+
+
+def coefficient_twins(
+    problem: Problem, fit: Fit, free: Sequence[Free]
+) -> dict[str, tuple[float, float]]:
+    """Return which coefficients would do in these runs what a fit does, were they off by enough.
+
+    Returns
+    -------
+    dict
+        By name, by how much it would be off, in its own unit and in prior deviations.
+    """
+    found = {}
+    for number, one in enumerate(free):
+        column = _UNBOUND * problem.nuisances.columns[:, number : number + 1]
+        units = posterior(fit.signature, column, problem.nuisances).mean
+        left = misfit(fit.signature - column @ units, problem.nuisances)
+        if one.is_coefficient and left < ALIKE**2:
+            whole = posterior(problem.residual, column, problem.nuisances).mean
+            off = _UNBOUND * float(whole[0])
+            found[one.name] = (off * one.deviation, off)
     return found
 
 

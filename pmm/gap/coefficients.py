@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float64]
 
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}
 _BODY: Final = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
-_UNITS: Final = {
+UNITS: Final = {
     "a11": "kg", "a12": "kg m", "a21": "kg m", "a22": "kg m²",
     "b11": "N s/m", "b12": "N s", "b21": "N s", "b22": "N m s",
     "c11": "N/m", "c12": "N", "c21": "N", "c22": "N m",
@@ -64,7 +64,7 @@ def coefficient_rows(examined: Examined) -> Iterator[CoefficientRow]:
             for mean, spread in (plain, cured)
             for number in (float(mean[at]), float(spread[at]))
         ]
-        unit = _UNITS.get(one.name, "")
+        unit = UNITS.get(one.name, "")
         yield CoefficientRow(
             one.name, unit, here - moved, here + values[0], values[1], here + values[2], values[3]
         )

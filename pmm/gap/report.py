@@ -12,11 +12,11 @@ from analysis.gap.description import Description
 from analysis.gap.propose import Proposal
 from analysis.gap.regimes import describe as in_words
 from analysis.gap.twins import separating_measurements
-from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, answer_of
+from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, answer_of, coefficient_twins
 from analysis.gap.withheld import Predicted, Shrinkage, gap_of, shrinkage
 from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
-from pmm.gap.coefficients import CoefficientRow, coefficient_rows
+from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
 
 if TYPE_CHECKING:
@@ -203,6 +203,13 @@ def _notes(examined: Examined) -> Iterator[str]:
         yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
     found = examined.diagnosis
     best = found.best
+    if found.cause is not None:
+        twins = coefficient_twins(found.problem, found.cause, examined.free)
+        for name, (off, units) in twins.items():
+            yield (
+                f"{name} off by {off:+.4g} {UNITS.get(name, '')} ({abs(units):.3g} tolerances) "
+                f"would do the same in these runs as {joined(answer_of(found.cause))}"
+            )
     if best is not None and found.cause is not None and best.remainder > 0.2:
         yield (
             f"{joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "

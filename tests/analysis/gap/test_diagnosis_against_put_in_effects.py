@@ -1,7 +1,7 @@
 """What is put into simulated campaigns is what the diagnosis says, and nothing where nothing is."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.priors import Priors
-from analysis.gap.verdict import NONE, UNKNOWN
+from analysis.gap.verdict import NONE, UNKNOWN, coefficient_twins
 from hardware.description.setpoint import SetPoint
 from pmm.gap.answer import effect_rows
 from sim.effects.catalogue import build, find
@@ -37,6 +37,20 @@ def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -
     assert not any(one.beyond for one in found.walk.steps)
 
 
+def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
+    rig: SimulatedRig,
+) -> None:
+    """At one speed a trim with the carriage is a stiffness, and a stiffness a trim."""
+    (c11, c12), second = rig.water.restoring
+    stated = replace(rig, water=replace(rig.water, restoring=((1.3 * c11, c12), second)))
+    runs = [run for run in record(rig, (), 14) if run.set_point.carriage_speed_m_s]
+    found = diagnose(stated, runs, Settings({"dynamic-trim": find("dynamic-trim")}))
+    assert found.probabilities.best == "dynamic-trim"
+    assert found.cause is not None
+    twins = coefficient_twins(found.problem, found.cause, free_numbers(stated, Priors()))
+    assert twins["c11"][0] == pytest.approx(-0.3 * c11, rel=0.05)
+
+
 @pytest.fixture(scope="module")
 def friction(rig: SimulatedRig) -> Diagnosis:
     return diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 21)
@@ -48,6 +62,11 @@ def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
     beyond = {one.what for one in friction.walk.steps if one.beyond}
     assert "forces" in beyond
     assert "strut motion" not in beyond
+
+
+def test_no_coefficient_passes_for_friction(friction: Diagnosis, rig: SimulatedRig) -> None:
+    assert friction.cause is not None
+    assert not coefficient_twins(friction.problem, friction.cause, free_numbers(rig, Priors()))
 
 
 def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
