@@ -80,7 +80,10 @@ def run(quick: bool, report: Report) -> Outcome:
             ]
         },
         {} if quick else {"campaign_s": taken},
-        ("From the recordings to the answer, proposed runs included; compiled code is there.",),
+        (
+            "From the recordings to the answer, proposed runs included; compiled code is there.",
+            "What needs a sealed board is measured there: scoreboard.md.",
+        ),
     )
 
 

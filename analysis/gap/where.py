@@ -5,6 +5,7 @@ comes from drive or mechanism (or from the photocell, if everything is turned al
 appears only in the forces, with the measured motion fed to the model, comes from behind.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -47,12 +48,15 @@ class Gap:
         Components that were compared.
     worst
         The largest one, in words.
+    stated
+        As ``rms``, of the simulation as it is stated, with no number free; NaN where nobody asked.
     """
 
     what: str
     rms: float
     count: int
     worst: str
+    stated: float = math.nan
 
     @property
     def beyond(self) -> bool:
@@ -102,9 +106,10 @@ BESIDE: Final = "beside the harmonics"
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
     stack = problem.simulator.stack
-    left = left_by_step(problem, problem.residual)
+    whole = problem.residual
+    left = left_by_step(problem, whole)
     of_step = {what: _of_step(stack.components, what) for what in CHAIN}
-    steps = [gap_of(stack.components, left, what, rows) for what, rows in of_step.items()]
+    steps = [gap_of(stack.components, left, what, rows, whole) for what, rows in of_step.items()]
     fed = _fed(problem)
     if fed is not None:
         after = CHAIN.index(FORCE) + 1
@@ -149,15 +154,24 @@ def _of_step(components: Sequence[Component], what: str) -> NDArray[np.bool_]:
 
 
 def gap_of(
-    components: Sequence[Component], left: FloatArray, what: str, rows: NDArray[np.bool_]
+    components: Sequence[Component],
+    left: FloatArray,
+    what: str,
+    rows: NDArray[np.bool_],
+    whole: FloatArray | None = None,
 ) -> Gap:
-    """Return the gap over some components."""
+    """Return the gap over some components: what is left of it, and the whole where it is given."""
     if not rows.any():
         return Gap(what, 0.0, 0, "")
     size = np.where(rows, np.abs(left), 0.0)
     worst = int(np.argmax(size))
     said = f"{components[worst]}: {left[worst]:+.1f} u"
-    return Gap(what, float(np.sqrt(np.mean(left[rows] ** 2))), int(rows.sum()), said)
+    stated = math.nan if whole is None else _rms(whole[rows])
+    return Gap(what, _rms(left[rows]), int(rows.sum()), said, stated)
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
@@ -167,7 +181,7 @@ def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
     forces = np.array([one.channel in FORCES for one in stack.components])
     for regime in regimes(stack.runs):
         rows = forces & np.isin(stack.run, regime.runs)
-        yield gap_of(stack.components, left, str(regime), rows)
+        yield gap_of(stack.components, left, str(regime), rows, problem.residual)
     turning = [at for at, run in enumerate(stack.runs) if run.turns]
     in_water = [at for at in turning if stack.runs[at].set_point.medium is Medium.WATER]
     if len(in_water) < len(turning):

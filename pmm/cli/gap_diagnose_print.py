@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from pmm.gap.describing import described
-from pmm.gap.report import GapReport, Ranked, joined
+from pmm.gap.report import GapReport, joined
+from pmm.gap.rows import Ranked
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -47,11 +48,14 @@ def _print_used(console: "Console", report: GapReport) -> None:
 
 
 def _print_where(console: "Console", report: GapReport) -> None:
-    console.print("\nwhere: E/u after the free coefficients, rms; 1 is noise alone", style="bold")
-    table = _table("along the chain", "verdict", "rms", "numbers", "largest", text=2)
+    said = "E/u as stated and after the free coefficients, rms; 1 is noise alone"
+    console.print(f"\nwhere: {said}", style="bold")
+    table = _table("along the chain", "verdict", "stated", "rms", "numbers", "largest", text=2)
     for one in report.walk:
         verdict = "gap" if one.beyond else "no gap"
-        table.add_row(one.what, verdict, f"{one.gap_u:.2f}", str(one.count), one.worst)
+        stated = f"{one.stated_u:.2f}" if math.isfinite(one.stated_u) else "-"
+        numbers = (stated, f"{one.gap_u:.2f}", str(one.count))
+        table.add_row(one.what, verdict, *numbers, one.worst)
     console.print(table)
     if report.verdict not in ("none", "coefficients"):
         shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
@@ -102,9 +106,7 @@ def _print_how_far(console: "Console", report: GapReport) -> None:
     console.print(f"\nhow far: gap of {said}, in u, noise taken off", style="bold")
     table = _table("answer", "before", "after", "shrinks", "95 %")
     for one in report.controls:
-        interval = f"{100.0 * one.low:.0f} to {100.0 * one.high:.0f} %"
-        share = f"{100.0 * one.share:.0f} %" if one.before_u > 0.0 else "-"
-        table.add_row(one.what, f"{one.before_u:.2f}", f"{one.after_u:.2f}", share, interval)
+        table.add_row(one.what, *one.said)
     console.print(table)
     table = _table("withheld", "before", "after", "second best", "polynomial")
     for row in report.regimes[:_SHOWN_REGIMES]:

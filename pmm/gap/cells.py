@@ -14,13 +14,22 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class StepRow:
-    """One step of the walk, or one contrast."""
+    """One step of the walk, or one contrast.
+
+    Attributes
+    ----------
+    gap_u
+        Root mean square of E/u after the free numbers have taken what they may.
+    stated_u
+        That of the simulation as it is stated; NaN where it is not told.
+    """
 
     what: str
     gap_u: float
     count: int
     beyond: bool
     worst: str
+    stated_u: float
 
 
 @dataclass(frozen=True)
@@ -37,7 +46,7 @@ class Cell:
 
 def step_row(one: Gap) -> StepRow:
     """Return a part of the difference as a row."""
-    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst)
+    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated)
 
 
 def remains(examined: Examined) -> Iterator[StepRow]:

@@ -9,15 +9,24 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from analysis.gap.description import Description
+from analysis.gap.diagnose import SHIFTED
 from analysis.gap.propose import Proposal
 from analysis.gap.regimes import describe as in_words
 from analysis.gap.twins import separating_measurements
-from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, answer_of, coefficient_twins
-from analysis.gap.withheld import Predicted, Shrinkage, gap_of, shrinkage
+from analysis.gap.verdict import (
+    COEFFICIENTS,
+    NONE,
+    UNKNOWN,
+    answer_of,
+    coefficient_shift,
+    coefficient_twins,
+)
+from analysis.gap.withheld import Predicted, gap_of, shrinkage
 from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
+from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 
 if TYPE_CHECKING:
     from analysis.gap.fit import Fit
@@ -26,49 +35,7 @@ JSON_SCHEMA: Final = "pmm-gap-1"
 _SHOWN: Final = 8  # hypotheses of the ranking
 _LEAST: Final = 1e-4
 PROPOSED: Final = 5  # runs
-
-
-@dataclass(frozen=True)
-class Ranked:
-    """One answer with its probability.
-
-    Attributes
-    ----------
-    alike
-        Effects that these runs cannot tell from it, with the sigma that they leave.
-    measure
-        What would tell them apart.
-    """
-
-    answer: str
-    probability: float
-    stage: str
-    effects: list[dict[str, Any]]
-    alike: dict[str, float]
-    measure: list[str]
-
-
-@dataclass(frozen=True)
-class ControlRow:
-    """How one answer does on the withheld runs; gaps in u with the noise floor taken off."""
-
-    what: str
-    before_u: float
-    after_u: float
-    share: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
-class RegimeRow:
-    """One withheld regime: root mean square in u without and with each answer; NaN for none."""
-
-    regime: str
-    before: float
-    after: float
-    second_best: float
-    polynomial: float
+_FITS: Final = 2.0  # u: a step below it needs no coefficient to fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +125,9 @@ def _verdict(examined: Examined) -> str:
 def _sentence(examined: Examined, verdict: str) -> str:
     found, shares = examined.diagnosis, examined.shares
     if verdict == NONE:
-        return f"no gap beyond u, probability {shares[NONE]:.2f}"
+        moved = any(one.stated > _FITS for one in found.walk.steps)
+        said = "no gap beyond u, with the coefficients fitted" if moved else "no gap beyond u"
+        return f"{said}, probability {shares[NONE]:.2f}"
     if verdict == COEFFICIENTS:
         return "no effect is missing: the coefficients are not those that the campaign states"
     if verdict == UNKNOWN:
@@ -203,6 +172,10 @@ def _notes(examined: Examined) -> Iterator[str]:
         yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
     found = examined.diagnosis
     best = found.best
+    pulled = coefficient_shift(found.problem, found.problem.residual)
+    beyond = [f"{name} {units:+.1f}" for name, units in pulled.items() if abs(units) > SHIFTED]
+    if beyond:
+        yield f"without an effect these would be off by so many tolerances: {', '.join(beyond)}"
     if found.cause is not None:
         twins = coefficient_twins(found.problem, found.cause, examined.free)
         for name, (off, units) in twins.items():
@@ -254,11 +227,10 @@ def _controls(examined: Examined) -> Iterator[ControlRow]:
     rows.append(("free polynomial", judged.free_form))
     for what, after in rows:
         if judged.plain and after:
-            yield _control(what, shrinkage(judged.plain, after))
-
-
-def _control(what: str, one: Shrinkage) -> ControlRow:
-    return ControlRow(what, one.before, one.after, one.share, one.low, one.high)
+            one = shrinkage(judged.plain, after)
+            certain = len(after) > 1
+            low, high = (one.low, one.high) if certain else (math.nan, math.nan)
+            yield ControlRow(what, one.before, one.after, one.share, low, high)
 
 
 def _regimes(examined: Examined) -> Iterator[RegimeRow]:

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from pmm.gap.cells import StepRow
 from pmm.gap.describing import described
-from pmm.gap.report import GapReport, Ranked, joined
+from pmm.gap.report import GapReport, joined
+from pmm.gap.rows import Ranked
 from pmm.report import gap_figures as figures
 from pmm.report.inline import inline_svg
 from pmm.report.page import write_template
@@ -87,14 +89,19 @@ def _drawn(figure: "Figure", name: str, caption: str) -> _Drawing:
     return _Drawing(inline_svg(render(figure, "svg", name), name, caption), caption)
 
 
+def _sizes(one: StepRow) -> tuple[str, str, str]:
+    stated = f"{one.stated_u:.2f}" if math.isfinite(one.stated_u) else "-"
+    return stated, f"{one.gap_u:.2f}", str(one.count)
+
+
 def _where(report: GapReport) -> _Part:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     named = report.verdict in ("effect", "unknown")
     steps = tuple(
-        (one.what, "gap" if one.beyond else "no gap", one.worst, f"{one.gap_u:.2f}", str(one.count))
+        (one.what, "gap" if one.beyond else "no gap", one.worst, *_sizes(one))
         for one in (*report.walk, *report.contrasts)
     )
-    headings = ("step, or kind of run", "verdict", "largest", "E/u", "numbers")
+    headings = ("step, or kind of run", "verdict", "largest", "E/u as stated", "E/u", "numbers")
     return _Part(
         "Where",
         (f"Stage, by the answers' probabilities: {', '.join(shares)}.",) if named else (),
@@ -141,16 +148,7 @@ def _parameters(one: Ranked) -> str:
 def _how_far(report: GapReport) -> _Part | None:
     if not report.regimes:
         return None
-    rows = tuple(
-        (
-            one.what,
-            f"{one.before_u:.2f}",
-            f"{one.after_u:.2f}",
-            f"{100.0 * one.share:.0f} %" if one.before_u > 0.0 else "-",
-            f"{100.0 * one.low:.0f} to {100.0 * one.high:.0f} %",
-        )
-        for one in report.controls
-    )
+    rows = tuple((one.what, *one.said) for one in report.controls)
     said = (
         "The withheld runs, which nobody looked at before."
         if report.held_out

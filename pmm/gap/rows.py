@@ -1,0 +1,63 @@
+"""Rows of the gap report that are no step, cell or coefficient."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One answer with its probability.
+
+    Attributes
+    ----------
+    alike
+        Effects that these runs cannot tell from it, with the sigma that they leave.
+    measure
+        What would tell them apart.
+    """
+
+    answer: str
+    probability: float
+    stage: str
+    effects: list[dict[str, Any]]
+    alike: dict[str, float]
+    measure: list[str]
+
+
+@dataclass(frozen=True)
+class ControlRow:
+    """How one answer does on the withheld runs; gaps in u with the noise floor taken off.
+
+    Attributes
+    ----------
+    low, high
+        95 % interval of ``share``; NaN for one regime alone, whose scatter nobody knows.
+    """
+
+    what: str
+    before_u: float
+    after_u: float
+    share: float
+    low: float
+    high: float
+
+    @property
+    def said(self) -> tuple[str, str, str, str]:
+        """Gap before and after, by how much it shrinks, and the interval of that."""
+        known = self.before_u > 0.0
+        shrinks = f"{100.0 * self.share:.0f} %" if known else "-"
+        interval = f"{100.0 * self.low:.0f} to {100.0 * self.high:.0f} %"
+        certain = known and math.isfinite(self.low)
+        return f"{self.before_u:.2f}", f"{self.after_u:.2f}", shrinks, interval if certain else "-"
+
+
+@dataclass(frozen=True)
+class RegimeRow:
+    """One withheld regime: root mean square in u without and with each answer; NaN for none."""
+
+    regime: str
+    before: float
+    after: float
+    second_best: float
+    polynomial: float
