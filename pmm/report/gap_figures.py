@@ -39,7 +39,7 @@ def heat_map(report: GapReport) -> "Figure":
         figure = Figure(figsize=(10.5, height), layout="constrained")
         axes = figure.subplots(1, 2, sharey=True)
         for number, (place, title) in enumerate(
-            zip(axes, ("simulation as it is", "with the best answer"), strict=True)
+            zip(axes, ("without an effect", "with the best answer"), strict=True)
         ):
             values = _matrix(report.cells, rows, runs, after=bool(number))
             image = _draw_cells(place, values, rows, runs)
@@ -115,7 +115,7 @@ def walk_figure(report: GapReport) -> "Figure":
         axes.set_ylim(count - 0.5, -1.0)
         axes.set_yticks(range(count), [one.what for one in report.walk])
         axes.set_xlabel("E/u after the free coefficients, root mean square")
-        axes.plot([], [], "o", color=_BEFORE, label="simulation as it is")
+        axes.plot([], [], "o", color=_BEFORE, label="without an effect")
         axes.plot([], [], "s", color=_AFTER, label="with the best answer")
         axes.legend(loc="lower right")
     return figure
@@ -159,9 +159,10 @@ def withheld_figure(report: GapReport) -> "Figure":
     """Draw the gap of each withheld regime without and with each answer, noise taken off."""
     from matplotlib.figure import Figure
 
+    named = "nearest, but not it" if report.verdict == "unknown" else "best answer"
     marks = {
-        "as it is": ("before", "o", _BEFORE),
-        "best answer": ("after", "s", _AFTER),
+        "without an effect": ("before", "o", _BEFORE),
+        named: ("after", "s", _AFTER),
         "second best": ("second_best", "^", PALETTE[3]),
         "free polynomial": ("polynomial", "D", PALETTE[4]),
     }
@@ -182,7 +183,7 @@ def withheld_figure(report: GapReport) -> "Figure":
         axes.set_yticks(range(count), [plain(one.regime) for one in report.regimes])
         axes.invert_yaxis()
         axes.set_xlabel(f"gap in u, noise taken off; {_LEAST_U:g} and less are drawn at the left")
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.0 + 0.9 / max(count, 1)), ncols=4)
+        figure.legend(loc="outside upper center", ncols=4)
     return figure
 
 
