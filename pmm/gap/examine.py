@@ -20,10 +20,9 @@ from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
 from analysis.gap.withheld import Predicted, predict_withheld
-from hardware.description.errors import ConfigurationError
 from pmm.campaign import Campaign
+from pmm.gap.own_effects import chosen_effects, try_own
 from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
-from sim.effects.catalogue import catalogue, find, user_effects
 from sim.effects.effect import Effect
 
 
@@ -118,42 +117,20 @@ def examine(
     Raises
     ------
     ConfigurationError
-        If the campaign, the case or an option is wrong.
+        If the campaign, the case, an option or an effect of the user's own is wrong.
     DataError
         If fewer than three runs can be used, or a channel is in other units in all of them.
     """
-    known, more = chosen_effects(options)
+    known, more = chosen_effects(options.effects, options.without)
     ready = prepare(folder, known, more, options.sensors, options.hold_out, progress)
     there, priors = ready.there, ready.case.priors
+    try_own(more, there.rig, ready.fitted)
     found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
     free = free_numbers(there.rig, priors)
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
     described = describe(found.problem, found.left)
     return Examined(ready, free, found, judgement, described, known)
-
-
-def chosen_effects(options: Options) -> tuple[dict[str, type[Effect]], dict[str, type[Effect]]]:
-    """Return the effects to consider, and those of the user's own files.
-
-    Raises
-    ------
-    ConfigurationError
-        If a name is not known or a file defines none.
-    """
-    more: dict[str, type[Effect]] = {}
-    for one in options.effects:
-        if one.endswith(".py"):
-            more |= user_effects(one)
-    names = [one for one in options.effects if not one.endswith(".py")]
-    every = {**catalogue(), **more}
-    chosen = {name: find(name, more) for name in names} | more if names else every
-    for name in options.without:
-        find(name, more)
-    left = {name: kind for name, kind in chosen.items() if name not in options.without}
-    if not left:
-        raise ConfigurationError("--effects and --without leave no effect to consider")
-    return left, more
 
 
 def _judged(

@@ -114,12 +114,33 @@ def test_nominal_model_far_off(rig: Path, tmp_path: Path) -> None:
     assert added["with_effect"] == pytest.approx(75.0, rel=0.01)
 
 
+def example() -> str:
+    found = re.findall(r"^```python\n(.*?)^```", ADDING.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return str(found[0])
+
+
+@pytest.mark.parametrize(
+    ("broken", "said"),
+    [
+        ("def change(self, rig, set_point):\n    raise ValueError('oops')", "ValueError: oops"),
+        ("def force(self, motion):\n    return motion.position * float('nan')", "not a number"),
+    ],
+)
+def test_an_effect_of_the_users_own_that_is_broken(
+    rig: Path, tmp_path: Path, broken: str, said: str
+) -> None:
+    own, name = tmp_path / "rubber_boot.py", broken[4:].split("(")[0]
+    of = {"change": "RubberBoot", "force": "Stiffening"}[name]
+    own.write_text(f"{example()}\n\n{broken}\n\n\n{of}.{name} = {name}\n")
+    done = run("gap", rig, *FEW, "--effects", own)
+    assert done.exit_code == 2
+    assert "effect rubber-boot, of your own" in done.stderr
+    assert said in done.stderr
+
+
 def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
-    (example,) = re.findall(
-        r"^```python\n(.*?)^```", ADDING.read_text(), flags=re.MULTILINE | re.DOTALL
-    )
     own = tmp_path / "rubber_boot.py"
-    own.write_text(example)
+    own.write_text(example())
     effect = ("--effect", "rubber-boot:stiffening_n_m2=6000", "--effects-file", own)
     rig = made(tmp_path, *effect)
     document = found(rig, "--effects", own)
