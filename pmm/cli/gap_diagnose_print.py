@@ -75,7 +75,9 @@ def _print_which(console: "Console", report: GapReport) -> None:
     for one in report.ranking:
         if one.alike:
             said = ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
-            console.print(f"these runs cannot tell from {one.answer}: {said}", soft_wrap=True)
+            console.print(
+                f"these runs cannot tell from {joined(one.answer)}: {said}", soft_wrap=True
+            )
         if one.measure and one is report.ranking[0]:
             console.print(f"what would: {'; '.join(one.measure)}", soft_wrap=True)
     if report.hidden:

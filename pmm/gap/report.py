@@ -48,6 +48,8 @@ class GapReport:
         ``"none"``, ``"coefficients"``, ``"unknown"`` or ``"effect"``.
     sentence
         The verdict for people.
+    class_probability
+        Of the most probable answer together with all that these runs cannot tell from it.
     remains
         What the best answer leaves, step by step.
     """
@@ -58,6 +60,7 @@ class GapReport:
     left_out: dict[str, str]
     verdict: str
     sentence: str
+    class_probability: float
     notes: tuple[str, ...]
     walk: tuple[StepRow, ...]
     contrasts: tuple[StepRow, ...]
@@ -101,6 +104,7 @@ def gap_report(examined: Examined) -> GapReport:
         dict(examined.left_out),
         verdict,
         _sentence(examined, verdict),
+        _class_probability(examined),
         tuple(_notes(examined)),
         tuple(step_row(one) for one in found.walk.steps),
         tuple(step_row(one) for one in found.walk.contrasts),
@@ -136,14 +140,21 @@ def _sentence(examined: Examined, verdict: str) -> str:
         near = found.best
         like = "" if near is None else f"; nearest, but not it: {joined(answer_of(near.fit))}"
         return f"{said}; most likely in {stage}{like}"
-    alike = {
-        name: sorted(other for other, _ in found.classes.get(name, ()))
-        for name in next(iter(shares)).split("+")
-    }
-    groups = [[name, *others] for name, others in alike.items()]
+    share = _class_probability(examined)
+    return f"{_in_classes(_alike(examined))} probability {share:.2f}; or whatever has its signature"
+
+
+def _alike(examined: Examined) -> dict[str, list[str]]:
+    """Return each part of the most probable answer with what these runs cannot tell from it."""
+    classes = examined.diagnosis.classes
+    names = next(iter(examined.shares)).split("+")
+    return {name: sorted(other for other, _ in classes.get(name, ())) for name in names}
+
+
+def _class_probability(examined: Examined) -> float:
+    groups = [[name, *others] for name, others in _alike(examined).items()]
     answers = {"+".join(sorted(one)) for one in product(*groups)}
-    share = sum(shares.get(name, 0.0) for name in answers)
-    return f"{_in_classes(alike)} probability {share:.2f}; or whatever has its signature"
+    return sum(examined.shares.get(name, 0.0) for name in answers)
 
 
 def _in_classes(alike: Mapping[str, Sequence[str]]) -> str:
