@@ -1,4 +1,7 @@
-"""Amplitude and phase, swing by swing: measured, simulated, and simulated with the causes."""
+"""Amplitude and phase, swing by swing: measured, simulated, and simulated with the causes.
+
+Both simulations have the release and the tolerances that fit best, as in the diagnosis.
+"""
 
 from pathlib import Path
 
@@ -6,6 +9,8 @@ import numpy as np
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.pendulum.trial import Problem
+from analysis.inertia.numeric import FloatArray
 
 _LABELS = {"decay": "ln amplitude", "period": "phase to reference [rad]"}
 
@@ -19,15 +24,20 @@ def draw(found: Diagnosis, folder: Path) -> list[Path]:
 def _draw(found: Diagnosis, at: int, folder: Path) -> Path:
     from matplotlib.figure import Figure
 
-    trial = found.problem.trials[at]
+    problem = found.problem
+    trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots(2, 1, sharex=True)
-    curves = [("simulated", trial.simulate()), ("with causes", _cured(found, at))]
+    curves = [
+        ("simulated", _told(problem, nothing)),
+        ("with causes", _told(problem, found.best.signature)),
+    ]
     for panel, (kind, label) in zip(axes, _LABELS.items(), strict=True):
         row = KINDS.index(kind)
         panel.plot(trial.windows.centres_s, trial.observed[row], "o", ms=3, label="measured")
+        rows = (problem.trial == at) & (problem.kind == row)
         for name, values in curves:
-            panel.plot(trial.windows.centres_s, values[row], label=name)
+            panel.plot(problem.centre_s[rows], values[rows], label=name)
         panel.set_ylabel(label)
     axes[0].legend()
     axes[0].set_title(trial.name)
@@ -37,6 +47,8 @@ def _draw(found: Diagnosis, at: int, folder: Path) -> Path:
     return path
 
 
-def _cured(found: Diagnosis, at: int) -> np.ndarray:
-    trial = found.problem.trials[at]
-    return trial.simulate(found.best.effects(trial))
+def _told(problem: Problem, signature: FloatArray) -> FloatArray:
+    """Return the observations as causes have them, with the release and tolerances that fit."""
+    nuisances = problem.nuisances
+    free = nuisances.columns @ nuisances.fitted(problem.residual - signature)
+    return problem.nominal + (signature + free) * problem.uncertainty

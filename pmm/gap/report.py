@@ -27,6 +27,7 @@ from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
+from sim.effects.catalogue import catalogue
 
 if TYPE_CHECKING:
     from analysis.gap.fit import Fit
@@ -136,7 +137,10 @@ def _sentence(examined: Examined, verdict: str) -> str:
         return "no effect is missing: the coefficients are not those that the campaign states"
     if verdict == UNKNOWN:
         stage = max(found.stages, key=lambda name: found.stages[name], default="")
-        said = f"something that the catalogue does not have, probability {shares[UNKNOWN]:.2f}"
+        outside = "something that the catalogue does not have"
+        if not catalogue().keys() <= examined.catalogue.keys():
+            outside = f"something else than the {len(examined.catalogue)} effects considered"
+        said = f"{outside}, probability {shares[UNKNOWN]:.2f}"
         near = found.best
         like = "" if near is None else f"; nearest, but not it: {joined(answer_of(near.fit))}"
         return f"{said}; most likely in {stage}{like}"

@@ -85,7 +85,7 @@ def test_withheld_runs_are_predicted(told: dict[str, Result]) -> None:
     assert all(one["after_u"] > best["after_u"] for one in controls[1:])
     assert sum(one["probability"] for one in found["ranking"]) <= 1.0 + 1e-9
     assert found["ranking"][0]["probability"] <= found["class_probability"] <= 1.0 + 1e-9
-    assert [one["stated_u"] for one in found["walk"] if one["what"] == "forces"][0] > 10.0
+    assert {one["what"]: one["stated_u"] for one in found["walk"]}["forces"] > 10.0
 
 
 def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:
