@@ -89,7 +89,7 @@ def paired(
         tried |= {one.names[0] for one in firsts}
         members = {name for one in _promising(chances, least)[:_LED] for name in one.fit.names}
         firsts = [one for one in partners if one.names[0] in members - tried]
-    worth = _promising(chances, least)[:PARTNERS]
+    worth = _affordable(_promising(chances, least))[:PARTNERS]
     found = _each(executor, _refined_pair, problem, worth)
     return sorted(found, key=lambda one: -one.log_evidence)
 
@@ -123,6 +123,12 @@ def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[
     """Return the pairs that are worth their cost, most promising first."""
     worth = [one for one in chances.values() if one.promise > least + _dearer(one.fit)]
     return sorted(worth, key=lambda one: -one.promise)
+
+
+def _affordable(chances: Sequence[_Chance]) -> list[_Chance]:
+    """Return the pairs without those that are costly, but for the most promising one of these."""
+    first = next((one for one in chances if _is_costly(one.fit)), None)
+    return [one for one in chances if one is first or not _is_costly(one.fit)]
 
 
 def _is_costly(fit: Fit) -> bool:
@@ -168,7 +174,9 @@ def _refined_pair(problem: Problem, chance: _Chance) -> Fit:
     effects were seen.
     """
     fit = chance.fit
-    if _is_costly(fit) or not all(one.kind.repeats for one in fit.candidates):
+    if _is_costly(fit):
+        return stepped(problem, fit, 1)
+    if not all(one.kind.repeats for one in fit.candidates):
         return stepped(problem, fit, _STEPS_IN_TIME)
     best = fit
     for units in (most_probable(fit), fit.units):

@@ -22,12 +22,16 @@ _ROUNDS = 2
 def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     """Return a fit whose signature holds what effect and coefficients do together.
 
+    A pair with an effect that is costly to simulate is left as it is.
+
     Parameters
     ----------
     free
         The nuisances' first columns; without any the fit is returned as it is.
     """
-    if not free or not any(one.kind.repeats for one in fit.candidates):
+    kinds = [one.kind for one in fit.candidates]
+    dear = len(kinds) > 1 and any(one.costly for one in kinds)
+    if dear or not free or not any(one.repeats for one in kinds):
         return fit
     best = fit
     for _ in range(_ROUNDS):
