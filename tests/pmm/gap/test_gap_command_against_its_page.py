@@ -36,7 +36,7 @@ def few() -> Iterator[None]:
     """A catalogue of a handful, so that the page's commands take seconds."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            "pmm.gap.examine.catalogue", lambda: {name: catalogue()[name] for name in FEW}
+            "pmm.gap.own_effects.catalogue", lambda: {name: catalogue()[name] for name in FEW}
         )
         yield
 
