@@ -93,7 +93,7 @@ def _section(stored: Mapping[str, Any]) -> str:
     verdict = "All thresholds are met."
     if "not measured" in verdicts:
         measured = len(verdicts) - verdicts.count("not measured")
-        verdict = f"Of {len(verdicts)} thresholds {measured} are measured here, and met."
+        verdict = f"Measured here, and met: {measured} of {len(verdicts)} thresholds."
     if missed:
         verdict = f"**Missed: {'; '.join(missed)}.**"
     lines = [f"## {stored['title']}", "", verdict, "", *_markdown(stored["thresholds"]), ""]
