@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.coefficients.corrections import ZERO_BLOCKS, zero_reading
-from analysis.gap.components import FORCES, Component, GapRun, Observation, Part
-from analysis.gap.observe import STRUTS
+from analysis.gap.components import Component, GapRun, Observation, Part
+from analysis.gap.observe import FORCES, STRUTS
 from analysis.recording import Recording
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint

@@ -4,20 +4,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.spectrum import Lines
-from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 
 FloatArray = NDArray[np.float64]
-
-
-FORCES: Final = (channels.FORCE_AFT.name, channels.FORCE_FORE.name)
 
 
 class Part(StrEnum):

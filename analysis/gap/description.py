@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, Part, Stack
+from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
+from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import motion
 from analysis.gap.sparse_law import FORM, Law, scaled_motion, sparse_law
 from analysis.gap.where import remaining

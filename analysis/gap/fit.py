@@ -101,9 +101,7 @@ class Fit:
     def log_volume(self) -> float:
         """Log of what is left of the priors' volume, whatever the scale of the effects' sizes."""
         sizes = np.array([one.is_size for one in self.axes], dtype=bool)
-        numbers = np.arange(len(self.candidates))
-        whose = np.repeat(numbers, [len(one.axes) for one in self.candidates])
-        groups = [sizes & (whose == number) for number in numbers]
+        groups = [sizes & (self.whose == number) for number in range(len(self.candidates))]
         reaches = [one.reach for one in self.candidates]
         return self.posterior.log_volume + any_size(self.posterior, groups, reaches)
 
@@ -111,6 +109,22 @@ class Fit:
     def axes(self) -> tuple[Axis, ...]:
         """The free parameters of all effects, in the order of ``units``."""
         return tuple(axis for one in self.candidates for axis in one.axes)
+
+    @property
+    def whose(self) -> NDArray[np.intp]:
+        """Number of the effect that each parameter belongs to, shape ``(p,)``."""
+        counts = [len(one.axes) for one in self.candidates]
+        return np.repeat(np.arange(len(counts)), counts)
+
+    @property
+    def repeats(self) -> bool:
+        """Whether all effects repeat with the shaft."""
+        return all(one.kind.repeats for one in self.candidates)
+
+    @property
+    def is_costly(self) -> bool:
+        """Whether one of the effects is run in time until it repeats."""
+        return any(one.kind.costly for one in self.candidates)
 
     @property
     def effects(self) -> tuple[Effect, ...]:

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
-from analysis.gap.components import FORCES, Component, GapRun, Layout, Observation, Part, Stack
-from analysis.gap.observe import observe
+from analysis.gap.components import Component, GapRun, Layout, Observation, Part, Stack
+from analysis.gap.observe import FORCES, observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on

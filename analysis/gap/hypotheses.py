@@ -172,7 +172,7 @@ def balance(problem: Problem, fit: Fit) -> float:
     1 for a single effect, and where one does not repeat with the shaft, or cannot be simulated by
     itself: it cannot pass for the other's form.
     """
-    if len(fit.candidates) < 2 or not all(one.kind.repeats for one in fit.candidates):
+    if len(fit.candidates) < 2 or not fit.repeats:
         return 1.0
     nominal = problem.simulator.nominal
     try:

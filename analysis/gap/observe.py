@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, Component, Observation, Part
+from analysis.gap.components import Component, Observation, Part
 from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
 from analysis.resolver.analyse import Analysis, Settings, analyse
@@ -26,6 +26,7 @@ FloatArray = NDArray[np.float64]
 Found = Iterator[tuple[Component, float, float]]
 
 ORDERS: Final = 6
+FORCES: Final = (channels.FORCE_AFT.name, channels.FORCE_FORE.name)
 STRUTS: Final = (channels.DISPLACEMENT_AFT.name, channels.DISPLACEMENT_FORE.name)
 SPEED: Final = channels.CARRIAGE_SPEED.name
 COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES, SPEED)

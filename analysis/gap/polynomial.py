@@ -11,9 +11,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, Component, GapRun, Part, Stack
+from analysis.gap.components import Component, GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import left_over, misfit, posterior
+from analysis.gap.observe import FORCES
 
 FloatArray = NDArray[np.float64]
 

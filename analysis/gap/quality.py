@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, GapRun, Part, Stack
+from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.forward import Simulator
-from analysis.gap.observe import SPEED, STRUTS
+from analysis.gap.observe import FORCES, SPEED, STRUTS
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, recentred
 from hardware.description.setpoint import Medium

@@ -15,9 +15,8 @@ def refine(problem: Problem, fit: Fit) -> Fit:
     The slopes are kept as long as a step brings most of what they promise, and for what does not
     repeat with the shaft to the end.
     """
-    repeats = all(one.kind.repeats for one in fit.candidates)
     best, stale = fit, False
-    for _ in range(_STEPS if repeats else _STEPS_IN_TIME):
+    for _ in range(_STEPS if fit.repeats else _STEPS_IN_TIME):
         better, fulfilled = _step(problem, best)
         if better is None:
             if not stale:
@@ -29,7 +28,7 @@ def refine(problem: Problem, fit: Fit) -> Fit:
             break
         if fulfilled < _FULFILLED:
             best, stale = _anew(problem, best), False
-    return _anew(problem, best) if stale and repeats else best
+    return _anew(problem, best) if stale and fit.repeats else best
 
 
 def _anew(problem: Problem, fit: Fit) -> Fit:

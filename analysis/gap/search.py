@@ -127,22 +127,18 @@ def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[
 
 def _affordable(chances: Sequence[_Chance]) -> list[_Chance]:
     """Return the pairs without those that are costly, but for the most promising one of these."""
-    first = next((one for one in chances if _is_costly(one.fit)), None)
-    return [one for one in chances if one is first or not _is_costly(one.fit)]
-
-
-def _is_costly(fit: Fit) -> bool:
-    return any(one.kind.costly for one in fit.candidates)
+    first = next((one for one in chances if one.fit.is_costly), None)
+    return [one for one in chances if one is first or not one.fit.is_costly]
 
 
 def _least(fit: Fit, most: float) -> float:
     """Return the log evidence above "no gap" from which an effect is fitted, for what it costs."""
-    return max(_PROMISING, 0.5 * most) if _is_costly(fit) else _PROMISING
+    return max(_PROMISING, 0.5 * most) if fit.is_costly else _PROMISING
 
 
 def _dearer(pair: Fit) -> float:
     """Return what a pair has to promise more than others, for what it costs to refine it."""
-    return _WORSE + _TWICE if _is_costly(pair) else 0.0
+    return _WORSE + _TWICE if pair.is_costly else 0.0
 
 
 def _each(
@@ -174,9 +170,9 @@ def _refined_pair(problem: Problem, chance: _Chance) -> Fit:
     effects were seen.
     """
     fit = chance.fit
-    if _is_costly(fit):
+    if fit.is_costly:
         return stepped(problem, fit, 1)
-    if not all(one.kind.repeats for one in fit.candidates):
+    if not fit.repeats:
         return stepped(problem, fit, _STEPS_IN_TIME)
     best = fit
     for units in (most_probable(fit), fit.units):

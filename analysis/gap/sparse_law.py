@@ -11,9 +11,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, Part, Stack
+from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.gaussian import rooted
+from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import components_of, motion
 
 FloatArray = NDArray[np.float64]

@@ -29,9 +29,8 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     free
         The nuisances' first columns; without any the fit is returned as it is.
     """
-    kinds = [one.kind for one in fit.candidates]
-    dear = len(kinds) > 1 and any(one.costly for one in kinds)
-    if dear or not free or not any(one.repeats for one in kinds):
+    dear = len(fit.candidates) > 1 and fit.is_costly
+    if dear or not free or not any(one.kind.repeats for one in fit.candidates):
         return fit
     best = fit
     for _ in range(_ROUNDS):

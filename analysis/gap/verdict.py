@@ -150,11 +150,11 @@ def coefficient_twins(
 def _alone(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np.ndarray]:
     """Return what one effect of a fit adds to the rest of it, and the columns of the rest."""
     rest = tuple(one for at, one in enumerate(fit.effects) if at != number)
-    whose = np.repeat(range(len(fit.candidates)), [len(one.axes) for one in fit.candidates])
+    columns = fit.columns[:, fit.whose != number]
     if not rest:
-        return fit.signature, fit.columns[:, whose != number]
+        return fit.signature, columns
     change = problem.simulator.predict(rest) - problem.simulator.nominal
-    return fit.signature - problem.whitened(change), fit.columns[:, whose != number]
+    return fit.signature - problem.whitened(change), columns
 
 
 def _left(problem: Problem, own: np.ndarray, beside: np.ndarray, other: Fit) -> float:

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
-from analysis.gap.components import FORCES, Component, GapRun, Part
+from analysis.gap.components import Component, GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.observe import SPEED, STRUTS
+from analysis.gap.observe import FORCES, SPEED, STRUTS
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import Medium
 from sim import signals
@@ -177,15 +177,16 @@ def _rms(values: FloatArray) -> float:
 def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
     from analysis.gap.regimes import regimes
 
-    stack = problem.simulator.stack
+    stack, whole = problem.simulator.stack, problem.residual
     forces = np.array([one.channel in FORCES for one in stack.components])
     for regime in regimes(stack.runs):
         rows = forces & np.isin(stack.run, regime.runs)
-        yield gap_of(stack.components, left, str(regime), rows, problem.residual)
+        yield gap_of(stack.components, left, str(regime), rows, whole)
     turning = [at for at, run in enumerate(stack.runs) if run.turns]
     in_water = [at for at in turning if stack.runs[at].set_point.medium is Medium.WATER]
     if len(in_water) < len(turning):
-        yield gap_of(stack.components, left, "medium water", forces & np.isin(stack.run, in_water))
+        rows = forces & np.isin(stack.run, in_water)
+        yield gap_of(stack.components, left, "medium water", rows, whole)
 
 
 def _fed(problem: Problem) -> FloatArray | None:

@@ -53,9 +53,7 @@ def _print_where(console: "Console", report: GapReport) -> None:
     table = _table("along the chain", "verdict", "stated", "rms", "numbers", "largest", text=2)
     for one in report.walk:
         verdict = "gap" if one.beyond else "no gap"
-        stated = f"{one.stated_u:.2f}" if math.isfinite(one.stated_u) else "-"
-        numbers = (stated, f"{one.gap_u:.2f}", str(one.count))
-        table.add_row(one.what, verdict, *numbers, one.worst)
+        table.add_row(one.what, verdict, *one.said, one.worst)
     console.print(table)
     if report.verdict not in ("none", "coefficients"):
         shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]

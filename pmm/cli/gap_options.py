@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 import click
 
 from pmm.gap.examine import Options
+from pmm.gap.own_effects import files_among
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -29,7 +30,7 @@ class Looks:
     @property
     def files(self) -> tuple[str, ...]:
         """Files with effects of the user's own."""
-        return tuple(one for one in self.effects if one.endswith(".py"))
+        return files_among(self.effects)
 
     def words(self) -> Iterator[str]:
         """Yield the options as they are typed."""

@@ -11,11 +11,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import FORCES, Part, Stack
+from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import Forecast, forecast, further, planned
 from analysis.gap.free import Free, free_numbers
+from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal

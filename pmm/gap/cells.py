@@ -1,5 +1,6 @@
 """Where the difference lies, cell by cell: stage, channel, harmonic and run."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -30,6 +31,12 @@ class StepRow:
     beyond: bool
     worst: str
     stated_u: float
+
+    @property
+    def said(self) -> tuple[str, str, str]:
+        """E/u as stated and after the free numbers, and how many numbers were compared."""
+        stated = f"{self.stated_u:.2f}" if math.isfinite(self.stated_u) else "-"
+        return stated, f"{self.gap_u:.2f}", str(self.count)
 
 
 @dataclass(frozen=True)

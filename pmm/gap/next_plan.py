@@ -7,7 +7,7 @@ from analysis.gap.propose import Proposal
 from hardware.description.setpoint import Medium
 from pmm.gap.answer import next_run
 from pmm.plan.kinds import Motion, RunKind
-from pmm.plan.toml_text import toml_table
+from pmm.plan.toml_text import toml_table, toml_value
 from sim.effects.effect import Measurement
 
 RIG_FILE: Final = "rig.toml"
@@ -25,10 +25,9 @@ def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
     name
         Of the campaign that is to be made.
     """
-    head = toml_table("", {"name": name, "rig": RIG_FILE}).split("\n", 1)[1]
     parts = [
         "# What pmm gap proposes next. The rig's file is named here; docs/plans.md has every key.\n"
-        + head
+        f"name = {toml_value(name)}\nrig = {toml_value(RIG_FILE)}\n"
     ]
     for number, one in enumerate(proposals, 1):
         table = _entry(one, f"next-{number}")

@@ -12,6 +12,11 @@ from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
 
+def files_among(effects: Sequence[str]) -> tuple[str, ...]:
+    """Return which of the named effects are files with effects of the user's own."""
+    return tuple(one for one in effects if one.endswith(".py"))
+
+
 def chosen_effects(
     effects: Sequence[str], without: Sequence[str]
 ) -> tuple[dict[str, type[Effect]], dict[str, type[Effect]]]:
@@ -23,10 +28,10 @@ def chosen_effects(
         If a name is not known or a file defines none.
     """
     more: dict[str, type[Effect]] = {}
-    for one in effects:
-        if one.endswith(".py"):
-            more |= user_effects(one)
-    names = [one for one in effects if not one.endswith(".py")]
+    files = files_among(effects)
+    for one in files:
+        more |= user_effects(one)
+    names = [one for one in effects if one not in files]
     every = {**catalogue(), **more}
     chosen = {name: find(name, more) for name in names} | more if names else every
     for name in without:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from pmm.gap.cells import StepRow
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
 from pmm.gap.rows import Ranked
@@ -89,16 +88,11 @@ def _drawn(figure: "Figure", name: str, caption: str) -> _Drawing:
     return _Drawing(inline_svg(render(figure, "svg", name), name, caption), caption)
 
 
-def _sizes(one: StepRow) -> tuple[str, str, str]:
-    stated = f"{one.stated_u:.2f}" if math.isfinite(one.stated_u) else "-"
-    return stated, f"{one.gap_u:.2f}", str(one.count)
-
-
 def _where(report: GapReport) -> _Part:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     named = report.verdict in ("effect", "unknown")
     steps = tuple(
-        (one.what, "gap" if one.beyond else "no gap", one.worst, *_sizes(one))
+        (one.what, "gap" if one.beyond else "no gap", one.worst, *one.said)
         for one in (*report.walk, *report.contrasts)
     )
     headings = ("step, or kind of run", "verdict", "largest", "E/u as stated", "E/u", "numbers")
