@@ -1,12 +1,12 @@
 """Measure: ``python -m benchmarks [NAME...] [--quick] [--output FOLDER]``."""
 
-import os
 import sys
+
+from pmm.parallel import one_thread
 
 # One thread for every contender, set before NumPy is loaded: what one core does, and no rival wins
 # by taking both.
-for _variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
-    os.environ.setdefault(_variable, "1")
+one_thread()
 
 from benchmarks.command import main  # noqa: E402
 

@@ -68,11 +68,10 @@ def run(request: Request) -> None:
 
 
 def _examined(request: Request, path: Path) -> Examined:
+    request.check_alone(request.jobs)
     options, jobs = request.options, request.jobs or 1
     if request.effect is not None:
         options = replace(options, effects=(request.effect, *request.files))
-    if request.files and jobs > 1:
-        raise ConfigurationError("--effects: effects of your own need --jobs 1")
     with progress() as told, open_executor(jobs) as executor:
         return examine(path, options, None if jobs == 1 else executor, told)
 

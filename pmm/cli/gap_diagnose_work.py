@@ -8,7 +8,6 @@ from pathlib import Path
 
 import click
 
-from hardware.description.errors import ConfigurationError
 from pmm.cli.folders import check_folder
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
@@ -76,22 +75,11 @@ def _write_plan(found: Examined, path: Path) -> None:
 
 def examined(request: Request) -> Examined:
     """Examine the campaign that is asked for, with progress on a terminal."""
-    jobs = _jobs(request)
-    with (
-        progress() as told,
-        open_executor(jobs, request.scheduler) as executor,
-    ):
+    request.check_alone(request.jobs, request.scheduler)
+    jobs = request.jobs if request.scheduler is not None else request.jobs or 1
+    with progress() as told, open_executor(jobs, request.scheduler) as executor:
         alone = jobs == 1 and request.scheduler is None
         return examine(Path(request.campaign), request.options, None if alone else executor, told)
-
-
-def _jobs(request: Request) -> int | None:
-    if request.files and (request.scheduler is not None or (request.jobs or 1) > 1):
-        raise ConfigurationError(
-            f"--effects {request.files[0]}: effects of your own are known in this process only; "
-            "leave --jobs and --scheduler out"
-        )
-    return request.jobs if request.scheduler is not None else request.jobs or 1
 
 
 @contextmanager

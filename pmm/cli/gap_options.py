@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 import click
 
+from hardware.description.errors import ConfigurationError
 from pmm.gap.examine import Options
 from pmm.gap.own_effects import files_among
 
@@ -31,6 +32,21 @@ class Looks:
     def files(self) -> tuple[str, ...]:
         """Files with effects of the user's own."""
         return files_among(self.effects)
+
+    def check_alone(self, jobs: int | None, scheduler: str | None = None) -> None:
+        """Refuse to share work that only this process can do.
+
+        Raises
+        ------
+        ConfigurationError
+            If there are effects of the user's own, and more than this process shall work.
+        """
+        if self.files and (scheduler is not None or (jobs or 1) > 1):
+            shared = "--jobs" if scheduler is None else "--scheduler"
+            raise ConfigurationError(
+                f"--effects {self.files[0]}: effects of your own are known in this process only; "
+                f"leave {shared} out"
+            )
 
     def words(self) -> Iterator[str]:
         """Yield the options as they are typed."""

@@ -66,7 +66,17 @@ def test_a_cluster(rig: Path, alone: dict[str, Any]) -> None:
             assert_same(alone, found(rig, "--scheduler", cluster.scheduler_address))
 
 
-def test_effects_of_ones_own_stay_in_this_process(rig: Path, tmp_path: Path) -> None:
-    done = run("gap", rig, "--effects", tmp_path / "own.py", "--jobs", "2")
+@pytest.mark.parametrize(
+    ("command", "shared"),
+    [
+        (("gap",), ("--jobs", "2")),
+        (("gap",), ("--scheduler", "tcp://127.0.0.1:1")),
+        (("gap", "add"), ("--jobs", "2")),
+    ],
+)
+def test_effects_of_ones_own_stay_in_this_process(
+    rig: Path, tmp_path: Path, command: tuple[str, ...], shared: tuple[str, str]
+) -> None:
+    done = run(*command, rig, "--effects", tmp_path / "own.py", *shared)
     assert done.exit_code == 2
-    assert "leave --jobs and --scheduler out" in done.stderr
+    assert f"leave {shared[0]} out" in done.stderr
