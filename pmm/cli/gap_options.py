@@ -90,6 +90,7 @@ _OPTIONS = (
         multiple=True,
         metavar="RUN|KEY=VALUE",
         help="Withhold this run, or those with this frequency (Hz), amplitude (mm), phase (deg), "
-        "speed (m/s) or medium, and predict them; repeatable.  [default: each regime in its turn]",
+        "speed (m/s) or medium (water, air, or rest for zero runs), and predict them; repeatable.  "
+        "[default: each regime in its turn]",
     ),
 )

@@ -6,7 +6,8 @@ from difflib import get_close_matches
 from typing import Final
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign import Campaign, Run
+from pmm.campaign import AtRest, Campaign, Run
+from pmm.plan.kinds import RunKind
 
 # As people write them, in the units that the tables show.
 KEYS: Final[Mapping[str, Callable[[Run], float]]] = {
@@ -15,16 +16,17 @@ KEYS: Final[Mapping[str, Callable[[Run], float]]] = {
     "phase": lambda run: math.degrees(run.strut_phase_rad) % 360.0,
     "speed": lambda run: run.carriage_speed_m_s,
 }
+_REST: Final = "rest"  # as the regimes call the medium of zero runs
 
 
 def held_out_runs(campaign: Campaign, said: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the runs to withhold, in the campaign's order.
+    """Return the names of the runs to withhold, in the campaign's order, zero runs last.
 
     Parameters
     ----------
     said
         Names of runs, or ``KEY=VALUE`` with a frequency in Hz, an amplitude in mm, a phase in
-        degrees, a speed in m/s, or ``medium=air``.
+        degrees, a speed in m/s, or ``medium=air``; ``medium=rest`` are the zero runs.
 
     Raises
     ------
@@ -32,29 +34,42 @@ def held_out_runs(campaign: Campaign, said: Sequence[str]) -> tuple[str, ...]:
         If nothing is called so, or no run is like that.
     """
     chosen = {name for one in said for name in _meant(campaign, one)}
-    return tuple(run.name for run in campaign.runs if run.name in chosen)
+    return tuple(one.name for one in _records(campaign) if one.name in chosen)
+
+
+def _records(campaign: Campaign) -> tuple[Run | AtRest, ...]:
+    """Return what a diagnosis compares: the runs, and of the records at rest the zero runs."""
+    return (*campaign.runs, *(one for one in campaign.at_rest if one.kind is RunKind.ZERO))
 
 
 def _meant(campaign: Campaign, said: str) -> list[str]:
-    if said in {run.name for run in campaign.runs}:
+    if said in {one.name for one in _records(campaign)}:
         return [said]
+    for one in campaign.at_rest:
+        if one.name == said:
+            raise ConfigurationError(
+                f"--hold-out {said}: of the records at rest zero runs alone are compared, and this "
+                f"is of kind {one.kind.value!r}"
+            )
     key, equals, value = said.partition("=")
     if not equals:
         return [campaign.run(said).name]  # says which names there are
-    found = [run.name for run in campaign.runs if _is_so(run, key.strip(), value.strip())]
+    found = [one.name for one in _records(campaign) if _is_so(one, key.strip(), value.strip())]
     if not found:
         raise ConfigurationError(f"--hold-out {said}: no run of {campaign.name!r} is like that")
     return found
 
 
-def _is_so(run: Run, key: str, value: str) -> bool:
+def _is_so(one: Run | AtRest, key: str, value: str) -> bool:
     if key == "medium":
-        return run.medium.value == value
+        return value == (_REST if isinstance(one, AtRest) else one.medium.value)
     if key not in KEYS:
         near = get_close_matches(key, [*KEYS, "medium"], n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else f"keys: {', '.join([*KEYS, 'medium'])}"
         raise ConfigurationError(f"--hold-out {key}={value}: no key {key!r}; {hint}")
     try:
-        return math.isclose(KEYS[key](run), float(value), rel_tol=1e-3, abs_tol=1e-6)
+        wanted = float(value)
     except ValueError:
         raise ConfigurationError(f"--hold-out {key}={value}: {value!r} is no number") from None
+    # A zero run has no frequency and no amplitude, and its speed is no regime of the runs'.
+    return isinstance(one, Run) and math.isclose(KEYS[key](one), wanted, rel_tol=1e-3, abs_tol=1e-6)

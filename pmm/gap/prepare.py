@@ -93,7 +93,8 @@ def prepare(
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
     )
-    fitted += loaded.at_rest
+    for one in loaded.at_rest:
+        (withheld if one.name in held_out else fitted).append(one)
     return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings)
 
 

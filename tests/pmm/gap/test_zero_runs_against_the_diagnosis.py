@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.gap.at_rest import records_at_rest
 from pmm.gap.load import load_campaign
 from pmm.plan.kinds import RunKind
-from tests.pmm.gap.rigs import run, short
+from tests.pmm.gap.rigs import changed, run, short
 from tests.pmm.run.harness import at_rest, bench, oscillation
 
 EFFECTS = tuple(
@@ -82,6 +83,40 @@ def test_runs_are_withheld_as_ever(rig: Path) -> None:
     document = found(rig, "--hold-out", "frequency=1.1")
     assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=3e-3)
     assert [one["regime"] for one in document["regimes"]] == ["run heave-1.10-20"]
+
+
+def loaded_with_a_newton(record: xr.Dataset) -> xr.Dataset:
+    return record.assign(force_aft=record["force_aft"].copy(data=record["force_aft"].values + 1.0))
+
+
+@pytest.mark.parametrize(
+    ("said", "names"), [("zero-8", ["zero-8"]), ("medium=rest", [*ZEROS])], ids=["name", "all"]
+)
+def test_they_are_withheld_and_predicted(
+    rig: Path, tmp_path: Path, said: str, names: list[str]
+) -> None:
+    """A record that carries a newton stands out, and changes nothing of what is fitted."""
+    document = found(changed(rig, tmp_path, "zero-8", loaded_with_a_newton), "--hold-out", said)
+    assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=0.01)
+    assert document["held_out"] == names
+    assert not {*names} & {*document["runs"]}
+    after = {one["regime"].removeprefix("run "): one["after"] for one in document["regimes"]}
+    assert [*after] == names
+    assert after.pop("zero-8") > 10.0
+    assert all(one < 2.0 for one in after.values())
+
+
+def test_a_record_at_rest_that_nobody_compares_cannot_be_withheld(
+    rig: Path, tmp_path: Path
+) -> None:
+    copy = shutil.copytree(rig, tmp_path / "copy")
+    path = copy / "campaign.toml"
+    head, *records = path.read_text().split("[[at_rest]]")
+    records[1] = records[1].replace('"zero"', '"pluck"')
+    path.write_text("[[at_rest]]".join([head, *records]))
+    done = run("gap", copy, "--hold-out", "zero-5")
+    assert done.exit_code == 2
+    assert "zero runs alone are compared, and this is of kind 'pluck'" in done.stderr
 
 
 def test_without_struts_nothing_tells_where_they_stand(rig: Path) -> None:
