@@ -1,13 +1,23 @@
-"""Which runs are withheld: whole regimes, never samples."""
+"""Which runs are withheld, and held against each other: whole regimes, never samples."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
 
 from analysis.gap.components import GapRun
 from hardware.description.setpoint import Medium, SetPoint
 
-_ENOUGH = 3  # runs that have to stay for the fit
+_ENOUGH: Final = 3  # runs that have to stay for the fit
+
+# What a run can be like beside its medium, with the unit that people use: from what changes the
+# law to what changes its size only.
+_MEASURES: Final[tuple[tuple[str, Callable[[SetPoint], float], str], ...]] = (
+    ("phase", lambda one: math.degrees(one.strut_phase_rad) % 360.0, "deg"),
+    ("speed", lambda one: one.carriage_speed_m_s, "m/s"),
+    ("amplitude", lambda one: 1e3 * one.eccentricity_m, "mm"),
+    ("frequency", lambda one: one.frequency_hz, "Hz"),
+)
 
 
 @dataclass(frozen=True)
@@ -17,44 +27,69 @@ class Regime:
     Attributes
     ----------
     what
-        ``"frequency"``, ``"amplitude"``, ``"phase"``, ``"speed"``, ``"medium"``, or ``"chosen"``;
+        ``"medium"``, ``"phase"``, ``"speed"``, ``"amplitude"``, ``"frequency"``, or ``"chosen"``;
         records at rest are a medium of their own, and no frequency or amplitude.
     runs
         Numbers of the withheld runs.
+    also
+        What else these same runs, and no others, have in common.
     """
 
     what: str
     value: str
     runs: tuple[int, ...]
+    also: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{self.what} {self.value}"
+        return " = ".join((f"{self.what} {self.value}", *self.also))
 
 
 def regimes(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
-    """Return the regimes of a campaign that leave enough other runs to fit to."""
+    """Return the regimes of a campaign that leave enough other runs to fit to.
+
+    By medium, phase, speed, amplitude and frequency, each from the smallest value up. Water is
+    none: nothing of it can be foretold from air.
+    """
+    found = _leaving(runs, _ENOUGH)
+    return _merged(one for one in found if (one.what, one.value) != ("medium", Medium.WATER))
+
+
+def contrasts(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
+    """Return all kinds of runs beside which there are others, in the order of :func:`regimes`."""
+    return _merged(_leaving(runs, 1))
+
+
+def _leaving(runs: Sequence[GapRun], least: int) -> Iterator[Regime]:
+    """Yield kinds of runs beside which at least so many others oscillate."""
     turning = {at for at, run in enumerate(runs) if run.turns}
-    found = [one for one in _all(runs) if len(turning.difference(one.runs)) >= _ENOUGH]
-    different = {one.runs: one for one in found}
+    for one in _all(runs):
+        if len(turning.difference(one.runs)) >= least:
+            yield one
+
+
+def _merged(found: Iterable[Regime]) -> tuple[Regime, ...]:
+    """Return one regime for each set of runs, which says all that they have in common."""
+    different: dict[tuple[int, ...], Regime] = {}
+    for one in found:
+        first = different.get(one.runs)
+        merged = one if first is None else replace(first, also=(*first.also, str(one)))
+        different[one.runs] = merged
     return tuple(different.values())
 
 
 def _all(runs: Sequence[GapRun]) -> Iterator[Regime]:
-    for what, value_of in (
-        ("frequency", lambda one: f"{one.frequency_hz:.4g} Hz"),
-        ("amplitude", lambda one: f"{1e3 * one.eccentricity_m:.4g} mm"),
-        ("phase", lambda one: f"{math.degrees(one.strut_phase_rad) % 360.0:.4g} deg"),
-        ("speed", lambda one: f"{one.carriage_speed_m_s:.4g} m/s"),
-        ("medium", lambda one: one.medium.value),
-    ):
-        values = [value_of(run.set_point) if run.turns else None for run in runs]
-        for value in dict.fromkeys(values):
-            chosen = tuple(at for at, one in enumerate(values) if one == value)
-            if value is not None and not (what == "medium" and value == Medium.WATER):
-                yield Regime(what, value, chosen)
+    turning = [(at, run.set_point) for at, run in enumerate(runs) if run.turns]
+    for medium in sorted({point.medium for _, point in turning}):
+        yield Regime("medium", medium, tuple(at for at, one in turning if one.medium is medium))
     at_rest = tuple(at for at, run in enumerate(runs) if not run.turns)
     if at_rest:
         yield Regime("medium", "rest", at_rest)
+    for what, value_of, unit in _MEASURES:
+        groups: dict[str, list[int]] = {}
+        for value, at in sorted((value_of(point), at) for at, point in turning):
+            groups.setdefault(f"{value:.4g} {unit}", []).append(at)
+        for label, chosen in groups.items():
+            yield Regime(what, label, tuple(sorted(chosen)))
 
 
 def chosen_regime(runs: Sequence[GapRun], names: Sequence[str]) -> Regime:

@@ -20,8 +20,8 @@ from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.observe import FORCES, SPEED, STRUTS
+from analysis.gap.regimes import contrasts
 from hardware.description.channels import SHAFT_ANGLE
-from hardware.description.setpoint import Medium
 from sim import signals
 from sim.effects.applied import switch_on
 from sim.effects.effect import StageName
@@ -74,7 +74,7 @@ class Walk:
         Carriage, shaft, photocell, strut motion, forces with the simulated motion, forces with the
         measured motion; those for which there are channels.
     contrasts
-        The same difference by medium, strut phase, speed, amplitude and frequency.
+        The forces' difference by medium, strut phase, speed, amplitude and frequency.
     """
 
     steps: tuple[Gap, ...]
@@ -175,18 +175,11 @@ def _rms(values: FloatArray) -> float:
 
 
 def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
-    from analysis.gap.regimes import regimes
-
     stack, whole = problem.simulator.stack, problem.residual
     forces = np.array([one.channel in FORCES for one in stack.components])
-    for regime in regimes(stack.runs):
-        rows = forces & np.isin(stack.run, regime.runs)
-        yield gap_of(stack.components, left, str(regime), rows, whole)
-    turning = [at for at, run in enumerate(stack.runs) if run.turns]
-    in_water = [at for at in turning if stack.runs[at].set_point.medium is Medium.WATER]
-    if len(in_water) < len(turning):
-        rows = forces & np.isin(stack.run, in_water)
-        yield gap_of(stack.components, left, "medium water", rows, whole)
+    for kind in contrasts(stack.runs):
+        rows = forces & np.isin(stack.run, kind.runs)
+        yield gap_of(stack.components, left, str(kind), rows, whole)
 
 
 def _fed(problem: Problem) -> FloatArray | None:

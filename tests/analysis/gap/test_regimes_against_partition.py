@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.gap.components import Component, GapRun, Observation, Part, Stack
-from analysis.gap.regimes import regimes
+from analysis.gap.regimes import contrasts, regimes
 from analysis.gap.withheld import predict_withheld
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
@@ -49,6 +49,38 @@ def test_a_regime_holds_all_runs_of_its_value_and_leaves_enough(given_: list[Set
         assert len(inside) == 1
         assert not inside & outside
         assert len(runs) - len(one.runs) >= 3
+
+
+POINTS = [
+    SetPoint(1.1, 0.02, 0.0, 1.2),
+    SetPoint(0.5, 0.02, 0.0, 1.2),
+    SetPoint(0.8, 0.01, 0.0, 1.2),
+    SetPoint(0.5, 0.02, math.pi, 1.2),
+    SetPoint(1.1, 0.02, math.pi, 0.0, Medium.AIR),
+]
+
+
+@given(st.permutations(POINTS))
+def test_kinds_of_runs_are_in_one_order_and_each_is_named_once(given_: list[SetPoint]) -> None:
+    """Whatever the order of the runs; what two kinds have in common stands in one row."""
+    runs = [bare(number, point) for number, point in enumerate(given_)]
+    assert [str(one) for one in contrasts(runs)] == [
+        "medium air = speed 0 m/s",
+        "medium water = speed 1.2 m/s",
+        "phase 0 deg",
+        "phase 180 deg",
+        "amplitude 10 mm = frequency 0.8 Hz",
+        "amplitude 20 mm",
+        "frequency 0.5 Hz",
+        "frequency 1.1 Hz",
+    ]
+    assert [str(one) for one in regimes(runs)] == [
+        "medium air = speed 0 m/s",
+        "phase 180 deg",
+        "amplitude 10 mm = frequency 0.8 Hz",
+        "frequency 0.5 Hz",
+        "frequency 1.1 Hz",
+    ]
 
 
 def test_no_observation_of_a_withheld_run_is_fitted(
