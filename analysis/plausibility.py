@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.mistaken_units import mistaken, mistaken_units
 from hardware.description.body import Body
 from hardware.description.channels import (
     DISPLACEMENT_AFT,
@@ -24,13 +25,6 @@ from hardware.description.setpoint import SetPoint
 DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
 FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
 CHECKED: Final = (*DISPLACEMENTS, *FORCES)
-UNITS: Final[Mapping[float, str]] = {
-    1000.0: "values in mm (or mN) that were read as m (or N)",
-    100.0: "values in cm that were read as m",
-    0.001: "values in kN (or m) that were read as N (or mm)",
-    1.0 / 9.80665: "values in kgf that were read as N",
-    9.80665: "values in N that were read as kgf",
-}
 _NEAR: Final = 0.1  # of a unit's factor, in the logarithm
 _STEADY: Final = 0.2  # spread of the logarithm from run to run that a wrong unit leaves
 _PLAUSIBLE: Final = (0.02, 200.0)  # force over that of the model's own inertia
@@ -86,9 +80,9 @@ def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
     for name in DISPLACEMENTS:
         told = [(abs(one.first[name]), one.set_point.eccentricity_m) for one in _with(runs, name)]
         ratio = _usual([seen / wanted for seen, wanted in told if wanted > 0.0])
-        factor = _unit(ratio)
-        if factor is not None:
-            yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", UNITS[factor])
+        meant = mistaken(ratio, DISPLACEMENT_AFT.unit, _NEAR)
+        if meant:
+            yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", meant)
 
 
 def _of_forces(
@@ -104,10 +98,10 @@ def _of_forces(
             yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
     both = [one for one in runs if set(FORCES) <= set(one.first)]
     ratio = _usual([abs(one.first[FORCES[0]]) / abs(one.first[FORCES[1]]) for one in both])
-    factor = _unit(ratio)
-    if factor is not None and not found:
+    meant = mistaken(ratio, FORCE_AFT.unit, _NEAR)
+    if meant and not found:
         said = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
-        yield _units(FORCES[0], said, f"{UNITS[factor]}, or the reverse in {FORCES[1]}")
+        yield _units(FORCES[0], said, f"{meant}, or the reverse in {FORCES[1]}")
 
 
 def _inertia_n(told: SetPoint, body: Body | None, half_spacing_m: float | None) -> float:
@@ -122,7 +116,7 @@ def _inertia_n(told: SetPoint, body: Body | None, half_spacing_m: float | None) 
 
 
 def _meant(ratio: float) -> str:
-    for factor, words in UNITS.items():
+    for factor, words in mistaken_units(FORCE_AFT.unit).items():
         if _TYPICAL[0] < ratio / factor < _TYPICAL[1]:
             return words
     return "no unit that is known"
@@ -207,13 +201,6 @@ def _usual(ratios: Sequence[float]) -> float:
     if len(positive) < _FEW or float(np.ptp(np.log(positive))) > _STEADY:
         return math.nan
     return _median(positive)
-
-
-def _unit(ratio: float) -> float | None:
-    if not math.isfinite(ratio):
-        return None
-    near = min(UNITS, key=lambda one: abs(math.log(one / ratio)))
-    return near if abs(math.log(near / ratio)) < _NEAR else None
 
 
 def _units(channel: str, found: str, meant: str) -> Flag:

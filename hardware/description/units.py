@@ -1,6 +1,7 @@
 """Units a recording may come in, and what turns them into SI."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hardware.description.errors import ConfigurationError
@@ -26,7 +27,9 @@ _UNITS: dict[str, Unit] = {
     "mm": Unit("m", 1e-3),
     "N": Unit("N", 1.0),
     "kN": Unit("N", 1e3),
+    "mN": Unit("N", 1e-3),
     "kgf": Unit("N", STANDARD_GRAVITY_M_S2),
+    "lbf": Unit("N", 0.45359237 * STANDARD_GRAVITY_M_S2),
     "Nm": Unit("N m", 1.0),
     "N m": Unit("N m", 1.0),
     "N*m": Unit("N m", 1.0),
@@ -35,7 +38,10 @@ _UNITS: dict[str, Unit] = {
     "deg": Unit("rad", math.pi / 180.0),
     "rev": Unit("rad", 2.0 * math.pi),
     "m/s": Unit("m/s", 1.0),
+    "cm/s": Unit("m/s", 1e-2),
     "mm/s": Unit("m/s", 1e-3),
+    "km/h": Unit("m/s", 1.0 / 3.6),
+    "knot": Unit("m/s", 1852.0 / 3600.0),
     "rad/s": Unit("rad/s", 1.0),
     "deg/s": Unit("rad/s", math.pi / 180.0),
     "rpm": Unit("rad/s", 2.0 * math.pi / 60.0),
@@ -69,3 +75,8 @@ def unit(name: str) -> Unit:
 def is_unit(name: str) -> bool:
     """Tell whether ``name`` is a unit that :func:`unit` knows."""
     return name.strip() in _UNITS
+
+
+def units_of(si: str) -> Mapping[str, float]:
+    """Return the factors of all units of one quantity by name, for example those of ``"N"``."""
+    return {name: one.factor for name, one in _UNITS.items() if one.si == si}

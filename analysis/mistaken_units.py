@@ -1,0 +1,44 @@
+"""Which unit was taken for another: by the factor that a recording is off."""
+
+import math
+from collections import defaultdict
+from functools import cache
+
+from hardware.description.units import units_of
+
+
+@cache
+def mistaken_units(si: str) -> dict[float, str]:
+    """Return, by the factor that the values are too large by, which units were mixed up.
+
+    The units are those that a recording may come in, so that the one that is meant can be said.
+
+    Parameters
+    ----------
+    si
+        The unit in which the values should be; they were in another one, or already in it while
+        another was stated.
+    """
+    found = defaultdict(list)
+    for name, factor in units_of(si).items():
+        if factor != 1.0:
+            found[1.0 / factor].append(f"{name} in place of {si}")
+            found[factor].append(f"{si} in place of {name}")
+    return {factor: " or ".join(said) for factor, said in found.items()}
+
+
+def mistaken(factor: float, si: str, near: float) -> str:
+    """Return in words which units were mixed up; empty where none is off by that factor.
+
+    Parameters
+    ----------
+    factor
+        What was found over what was expected, positive.
+    near
+        How far it may be from a unit's own factor, in the natural logarithm.
+    """
+    if not 0.0 < factor < math.inf:
+        return ""
+    known = mistaken_units(si)
+    nearest = min(known, key=lambda one: abs(math.log(one / factor)))
+    return known[nearest] if abs(math.log(nearest / factor)) < near else ""
