@@ -1,5 +1,6 @@
 """What is compared between rig and simulation, component by component."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -8,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.plateau import Plateau
 from analysis.gap.spectrum import Lines
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
@@ -104,12 +106,19 @@ class Observation:
         are in the channel's SI unit, the rest are logarithms.
     quiet
         Lines between the harmonics, by channel; empty where nobody looked.
+    plateaus
+        What is cut off struts and forces, by channel; empty where nobody looked.
+    turns_per_period
+        By how many turns the shaft's angle goes on each period, taken as rad; NaN where nobody
+        looked.
     """
 
     components: tuple[Component, ...]
     values: FloatArray
     uncertainty: FloatArray
     quiet: Mapping[str, Lines] = field(default_factory=dict)
+    plateaus: Mapping[str, Plateau] = field(default_factory=dict)
+    turns_per_period: float = math.nan
 
     @cached_property
     def layout(self) -> Layout:

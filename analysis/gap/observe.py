@@ -6,13 +6,15 @@ between the harmonics.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Observation, Part
+from analysis.gap.plateau import Plateau, plateau
+from analysis.gap.shaft_angle import turns_per_period, unwrapped
 from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
 from analysis.resolver.analyse import Analysis, Settings, analyse
@@ -73,7 +75,8 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
     latency_s
         Known delay of the photocell.
     quiet
-        Whether to look between the harmonics for the noise of each channel.
+        Whether to look between the harmonics for the noise of each channel, and for what a
+        recording of a rig may have wrong.
 
     Raises
     ------
@@ -88,14 +91,20 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
     choice = _choice(recording, latency_s)
     kept = tuple(one for one in names if one != choice.channel or one in FORCES)
     settings = Settings(channels=kept, harmonics=_orders(recording))
-    analysis = analyse(recording, choice, settings)
+    analysis = analyse(unwrapped(recording), choice, settings)
     found = [*_harmonics(analysis), *_frequency(analysis, recording)]
     found += _pulses(recording)
     if analysis.stretch.period_count >= _FEW_PERIODS:
         found += [*_trends(analysis), *_scatter(analysis), *_between(analysis), *_surges(analysis)]
     parts, values, uncertainty = zip(*found, strict=True)
-    lines = _quiet(analysis) if quiet else {}
-    seen = Observation(parts, np.array(values), np.array(uncertainty), lines)
+    seen = Observation(parts, np.array(values), np.array(uncertainty))
+    if quiet:
+        seen = replace(
+            seen,
+            quiet=_quiet(analysis),
+            plateaus=_plateaus(analysis, recording),
+            turns_per_period=turns_per_period(recording, analysis.readings[0].frequency_hz),
+        )
     return Observed(seen, analysis)
 
 
@@ -182,10 +191,10 @@ def _scatter(analysis: Analysis) -> Found:
                 yield part, 0.5 * float(np.log(power + 1e-12)), sure / np.sqrt(2.0)
 
 
-def _steady(analysis: Analysis) -> Recording:
+def _steady(analysis: Analysis, recording: Recording | None = None) -> Recording:
     """Return the whole periods of a record that were analysed."""
-    sums = analysis.steady_sums
-    return analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    sums, whole = analysis.steady_sums, recording or analysis.recording
+    return whole.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
 
 
 def _between(analysis: Analysis) -> Found:
@@ -205,6 +214,13 @@ def _between(analysis: Analysis) -> Found:
                 inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
                 inside[0] = False
                 yield from _band(name, number, power[inside])
+
+
+def _plateaus(analysis: Analysis, recording: Recording) -> dict[str, Plateau]:
+    """Return what is cut off struts and forces, also of the channel that tells the phase."""
+    part = _steady(analysis, recording)
+    names = [one for one in (*STRUTS, *FORCES) if one in part.channel_names]
+    return {name: plateau(part.values(name)) for name in names}
 
 
 def _quiet(analysis: Analysis) -> dict[str, Lines]:

@@ -9,12 +9,15 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 LONGEST_REPAIR = 3
-# A flat top: at least two runs of this many equal samples at the extreme, and the extreme this many
-# times as frequent as the levels beside it (a quantised sine's is at most 4 times).
+# A flat top: at least two stretches of this many samples within a step of the extreme, and within
+# so many steps, or this share of all that the signal covers, less than so many times as many
+# (twice as many at a sine's crest, 1.4 times at the flattest that a third order makes).
 FLAT_RUN = 3
-FLAT_EXCESS = 10.0
-_FLAT_LEVELS = 8
+FLAT_STEPS = 6.0
+FLAT_SHARE = 0.005
+FLAT_EXCESS = 1.25
 _FEWEST_LEVELS = 16
+_ROUNDING = 1e-9  # of what the signal covers: values nearer to each other are the same
 
 
 def repair_missing(
@@ -132,7 +135,7 @@ def _at_full_scale(row: FloatArray, channel: Channel, full_scale: float) -> list
 def _flat_tops(row: FloatArray, channel: Channel) -> list[Flag]:
     flags = []
     for what, values in (("highest", row), ("lowest", -row)):
-        count = _flat_top(values[np.isfinite(values)])
+        count = flat_top(values[np.isfinite(values)])
         if count:
             level = np.nanmax(row) if what == "highest" else np.nanmin(row)
             message = (
@@ -143,16 +146,27 @@ def _flat_tops(row: FloatArray, channel: Channel) -> list[Flag]:
     return flags
 
 
-def _flat_top(values: FloatArray) -> int:
-    """Count the samples in flat runs at the maximum, 0 where they look natural."""
-    top = values.max(initial=-np.inf)
-    lengths = np.array([stop - start for start, stop in runs(values == top)], dtype=int)
-    flat = lengths[lengths >= FLAT_RUN]
-    if flat.size < 2:
-        return 0
+def flat_top(values: FloatArray) -> int:
+    """Count the samples in flat stretches at the maximum; 0 where it is a crest.
+
+    A limit may flicker between two steps of the digitiser. Down from there a crest, however flat,
+    has many more samples within a few steps; what is cut off arrives with a slope, and has not.
+
+    Parameters
+    ----------
+    values
+        Finite, shape ``(samples,)``.
+    """
     levels = np.unique(values)
     if levels.size < _FEWEST_LEVELS:
         return 0  # a switch, or a display of a few digits
-    step = np.diff(levels).min()
-    beside = np.count_nonzero((values < top) & (values >= top - (_FLAT_LEVELS + 0.5) * step))
-    return int(flat.sum()) if flat.sum() >= FLAT_EXCESS * beside / _FLAT_LEVELS else 0
+    apart, extent = np.diff(levels), float(np.ptp(levels))
+    step = float(apart[apart > _ROUNDING * extent].min(initial=extent))
+    below = values.max() - values
+    at_top = below < 1.5 * step
+    lengths = np.array([stop - start for start, stop in runs(at_top)], dtype=int)
+    flat = lengths[lengths >= FLAT_RUN]
+    if flat.size < 2:
+        return 0
+    near = np.count_nonzero(below < max(FLAT_STEPS * step, FLAT_SHARE * extent))
+    return int(flat.sum()) if near < FLAT_EXCESS * np.count_nonzero(at_top) else 0

@@ -147,7 +147,10 @@ def _sorted(
     for one in found:
         if not one.run:
             raise DataError(f"{file}: {one.channel}: {one.reason}")
-    bad = {one.run: f"{one.channel}: {one.reason}".removeprefix(": ") for one in found}
+    bad: dict[str, str] = {}
+    for one in found:
+        said = f"{one.channel}: {one.reason}".removeprefix(": ")
+        bad[one.run] = f"{bad[one.run]}; {said}" if one.run in bad else said
     return (
         there,
         [run for run in fitted if run.name not in bad],

@@ -1,6 +1,7 @@
 """Faults of recordings, put in one by one, are found, and nothing else is."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -8,11 +9,16 @@ import numpy as np
 import pytest
 
 from analysis.gap.components import GapRun, Part
+from analysis.gap.doubt import Doubt
+from analysis.gap.plateau import Plateau
 from analysis.gap.priors import Priors
-from analysis.gap.quality import Doubt, doubts, judged
+from analysis.gap.quality import doubts, judged
 from sim.effects.catalogue import build
+from sim.effects.measured import with_force_channels
 from sim.rig import SimulatedRig
-from tests.analysis.gap.small import record
+from tests.analysis.gap.small import POINTS, record
+
+PARTS = (Part.IN_PHASE, Part.QUADRATURE)
 
 
 def scaled(run: GapRun, channel: str, factor: float) -> GapRun:
@@ -48,7 +54,7 @@ def test_an_effect_is_no_fault(rig: SimulatedRig, name: str) -> None:
     [
         (1000.0, "mN in place of N"),
         (1.0 / 9.80665, "kgf in place of N"),
-        (180.0 / math.pi, "degrees in place of radians"),
+        (4.4482, "N in place of lbf"),
         (-1.0, "sign is the opposite"),
         (2.5, "2.5 times as large"),
     ],
@@ -79,6 +85,76 @@ def test_all_files_with_the_wrong_sign(
     assert "sign is the opposite of what is simulated, in all runs" in found.reason
 
 
+def clipped(run: GapRun, channel: str) -> GapRun:
+    seen = run.observed
+    return replace(
+        run, observed=replace(seen, plateaus={**seen.plateaus, channel: Plateau(0.12, (80.0,))})
+    )
+
+
+@pytest.mark.parametrize("channel", ["force_aft", "displacement_fore"])
+def test_what_is_clipped_in_few_runs_is_left_out_and_in_most_is_a_cause(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], channel: str
+) -> None:
+    few = doubts(rig, [clipped(run, channel) for run in clean[:2]] + list(clean[2:]))
+    assert [(one.run, one.channel) for one in few] == [("r0", channel), ("r1", channel)]
+    unit = "N" if "force" in channel else "m"
+    assert few[0].reason == f"clipped: 12 % of its samples stand at 80 {unit}"
+    assert doubts(rig, [clipped(run, channel) for run in clean[:3]] + list(clean[3:])) == ()
+
+
+def with_range(rig: SimulatedRig, range_n: float) -> SimulatedRig:
+    return with_force_channels(
+        rig, lambda one, at: one if at else replace(one, full_scale=range_n, resolution=0.01)
+    )
+
+
+def test_an_amplifier_in_a_smaller_range(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
+    """In one run it is found beside what it does to the harmonics, in all it is the rig's."""
+    size = math.hypot(*(clean[1].observed.value("force_aft", part, 1) for part in PARTS))
+    short = with_range(rig, 0.8 * size)
+    one = record(short, (), 1, POINTS[1:2])[0]
+    runs = changed(clean, 1, lambda _: replace(one, name="r1"))
+    (found,) = doubts(rig, runs)
+    share = 2.0 * math.acos(0.8) / math.pi
+    assert (found.run, found.channel) == ("r1", "force_aft")
+    said = re.fullmatch(r"clipped: (.*) % of its samples stand at (.*) N and (.*) N", found.reason)
+    assert said is not None
+    assert [float(one) for one in said.groups()] == pytest.approx(
+        [100.0 * share, 0.8 * size, -0.8 * size], rel=0.1
+    )
+    every = record(with_range(rig, 4.0), (), 1)
+    clipped = [run.observed.plateaus["force_aft"].share > 0.0 for run in every]
+    assert sum(clipped) >= len(every) / 2
+    assert not [one for one in doubts(rig, every) if "clipped" in one.reason]
+
+
+def turning(run: GapRun, factor: float) -> GapRun:
+    turns = factor * run.observed.turns_per_period
+    return replace(run, observed=replace(run.observed, turns_per_period=turns))
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (180.0 / math.pi, "it goes on by 360 each period, where a turn is 6.283 rad: deg in"),
+        (0.5 / math.pi, "it goes on by 1 each period, where a turn is 6.283 rad: rev in place of"),
+        (-1.0, "it goes on by -6.283 each period, where a turn is 6.283 rad: its sign?"),
+        (10.0, "a gear between?"),
+        (0.0, "it does not move"),
+    ],
+)
+def test_shaft_angle_in_other_units(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], factor: float, said: str
+) -> None:
+    one = doubts(rig, changed(clean, 3, lambda run: turning(run, factor)))
+    every = doubts(rig, [turning(run, factor) for run in clean])
+    assert [(found.run, found.channel) for found in one] == [("r3", "shaft_angle")]
+    assert [(found.run, found.channel) for found in every] == [("", "shaft_angle")]
+    assert one[0].reason.startswith(said) or said in one[0].reason
+    assert said in every[0].reason
+
+
 def test_a_channel_that_stands_still(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     found = doubts(rig, changed(clean, 0, lambda run: scaled(run, "force_aft", 1e-13)))
     assert [(one.run, one.reason) for one in found] == [("r0", "it does not move")]
@@ -89,7 +165,7 @@ def test_a_channel_that_stands_still(rig: SimulatedRig, clean: tuple[GapRun, ...
     [
         (1000.0, "mm/s in place of m/s"),
         (3.6, "km/h in place of m/s"),
-        (1.94, "knots in place of m/s"),
+        (1.94, "knot in place of m/s"),
         (-1.0, "its sign"),
     ],
 )

@@ -2,9 +2,11 @@
 
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -81,6 +83,14 @@ def test_runs_without_recording(rig: Path, tmp_path: Path) -> None:
     assert "2 runs to fit, a diagnosis needs 3" in done.stderr
 
 
+def with_angles(rig: Path, folder: Path, change: Callable[[xr.Dataset], xr.Dataset]) -> Path:
+    """Copy a campaign with all its recordings changed."""
+    for number, name in enumerate(RUNS):
+        (folder / str(number)).mkdir()
+        rig = changed(rig, folder / str(number), name, change)
+    return rig
+
+
 def in_kilonewtons(record: xr.Dataset) -> xr.Dataset:
     return record.assign(force_aft=record["force_aft"].copy(data=record["force_aft"].values / 1e3))
 
@@ -89,9 +99,21 @@ def with_the_wrong_sign(record: xr.Dataset) -> xr.Dataset:
     return record.assign(force_fore=record["force_fore"].copy(data=-record["force_fore"].values))
 
 
+def in_a_smaller_range(record: xr.Dataset) -> xr.Dataset:
+    values = record["force_aft"].values
+    return record.assign(force_aft=record["force_aft"].copy(data=np.minimum(values, 6.0)))
+
+
+def in_degrees(record: xr.Dataset) -> xr.Dataset:
+    angle = record["shaft_angle"]
+    return record.assign(shaft_angle=angle.copy(data=np.degrees(angle.values) % 360.0))
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
+        (in_a_smaller_range, r"force_aft: clipped: \d+ % of its samples stand at 6 N"),
+        (in_degrees, r"shaft_angle: it goes on by 360 each period, .*: deg in place of rad\?"),
         (in_kilonewtons, r"force_aft: 0\.001 times as large as the other runs let expect: .*kN"),
         (with_the_wrong_sign, "force_fore: its sign is the opposite of the other runs'"),
     ],
@@ -100,6 +122,24 @@ def test_one_bad_run(rig: Path, tmp_path: Path, change: Any, said: str) -> None:
     document = found(changed(rig, tmp_path, RUNS[1], change))
     assert list(document["left_out"]) == [RUNS[1]]
     assert re.search(said, document["left_out"][RUNS[1]])
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+
+
+def test_shaft_angles_in_degrees_in_all_runs(rig: Path, tmp_path: Path) -> None:
+    campaign = with_angles(rig, tmp_path, in_degrees)
+    done = run("gap", campaign, *FEW)
+    assert done.exit_code == 1
+    assert "shaft_angle: in all runs it goes on by 360 each period" in done.stderr
+    assert "deg in place of rad? Then say the column's unit in the campaign" in done.stderr
+
+
+def test_shaft_angles_that_begin_anew_at_each_turn(rig: Path, tmp_path: Path) -> None:
+    def wrapped(record: xr.Dataset) -> xr.Dataset:
+        angle = record["shaft_angle"]
+        return record.assign(shaft_angle=angle.copy(data=angle.values % (2.0 * np.pi)))
+
+    document = found(with_angles(rig, tmp_path, wrapped))
+    assert document["left_out"] == {}
     assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
 
 
