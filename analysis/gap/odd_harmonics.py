@@ -28,6 +28,7 @@ _ALIKE: Final = 0.15  # spread of the other runs' ratios up to which one that is
 _TURNED_RAD: Final = 1.0
 _SIGN_RAD: Final = 2.6
 _NOTHING: Final = math.log(1e-6)  # of what is simulated: rounding
+_HEARD: Final = 4.0  # times its uncertainty: less is none of the motion's
 _FEW: Final = 3
 _SMALL: Final = 0.1  # of the terms of a force: a prediction below it is a difference of large ones
 _TOLERATED: Final = 0.25  # of those terms: what tolerances of added mass and damping make of them
@@ -50,14 +51,11 @@ def of_first_harmonics(
     sizes = {name: math.log(max(abs(ratio), 1e-12)) for name, ratio in ratios.items()}
     usual = float(np.median(list(sizes.values())))
     unit = (DISPLACEMENT_AFT if channel in STRUTS else FORCE_AFT).unit
-    meant = mistaken(math.exp(usual), unit, UNIT_NEAR)
-    if meant:
-        said = f"{math.exp(usual):.3g} times what is simulated, in all runs: {meant}?"
-        yield Doubt("", channel, f"{said} Then {SAY_UNIT}")
     turns = _middle_turn(list(ratios.values()))
-    if abs(cmath.phase(turns)) > _SIGN_RAD and abs(usual) < _ODD:
-        said = "its sign is the opposite of what is simulated, in all runs"
-        yield Doubt("", channel, f"{said}: the column's, or a photocell half a turn off?")
+    common = _common(usual, cmath.phase(turns), mistaken(math.exp(usual), unit, UNIT_NEAR))
+    if common:
+        yield Doubt("", channel, common)
+        return
     for name, ratio in ratios.items():
         others = [size for other, size in sizes.items() if other != name]
         own = ratio / turns / math.exp(usual)
@@ -65,6 +63,19 @@ def of_first_harmonics(
         reason = _reason(sizes[name] - usual, cmath.phase(own), _spread(others), meant)
         if reason and abs(own - 1.0) > found[name][1]:
             yield Doubt(name, channel, reason)
+
+
+def _common(size: float, turn_rad: float, meant: str) -> str:
+    """Return what is wrong with the usual ratio, and so with all runs; empty if nothing is."""
+    if size < _NOTHING:
+        return "it does not move in most runs: leave it out of the columns"
+    if meant:
+        said = f"{math.exp(size):.3g} times what is simulated, in all runs: {meant}?"
+        return f"{said} Then {SAY_UNIT}"
+    if abs(turn_rad) > _SIGN_RAD and abs(size) < _ODD:
+        said = "its sign is the opposite of what is simulated, in all runs"
+        return f"{said}: the column's, or a photocell half a turn off?"
+    return ""
 
 
 def _reason(size: float, turn_rad: float, spread: float, meant: str) -> str:
@@ -106,6 +117,9 @@ def _ratios(
     for number, run in enumerate(stack.runs):
         told = complex(*_first(stack, nominal, number, channel))
         seen = complex(*_first(stack, stack.values, number, channel))
+        noise = math.hypot(*_first(stack, stack.uncertainty, number, channel))
+        if abs(seen) < _HEARD * noise < 0.1 * abs(told):
+            seen = 0.0j  # what is left is noise
         if np.isfinite([told, seen]).all() and abs(told) > _least(rig, run, channel):
             slack = 0.0 if channel in STRUTS else _TOLERATED * _terms(rig, run) / abs(told)
             found[run.name] = seen / told, slack

@@ -155,9 +155,27 @@ def test_shaft_angle_in_other_units(
     assert said in every[0].reason
 
 
-def test_a_channel_that_stands_still(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
-    found = doubts(rig, changed(clean, 0, lambda run: scaled(run, "force_aft", 1e-13)))
+def noise_alone(run: GapRun, channel: str) -> GapRun:
+    """Leave of a channel two standard deviations, as of a sensor that is not connected."""
+    seen = run.observed
+    own = np.array([one.channel == channel for one in seen.components])
+    values = np.where(own, 2.0 * seen.uncertainty, seen.values)
+    return replace(run, observed=replace(seen, values=values))
+
+
+@pytest.mark.parametrize("channel", ["force_aft", "displacement_fore"])
+@pytest.mark.parametrize("dead", [lambda run, name: scaled(run, name, 1e-13), noise_alone])
+def test_a_channel_that_stands_still(
+    rig: SimulatedRig,
+    clean: tuple[GapRun, ...],
+    channel: str,
+    dead: Callable[[GapRun, str], GapRun],
+) -> None:
+    found = doubts(rig, changed(clean, 0, lambda run: dead(run, channel)))
     assert [(one.run, one.reason) for one in found] == [("r0", "it does not move")]
+    every = doubts(rig, [dead(run, channel) for run in clean])
+    assert [(one.run, one.channel) for one in every] == [("", channel)]
+    assert "it does not move in most runs" in every[0].reason
 
 
 @pytest.mark.parametrize(
