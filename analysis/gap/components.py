@@ -26,6 +26,8 @@ class Part(StrEnum):
     FREQUENCY = "frequency"  # log of the measured over the set frequency
     PULSES = "pulses"  # share of the photocell's pulses that are missing
     TREND = "trend"  # change of the mean per period
+    TREND_IN_PHASE = "trend in phase"  # change of a harmonic's part per period
+    TREND_QUADRATURE = "trend in quadrature"
     PERIOD_SCATTER = "period scatter"  # log of the standard deviation of the pulses' intervals
     CYCLE_SCATTER = "cycle scatter"  # log of that of a harmonic from cycle to cycle
     BETWEEN = "between the harmonics"  # log of the power in a band
@@ -33,6 +35,7 @@ class Part(StrEnum):
 
 
 STEADY_PARTS = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, Part.FREQUENCY)
+TRENDS = (Part.TREND, Part.TREND_IN_PHASE, Part.TREND_QUADRATURE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, Component, GapRun, Part
+from analysis.gap.components import STEADY_PARTS, TRENDS, Component, GapRun, Part
 from analysis.gap.forward import DRAWS
 from analysis.gap.spectrum import Loudness, loudness
 from hardware.description.channels import SHAFT_ANGLE
@@ -32,7 +32,8 @@ _FREEDOM = 12.0  # numbers by which the usual scatter of the cycles is known
 _LINES_FREEDOM = 60.0  # and the usual power between the harmonics
 # What is simulated in time has noise of its own, as large as the record's in each of its draws.
 RECORDS: Final = (1.0 + 1.0 / DRAWS) ** 0.5
-_POOLED: Final = frozenset({*STEADY_PARTS, Part.TREND})
+_POOLED: Final = frozenset({*STEADY_PARTS, *TRENDS})
+_OF_HARMONICS: Final = frozenset(set(_POOLED) - {Part.MEAN, Part.TREND, Part.FREQUENCY})
 
 
 def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
@@ -82,9 +83,9 @@ class Usual:
         share = _share(one.part, run)
         if one.channel in self.loud:
             # A trend is half a wave over the whole record.
-            order = 0.5 / run.periods if one.part is Part.TREND else one.order
+            order = one.order or (0.5 / run.periods if one.part is Part.TREND else 0)
             density = self.loud[one.channel].at(order * run.set_point.frequency_hz)
-            twice = one.part in (Part.IN_PHASE, Part.QUADRATURE)
+            twice = one.part in _OF_HARMONICS
             return density * share * (2.0 if twice else 1.0), _LINES_FREEDOM
         key = _kind(one)
         return (self.scatter[key] * share, _FREEDOM) if key in self.scatter else None
@@ -102,7 +103,7 @@ def _share(part: Part, run: GapRun) -> float:
     That of a line through the periods' means, for a trend per period.
     """
     frequency_hz, count = run.set_point.frequency_hz, run.periods
-    if part is Part.TREND:
+    if part in TRENDS:
         return 12.0 * frequency_hz / (count * (count**2 - 1.0))
     return frequency_hz / count
 
@@ -127,7 +128,7 @@ def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
             own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
             freedom = own_freedom if own else 0.0
             variance = (freedom * own + many * theirs) / (freedom + many)
-            floor = 0.0 if one.part is Part.TREND else _floor(run, one.channel, encoder_rad)
+            floor = 0.0 if one.part in TRENDS else _floor(run, one.channel, encoder_rad)
             uncertainty[at] = np.sqrt(variance + floor**2)
         if one.part not in STEADY_PARTS:
             uncertainty[at] *= RECORDS

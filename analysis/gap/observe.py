@@ -1,8 +1,8 @@
 """A recording in, everything that the diagnosis compares out.
 
 Harmonics come from the resolver. What does not repeat with the shaft shows in the rest: trends of
-the mean, scatter of the photocell's intervals and of the harmonics from cycle to cycle, and power
-between the harmonics.
+mean and harmonics from the first cycles to the last, scatter of the photocell's intervals and of
+the harmonics from cycle to cycle, and power between the harmonics.
 """
 
 from collections.abc import Iterator
@@ -33,6 +33,8 @@ STRUTS: Final = (channels.DISPLACEMENT_AFT.name, channels.DISPLACEMENT_FORE.name
 SPEED: Final = channels.CARRIAGE_SPEED.name
 COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES, SPEED)
 
+# Whose change and scatter from cycle to cycle are looked at.
+CYCLED: Final = (1, 2)
 # Bands between the harmonics, in multiples of the fundamental, by number: among the orders that are
 # compared and below them, and above.
 BANDS: Final = {1: (0.0, ORDERS + 0.8), 2: (ORDERS + 1.2, np.inf)}
@@ -159,16 +161,26 @@ def _pulses(recording: Recording) -> Found:
 
 
 def _trends(analysis: Analysis) -> Found:
-    means = solve_periods(analysis.steady_sums).coefficients[:, :, 0]
-    count = len(means)
-    turn = np.arange(count) - (count - 1) / 2.0
-    weight = turn / (turn @ turn)
+    """Yield how means and harmonics change from the first cycles to the last."""
+    solved = solve_periods(analysis.steady_sums).coefficients
     for row, name in enumerate(analysis.steady_sums.channel_names):
         if name in FORCES:
-            slope = float(weight @ means[:, row])
-            left = means[:, row] - means[:, row].mean() - slope * turn
-            spread = np.sqrt(left @ left / max(count - 2, 1))
-            yield Component(name, Part.TREND), slope, float(spread * np.sqrt(weight @ weight))
+            yield Component(name, Part.TREND), *_slope(solved[:, row, 0])
+            for order in CYCLED:
+                at = 2 * order - 1
+                yield Component(name, Part.TREND_IN_PHASE, order), *_slope(solved[:, row, at])
+                yield Component(name, Part.TREND_QUADRATURE, order), *_slope(solved[:, row, at + 1])
+
+
+def _slope(values: FloatArray) -> tuple[float, float]:
+    """Return the change from one value to the next, and its standard deviation."""
+    count = len(values)
+    turn = np.arange(count) - (count - 1) / 2.0
+    weight = turn / (turn @ turn)
+    slope = float(weight @ values)
+    left = values - values.mean() - slope * turn
+    spread = np.sqrt(left @ left / max(count - 2, 1))
+    return slope, float(spread * np.sqrt(weight @ weight))
 
 
 def _scatter(analysis: Analysis) -> Found:
@@ -184,7 +196,7 @@ def _scatter(analysis: Analysis) -> Found:
     solved = solve_periods(sums).coefficients
     for row, name in enumerate(sums.channel_names):
         if name in FORCES:
-            for order in (1, 2):
+            for order in CYCLED:
                 parts = solved[:, row, 2 * order - 1 : 2 * order + 1]
                 power = float(np.var(parts, axis=0, ddof=1).sum())
                 part = Component(name, Part.CYCLE_SCATTER, order)

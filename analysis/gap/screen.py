@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, Component, Part
+from analysis.gap.components import STEADY_PARTS, TRENDS, Component, Part
 from analysis.gap.fit import Problem
 from analysis.gap.observe import STRUTS
 from analysis.gap.where import left_by_step
@@ -23,7 +23,7 @@ _LONE: Final = 4.0  # sigma of a single component
 _PARTS: Final[Mapping[Trace, frozenset[Part]]] = {
     Trace.STEADY: frozenset(STEADY_PARTS),
     Trace.MEAN: frozenset({Part.MEAN}),
-    Trace.TREND: frozenset({Part.TREND}),
+    Trace.TREND: frozenset(TRENDS),
     Trace.PULSES: frozenset({Part.PULSES}),
     Trace.PERIODS: frozenset({Part.PERIOD_SCATTER}),
     Trace.CYCLES: frozenset({Part.CYCLE_SCATTER}),

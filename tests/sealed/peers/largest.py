@@ -20,6 +20,8 @@ _PARTS = {
     Part.BETWEEN: "hum",
     Part.LINE: "carriage-fluctuation",
     Part.TREND: "zero-drift",
+    Part.TREND_IN_PHASE: "residual-waves",
+    Part.TREND_QUADRATURE: "residual-waves",
     Part.MEAN: "zero-offset",
 }
 _FORCE_ORDERS = {2: "nonlinear-restoring", 3: "coulomb-friction", 4: "quadratic-gauge"}
