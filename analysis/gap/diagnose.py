@@ -28,10 +28,10 @@ from analysis.gap.verdict import (
     probabilities,
     stage_probabilities,
 )
-from analysis.gap.where import Walk, remaining, unknown_stage, walk
+from analysis.gap.whence import unknown_stages
+from analysis.gap.where import Walk, walk
 from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
 from hardware.description.errors import DataError
-from hardware.description.setpoint import Medium
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
@@ -202,7 +202,9 @@ def _concluded(
         walked,
         weighed,
         found,
-        stage_probabilities(found, settings.catalogue, _unknown_stage(problem, weighed)),
+        stage_probabilities(
+            found, settings.catalogue, unknown_stages(problem, walked, weighed, settings.catalogue)
+        ),
         best,
         rival,
         classes,
@@ -241,16 +243,6 @@ def _rival(
         return ranked[0] if ranked else None
     alike = {*best.fit.names, *(name for own in classes.values() for name, _ in own)}
     return next((one for one in ranked if not set(one.fit.names) & alike), None)
-
-
-def _unknown_stage(problem: Problem, weighed: Weighed) -> str:
-    stack = problem.simulator.stack
-    air = np.array([run.set_point.medium is Medium.AIR for run in stack.runs])[stack.run]
-    left = remaining(problem, problem.residual)
-    stays = (
-        None if not air.any() else bool(np.mean(left[air] ** 2) > 0.3 * np.mean(left[~air] ** 2))
-    )
-    return unknown_stage(list(weighed.unknown.sizes), stays).value
 
 
 def _different(weighed: Weighed, shares: Mapping[str, float]) -> list[Fit]:

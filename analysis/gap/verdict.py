@@ -166,19 +166,20 @@ def _left(problem: Problem, own: np.ndarray, beside: np.ndarray, other: Fit) -> 
 
 
 def stage_probabilities(
-    found: Probabilities, catalogue: Mapping[str, type[Effect]], unknown: str
+    found: Probabilities, catalogue: Mapping[str, type[Effect]], unknown: Mapping[str, float]
 ) -> dict[str, float]:
     """Return how probable it is that the gap comes from each stage; empty where there is none.
 
     Parameters
     ----------
     unknown
-        Stage to which what is unknown points.
+        The same of what is unknown, summing to 1.
     """
     shares: dict[str, float] = defaultdict(float)
     for answer, share in found.by_answer.items():
         if answer == UNKNOWN:
-            shares[unknown] += share
+            for stage, part in unknown.items():
+                shares[stage] += share * part
         elif answer not in (NONE, COEFFICIENTS):
             names = answer.split("+")
             for name in names:

@@ -268,25 +268,3 @@ def _spectrum(run: GapRun, channel: str, orders: int) -> ComplexArray:
         if np.isfinite(part).all():
             found[order] = complex(part[0], -part[1])
     return found
-
-
-def unknown_stage(sizes: Sequence[Component], stays_in_air: bool | None) -> StageName:
-    """Return the stage to which a deviation without a name points.
-
-    Parameters
-    ----------
-    sizes
-        The components that deviate.
-    stays_in_air
-        Whether it is there in runs in air as well; ``None`` if there are none.
-    """
-    channels = {one.channel for one in sizes}
-    if SPEED in channels:
-        return StageName.CARRIAGE
-    if channels & {*STRUTS, SHAFT_ANGLE.name}:
-        return StageName.DRIVE if SHAFT_ANGLE.name in channels else StageName.MECHANISM
-    if channels == {""}:
-        return StageName.PHOTOCELL
-    if len(channels & set(FORCES)) == 1 and stays_in_air is not False:
-        return StageName.DYNAMOMETERS
-    return StageName.STRUCTURE if stays_in_air else StageName.MODEL
