@@ -35,7 +35,8 @@ class Part(StrEnum):
 
 
 STEADY_PARTS = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, Part.FREQUENCY)
-TRENDS = (Part.TREND, Part.TREND_IN_PHASE, Part.TREND_QUADRATURE)
+SETTLING = (Part.TREND_IN_PHASE, Part.TREND_QUADRATURE)  # nothing of it in a steady state
+TRENDS = (Part.TREND, *SETTLING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,8 @@ class Layout:
     real, imaginary
         Weights of a harmonic's two parts, shape ``(components,)``.
     frequency, steady
-        Which components are the frequency, and which repeat with the shaft.
+        Which components are the frequency, and which a steady state tells: what repeats with the
+        shaft, and that its harmonics do not change.
     """
 
     channels: tuple[str, ...]
@@ -94,7 +96,7 @@ class Layout:
             np.array([float(one in (Part.MEAN, Part.QUADRATURE)) for one in parts]),
             np.array([-float(one is Part.IN_PHASE) for one in parts]),
             np.array([one is Part.FREQUENCY for one in parts]),
-            np.array([one in STEADY_PARTS for one in parts]),
+            np.array([one in (*STEADY_PARTS, *SETTLING) for one in parts]),
         )
 
 
@@ -203,5 +205,5 @@ class Stack:
 
     @cached_property
     def steady(self) -> NDArray[np.bool_]:
-        """Which observations repeat with the shaft, shape ``(observations,)``."""
+        """Which observations a steady state tells, shape ``(observations,)``."""
         return np.concatenate([one.observed.layout.steady for one in self.runs])

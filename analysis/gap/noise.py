@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import STEADY_PARTS, TRENDS, Component, GapRun, Part
+from analysis.gap.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
 from analysis.gap.forward import DRAWS
 from analysis.gap.spectrum import Loudness, loudness
 from hardware.description.channels import SHAFT_ANGLE
@@ -33,7 +33,7 @@ _LINES_FREEDOM = 60.0  # and the usual power between the harmonics
 # What is simulated in time has noise of its own, as large as the record's in each of its draws.
 RECORDS: Final = (1.0 + 1.0 / DRAWS) ** 0.5
 _POOLED: Final = frozenset({*STEADY_PARTS, *TRENDS})
-_OF_HARMONICS: Final = frozenset(set(_POOLED) - {Part.MEAN, Part.TREND, Part.FREQUENCY})
+_OF_HARMONICS: Final = frozenset({Part.IN_PHASE, Part.QUADRATURE, *SETTLING})
 
 
 def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
@@ -128,9 +128,11 @@ def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
             own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
             freedom = own_freedom if own else 0.0
             variance = (freedom * own + many * theirs) / (freedom + many)
+            if one.part in SETTLING:  # pulses that scatter move harmonics, not what lies between
+                variance = max(variance, own)
             floor = 0.0 if one.part in TRENDS else _floor(run, one.channel, encoder_rad)
             uncertainty[at] = np.sqrt(variance + floor**2)
-        if one.part not in STEADY_PARTS:
+        if one.part not in (*STEADY_PARTS, *SETTLING):
             uncertainty[at] *= RECORDS
     return replace(run, observed=replace(seen, uncertainty=uncertainty))
 

@@ -19,9 +19,15 @@ NONE: Final = "none"
 UNKNOWN: Final = "unknown"
 COEFFICIENTS: Final = "coefficients"
 TOLERATED: Final = 0.45  # remainder over signature at which a name is worth half
+DEMANDED: Final = 60.0  # log evidence over all that lacks it at which a name is worth half
 _STEEP = 6.0
 _EARNEST: Final = 0.8  # of pairs: the best of some thousand imitates what no catalogue has
-SLIGHT: Final = 0.02  # of its partner's signature: as likely the partner's own form
+SLIGHT: Final = 0.15  # of its partner's signature: as likely the partner's own form,
+_BESIDE: Final = 40.0  # unless the log evidence over the partner alone is above this
+# By how much log evidence between names is worth less than it says, as no form is exact: with half
+# of it, names on two spent boards were right as often as their probability said.
+TEMPER: Final = 2.0
+_LEAST: Final = 1e-6  # remainder that counts as none
 _UNBOUND: Final = 1e4  # prior deviations: as good as no prior
 ALIKE: Final = 2.5  # sigma: what an effect leaves of another's signature when it passes for it
 
@@ -47,9 +53,10 @@ class Probabilities:
 def probabilities(weighed: Weighed) -> Probabilities:
     """Turn evidence and prior odds into probabilities.
 
-    A named hypothesis that leaves much beside what it explains counts for its name only in part:
-    the rest of its weight goes to ``"unknown"``, something with that effect's signature. Effects
-    that these runs cannot show, or do not, are as good as none.
+    A named hypothesis that leaves much beside what it explains counts for its name only in part,
+    unless nothing else comes near it: the rest of its weight goes to ``"unknown"``, something with
+    that effect's signature. Effects that these runs cannot show, or do not, are as good as none.
+    Which of the names it is, is less sure than that it is one of them.
     """
     odds, count = weighed.odds, max(len(weighed.looked) + len(weighed.skipped), 1)
     concealed = (len(weighed.hidden) + len(weighed.skipped)) / count
@@ -62,32 +69,62 @@ def probabilities(weighed: Weighed) -> Probabilities:
     for prior, ones in ((single, weighed.singles), (pair, weighed.pairs)):
         for one in ones:
             logs[answer_of(one.fit)] = one.log_evidence + prior
-            shares[answer_of(one.fit)] = deserved(one)
+            shares[answer_of(one.fit)] = deserved(one, demanded(one, weighed))
     top = max(logs.values())
     weights = {name: math.exp(value - top) for name, value in logs.items()}
-    _to_the_larger(weighed.pairs, weights)
+    _to_the_larger(weighed, weights)
     total = sum(weights.values())
     found = {name: shares[name] * value / total for name, value in weights.items()}
     found[UNKNOWN] += sum((1.0 - shares[name]) * value / total for name, value in weights.items())
-    return Probabilities(found)
+    return Probabilities(_tempered(found))
 
 
-def _to_the_larger(pairs: Sequence[Named], weights: dict[str, float]) -> None:
+def _tempered(found: Mapping[str, float]) -> dict[str, float]:
+    """Return the same probability of all names together, less sure which one it is."""
+    names = [name for name, share in found.items() if name not in (NONE, UNKNOWN) and share > 0.0]
+    whole = sum(found[name] for name in names)
+    parts = {name: (found[name] / whole) ** (1.0 / TEMPER) for name in names}
+    return {**found, **{name: whole * one / sum(parts.values()) for name, one in parts.items()}}
+
+
+def _to_the_larger(weighed: Weighed, weights: dict[str, float]) -> None:
     """Let a pair with a slight partner count for the other effect alone, in a form of its own."""
-    for pair in pairs:
-        alone = [name for name in pair.fit.names if name in weights]
-        if alone and pair.balance < 1.0:
-            name = max(alone, key=lambda one: weights[one])
+    alone = {answer_of(one.fit): one.log_evidence for one in weighed.singles}
+    for pair in weighed.pairs:
+        partners = [name for name in pair.fit.names if name in alone]
+        if partners and pair.balance < 1.0:
+            name = max(partners, key=lambda one: alone[one])
+            margin = max(pair.log_evidence - alone[name], 0.0)
+            odds = (pair.balance / SLIGHT) ** 3 + math.pow(margin / _BESIDE, _STEEP)
             whole = weights[answer_of(pair.fit)]
-            kept = whole * pair.balance**3 / (pair.balance**3 + SLIGHT**3)
-            weights[answer_of(pair.fit)] = kept
-            weights[name] += whole - kept
+            weights[answer_of(pair.fit)] = whole * odds / (1.0 + odds)
+            weights[name] += whole / (1.0 + odds)
 
 
-def deserved(one: Named) -> float:
-    """Return how much of a named hypothesis's weight its name deserves, by what it leaves."""
-    clean = 1.0 / (1.0 + math.pow(one.remainder / TOLERATED, _STEEP))
+def deserved(one: Named, margin: float) -> float:
+    """Return how much of a named hypothesis's weight its name deserves.
+
+    By what it leaves, or, if that is much, by how far everything without it falls behind.
+
+    Parameters
+    ----------
+    margin
+        Log evidence over the best hypothesis without its effects.
+    """
+    odds = math.pow(TOLERATED / max(one.remainder, _LEAST), _STEEP)
+    odds += math.pow(max(margin, 0.0) / DEMANDED, _STEEP)
+    clean = odds / (1.0 + odds)
     return clean if len(one.fit.names) < 2 else _EARNEST * clean
+
+
+def demanded(one: Named, weighed: Weighed) -> float:
+    """Return a hypothesis's log evidence over the best one that shares no effect with it."""
+    rest = [
+        other.log_evidence
+        for other in (*weighed.singles, *weighed.pairs)
+        if not {*other.fit.names} & {*one.fit.names}
+    ]
+    return one.log_evidence - max([weighed.unknown.log_evidence, *rest])
 
 
 def answer_of(fit: Fit) -> str:
