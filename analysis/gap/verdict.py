@@ -76,10 +76,10 @@ def probabilities(weighed: Weighed) -> Probabilities:
     total = sum(weights.values())
     found = {name: shares[name] * value / total for name, value in weights.items()}
     found[UNKNOWN] += sum((1.0 - shares[name]) * value / total for name, value in weights.items())
-    return Probabilities(_tempered(found))
+    return Probabilities(tempered(found))
 
 
-def _tempered(found: Mapping[str, float]) -> dict[str, float]:
+def tempered(found: Mapping[str, float]) -> dict[str, float]:
     """Return the same probability of all names together, less sure which one it is."""
     names = [name for name, share in found.items() if name not in (NONE, UNKNOWN) and share > 0.0]
     whole = sum(found[name] for name in names)

@@ -20,7 +20,7 @@ def diagnosed(rig: SimulatedRig, said: str, seed: int) -> Diagnosis:
 
 def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
     found = diagnosed(rig, "carriage-speed:relative=0.02", 71)
-    assert found.probabilities.by_answer["carriage-speed"] > 0.9
+    assert found.probabilities.by_answer["carriage-speed"] > 0.75
     assert found.best is not None
     (effect,) = found.best.fit.effects
     assert getattr(effect, "relative", 0.0) == pytest.approx(0.02, rel=0.05)

@@ -116,8 +116,8 @@ def both(rig: SimulatedRig, effect: Effect, seed: int) -> tuple[GapRun, ...]:
 
 
 def named(found: Diagnosis, kind: type[E]) -> E:
-    """Return the effect that is named, alone, with nine parts in ten of the probability."""
-    assert found.probabilities.by_answer[kind.name] > 0.9
+    """Return the effect that is named, alone, with three quarters of the probability."""
+    assert found.probabilities.by_answer[kind.name] > 0.75
     assert found.best is not None
     (effect,) = found.best.fit.effects
     assert isinstance(effect, kind)
