@@ -8,6 +8,7 @@ import click
 @click.command()
 @click.argument("file", metavar="FILE.toml")
 @click.option("--most", type=click.IntRange(1, 3), default=3, show_default=True, help="Causes.")
+@click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plot", metavar="FOLDER", help="Draw measured and simulated swings there.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
 def pendulum(**options: Any) -> None:

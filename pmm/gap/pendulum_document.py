@@ -1,14 +1,17 @@
 """A pendulum's diagnosis as a document for programs."""
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any, Final
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.said import said
-from analysis.gap.pendulum.verdict import told_apart
+from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict, told_apart
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
+_SHOWN = 8  # answers
+_LEAST = 1e-4  # probability that is worth a row
 
 
 def document(name: str, found: Diagnosis) -> dict[str, Any]:
@@ -42,6 +45,20 @@ def document(name: str, found: Diagnosis) -> dict[str, Any]:
         "withheld": [asdict(one) for one in found.regimes],
         "next": [asdict(one) for one in found.proposals],
     }
+
+
+def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:
+    """Yield the answers that are not out of the question, the most probable first."""
+    for at, (names, share) in enumerate(verdict.by_set.items()):
+        if at < _SHOWN and (share > _LEAST or not at):
+            yield " and ".join(names) or "no gap", share
+
+
+def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
+    """Yield classes and single causes that are not out of the question, and both verdicts."""
+    for name, share in {**verdict.by_class, **verdict.by_cause}.items():
+        if share > _LEAST or name in (NONE, UNKNOWN):
+            yield name, share
 
 
 def parameters(best: Hypothesis) -> dict[str, dict[str, dict[str, float]]]:

@@ -1,54 +1,27 @@
 """The gap diagnosis as one page: it needs no other file, no network and no script."""
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
 from pmm.gap.rows import Ranked
 from pmm.report import gap_figures as figures
-from pmm.report.inline import inline_svg
-from pmm.report.page import write_template
-from pmm.report.style import render
-from pmm.report.tabulate import versions
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+from pmm.report.parts import Drawing, Head, Part, Table, drawn, write_parts
 
 _WALK: Final = (
     "The walk along the chain: a gap lies where it first appears. The forces are shown with the "
     "simulated motion and, where the struts have sensors, with the measured motion in its place."
 )
+_NOTE: Final = (
+    "Measured minus simulated, E, against its standard uncertainty u. What the free coefficients "
+    "(added mass, damping, restoring, mass) and the settings may explain within their tolerances "
+    "is taken off first: 1 is noise alone."
+)
 _HEAT: Final = (
     "E/u over stage, channel, harmonic and run, before and after the best answer. Light is noise."
 )
-
-
-@dataclass(frozen=True)
-class _Drawing:
-    svg: str
-    caption: str
-
-
-@dataclass(frozen=True)
-class _Table:
-    """A table whose first ``words`` columns are texts and the others numbers."""
-
-    caption: str
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    words: int = 1
-
-
-@dataclass(frozen=True)
-class _Part:
-    title: str
-    lines: tuple[str, ...] = ()
-    drawings: tuple[_Drawing, ...] = ()
-    tables: tuple[_Table, ...] = ()
 
 
 def write_gap_page(report: GapReport, path: Path, *, command: str) -> None:
@@ -62,18 +35,18 @@ def write_gap_page(report: GapReport, path: Path, *, command: str) -> None:
         What was run to make it.
     """
     left_out = [(f"{name} left out", why) for name, why in report.left_out.items()]
-    content = {
-        "title": f"{report.campaign}: rig and simulation",
-        "report": report,
-        "notices": [*left_out, *(("note", one) for one in report.notes)],
-        "parts": [part for part in _parts(report) if part is not None],
-        "command": command,
-        "versions": versions(),
-    }
-    write_template("gap_page.html.jinja", content, path)
+    notes = [("note", one) for one in report.notes]
+    held = f", {len(report.held_out)} withheld" if report.held_out else ""
+    head = Head(
+        f"{report.campaign}: rig and simulation",
+        (report.sentence,),
+        f"{_NOTE} {len(report.runs)} runs used{held}.",
+        (*left_out, *notes),
+    )
+    write_parts(head, _parts(report), path, command=command)
 
 
-def _parts(report: GapReport) -> "tuple[_Part | None, ...]":
+def _parts(report: GapReport) -> tuple[Part | None, ...]:
     return (
         _where(report),
         _which(report),
@@ -84,11 +57,7 @@ def _parts(report: GapReport) -> "tuple[_Part | None, ...]":
     )
 
 
-def _drawn(figure: "Figure", name: str, caption: str) -> _Drawing:
-    return _Drawing(inline_svg(render(figure, "svg", name), name, caption), caption)
-
-
-def _where(report: GapReport) -> _Part:
+def _where(report: GapReport) -> Part:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     named = report.verdict in ("effect", "unknown")
     steps = tuple(
@@ -96,18 +65,18 @@ def _where(report: GapReport) -> _Part:
         for one in (*report.walk, *report.contrasts)
     )
     headings = ("step, or kind of run", "verdict", "largest", "E/u as stated", "E/u", "numbers")
-    return _Part(
+    return Part(
         "Where",
         (f"Stage, by the answers' probabilities: {', '.join(shares)}.",) if named else (),
         (
-            _drawn(figures.walk_figure(report), "walk", _WALK),
-            _drawn(figures.heat_map(report), "heat", _HEAT),
+            drawn(figures.walk_figure(report), "walk", _WALK),
+            drawn(figures.heat_map(report), "heat", _HEAT),
         ),
-        (_Table("Walk", headings, steps, 3),),
+        (Table("Walk", headings, steps, 3),),
     )
 
 
-def _which(report: GapReport) -> _Part:
+def _which(report: GapReport) -> Part:
     rows = tuple(
         (
             joined(one.answer),
@@ -123,12 +92,12 @@ def _which(report: GapReport) -> _Part:
     said = [f"What would tell the class apart: {one}." for one in first]
     if report.hidden:
         said.append(f"Cannot be seen in these runs: {', '.join(report.hidden)}.")
-    drawing = _drawn(
+    drawing = drawn(
         figures.ranking_figure(report),
         "ranking",
         "Answers by probability: named effects, pairs, something unknown, no gap.",
     )
-    return _Part("Which", tuple(said), (drawing,), (_Table("Ranking", headings, rows, 4),))
+    return Part("Which", tuple(said), (drawing,), (Table("Ranking", headings, rows, 4),))
 
 
 def _parameters(one: Ranked) -> str:
@@ -139,7 +108,7 @@ def _parameters(one: Ranked) -> str:
     )
 
 
-def _how_far(report: GapReport) -> _Part | None:
+def _how_far(report: GapReport) -> Part | None:
     if not report.regimes:
         return None
     rows = tuple((one.what, *one.said) for one in report.controls)
@@ -149,11 +118,11 @@ def _how_far(report: GapReport) -> _Part | None:
         else "Each regime, predicted from all other runs."
     )
     headings = ("answer", "gap before, in u", "after", "shrinks by", "95 %")
-    drawing = _drawn(figures.withheld_figure(report), "withheld", said)
-    return _Part("How far", (), (drawing,), (_Table("Controls", headings, rows),))
+    drawing = drawn(figures.withheld_figure(report), "withheld", said)
+    return Part("How far", (), (drawing,), (Table("Controls", headings, rows),))
 
 
-def _coefficients(report: GapReport) -> _Part:
+def _coefficients(report: GapReport) -> Part:
     rows = tuple(
         (
             one.name,
@@ -166,28 +135,28 @@ def _coefficients(report: GapReport) -> _Part:
     )
     headings = ("coefficient", "unit", "stated", "fitted without effect", "with the best answer")
     line = "Both fits start from the stated tolerances; ± is two standard uncertainties."
-    return _Part("Coefficients", (line,), (), (_Table("Coefficients", headings, rows, 2),))
+    return Part("Coefficients", (line,), (), (Table("Coefficients", headings, rows, 2),))
 
 
-def _remainder(report: GapReport) -> _Part:
+def _remainder(report: GapReport) -> Part:
     rows = tuple(
         (one.what, "gap" if one.beyond else "no gap", one.worst, f"{one.gap_u:.2f}")
         for one in report.remains
     )
-    table = _Table("Remainder", ("step", "verdict", "largest", "E/u"), rows, 3)
+    table = Table("Remainder", ("step", "verdict", "largest", "E/u"), rows, 3)
     lines = tuple(f"{line[0].upper()}{line[1:]}." for line in described(report))
     form = report.description
-    drawings: tuple[_Drawing, ...] = ()
+    drawings: tuple[Drawing, ...] = ()
     if form is not None and not all(math.isnan(x) for one in form.maps for x in one.force_n.flat):
         caption = "What no answer explains, as a force over the strut's motion: its form, no cause."
-        drawings = (_drawn(figures.force_map_figure(form.maps), "map", caption),)
-    return _Part("What remains", lines, drawings, (table,))
+        drawings = (drawn(figures.force_map_figure(form.maps), "map", caption),)
+    return Part("What remains", lines, drawings, (table,))
 
 
-def _next(report: GapReport) -> _Part | None:
+def _next(report: GapReport) -> Part | None:
     if not report.next_runs:
         return None
     rows = tuple((one["said"], f"{one['gain_log_odds']:.1f}") for one in report.next_runs)
     line = "Runs of this rig, by how well they are expected to tell the leading answers apart."
-    table = _Table("Next", ("run", "expected log odds"), rows)
-    return _Part("Next", (line,), (), (table,))
+    table = Table("Next", ("run", "expected log odds"), rows)
+    return Part("Next", (line,), (), (table,))

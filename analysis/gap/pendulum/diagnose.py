@@ -50,6 +50,12 @@ class Diagnosis:
     regimes: tuple[Regime, ...]
     proposals: tuple[Proposal, ...]
 
+    @property
+    def control(self) -> tuple[str, ...]:
+        """The wrong cause that is asked to foretell too; empty where there is none."""
+        wrong = _wrong(self.searched, self.best)
+        return () if wrong is None else wrong.names
+
 
 def diagnose_trials(
     problem: Problem,
@@ -111,12 +117,17 @@ def _rivals(searched: Searched, best: Hypothesis, laws: Sequence[Law]) -> tuple[
     for law in laws:
         if law.log_ratio > -_ASKED:
             sets.setdefault(law.hypothesis.names, law.hypothesis)
+    control = _wrong(searched, best)
+    if control is not None:
+        sets.setdefault(control.names, control)
+    return tuple(sets.values())
+
+
+def _wrong(searched: Searched, best: Hypothesis) -> Hypothesis | None:
+    """Return the best single cause among those that the best set has nothing to do with."""
     wrong = [
         one
         for one in searched.sets.values()
         if len(one.names) == 1 and not set(one.names) & {*best.names, *DAMPING}
     ]
-    if wrong:
-        control = max(wrong, key=lambda one: one.log_evidence)
-        sets.setdefault(control.names, control)
-    return tuple(sets.values())
+    return max(wrong, key=lambda one: one.log_evidence, default=None)

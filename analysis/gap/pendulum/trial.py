@@ -198,6 +198,11 @@ class Problem:
     @cached_property
     def nuisances(self) -> Nuisances:
         """Releases, amplitudes of gates, tolerances: columns in sigma."""
+        return Nuisances(np.hstack([self.releases, self.set_ups, self.shared, self.unsure]))
+
+    @cached_property
+    def releases(self) -> FloatArray:
+        """Columns of how each record began, and of its scale where that is unknown."""
         columns = []
         for at, trial in enumerate(self.trials):
             spread = _ANY_SIZE if trial.scaled else _FURTHER
@@ -207,20 +212,36 @@ class Problem:
             if trial.scaled:
                 own = (self.trial == at) & (self.kind == 0)
                 columns.append(_ANY_SIZE * own / self.uncertainty)
-            columns += [self._varied(at, one) for one in trial.variants]
-        for known in self.tolerances:
-            columns += self._tolerated(known)
-        columns += self._unsure()
-        return Nuisances(np.column_stack(columns))
+        return np.column_stack(columns)
 
-    def _unsure(self) -> list[FloatArray]:
-        """Return columns of what the nominal simulation itself may be wrong by."""
+    @cached_property
+    def set_ups(self) -> FloatArray:
+        """Columns of what each trial's own set-up leaves open: variants, its own tolerances."""
+        columns = [
+            self._varied(at, one) for at, trial in enumerate(self.trials) for one in trial.variants
+        ]
+        for known in self.tolerances:
+            columns += self._tolerated(known) if known.own else []
+        return self._stacked(columns)
+
+    @cached_property
+    def shared(self) -> FloatArray:
+        """Columns of the tolerances that all trials share."""
+        tolerated = [self._tolerated(known) for known in self.tolerances if not known.own]
+        return self._stacked([np.sum(each, axis=0) for each in tolerated])
+
+    @cached_property
+    def unsure(self) -> FloatArray:
+        """Columns of what the nominal simulation itself may be wrong by."""
         found: list[FloatArray] = []
         for kind, error in enumerate(self.model_error):
             for at in range(len(self.trials)) if error > 0.0 else ():
                 smooth = self.smooth((self.trial == at) & (self.kind == kind))
                 found += list((error * smooth / self.uncertainty[:, None]).T)
-        return found
+        return self._stacked(found)
+
+    def _stacked(self, columns: Sequence[FloatArray]) -> FloatArray:
+        return np.column_stack(columns) if columns else np.empty((self.uncertainty.size, 0))
 
     def smooth(self, rows: NDArray[np.bool_]) -> FloatArray:
         """Return columns whose random sum is a smooth curve of unit size over some windows.
@@ -242,8 +263,7 @@ class Problem:
 
     def _tolerated(self, known: Tolerance) -> list[FloatArray]:
         made = [known.make(known.deviation, trial) for trial in self.trials]
-        each = [self._column(at, effect, 1.0) for at, effect in enumerate(made)]
-        return each if known.own else [np.sum(each, axis=0)]
+        return [self._column(at, effect, 1.0) for at, effect in enumerate(made)]
 
     def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
         trial = self.trials[at]

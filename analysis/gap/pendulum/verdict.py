@@ -7,12 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.gaussian import misfit
+from analysis.gap.gaussian import Nuisances, misfit
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS, Cause, cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
 from analysis.gap.pendulum.search import Searched
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Problem
+from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.effects import body
 
@@ -21,6 +22,7 @@ NONE: Final = "none"
 TOLD_APART: Final = 20.0  # ratio of evidence from which one answer is preferred to another
 TOLERATED: Final = 0.1  # remainder over gap at which a name is worth half
 _STEEP: Final = 4.0
+_BEYOND: Final = 4.0
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
 LAWS: Final[Mapping[str, tuple[type, ...]]] = {
     "dry friction": (body.BearingFriction,),
@@ -212,31 +214,43 @@ class KindOfGap:
 
     Attributes
     ----------
+    stated
+        Root mean square of measured less simulated in u, releases fitted.
     before, after
-        Root mean square of measured less simulated in u, releases and tolerances fitted: without
-        a cause, and with the best set.
+        The same with what is known within tolerances fitted too: without a cause, and with the
+        best set.
     """
 
     kind: str
     count: int
+    stated: float
     before: float
     after: float
+
+    @property
+    def beyond(self) -> bool:
+        """Whether what is left is more than noise, by four standard deviations of its square."""
+        return self.after**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
 
 
 def where(problem: Problem, best: Hypothesis) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
-    old = remainder(problem, null(problem))
-    new = remainder(problem, best)
+    lefts = (as_stated(problem), remainder(problem, null(problem)), remainder(problem, best))
     found = []
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind
-        sizes = [float(np.sqrt(np.mean(left[rows] ** 2))) for left in (old, new)]
-        found.append(KindOfGap(KINDS[kind], int(rows.sum()), sizes[0], sizes[1]))
+        sizes = [float(np.sqrt(np.mean(left[rows] ** 2))) for left in lefts]
+        found.append(KindOfGap(KINDS[kind], int(rows.sum()), *sizes))
     return tuple(found)
 
 
-def remainder(problem: Problem, one: Hypothesis) -> np.ndarray:
+def remainder(problem: Problem, one: Hypothesis) -> FloatArray:
     """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
     left = one.without_signature(problem)
-    found: np.ndarray = left - problem.nuisances.columns @ problem.nuisances.fitted(left)
-    return found
+    return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
+
+
+def as_stated(problem: Problem) -> FloatArray:
+    """Return the gap to the simulation as it is stated, releases at their best, in sigma."""
+    release = Nuisances(problem.releases)
+    return problem.residual - release.columns @ release.fitted(problem.residual)

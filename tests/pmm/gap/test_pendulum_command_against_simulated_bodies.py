@@ -1,6 +1,8 @@
 """``pmm gap pendulum`` on records of simulated bodies: table, document, figures."""
 
 import json
+import re
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,7 @@ from sim.pendulum.floating import Floating
 from sim.pendulum.pivot import Pendulum, RigidPart
 from sim.pendulum.record import record
 
+HOUSE = Path(__file__).parents[3]
 LOSS = 0.3  # of the amplitude a cycle over its square, 1/rad
 AFLOAT = Floating(inertia=100.0, added_inertia=20.0, restoring=800.0)
 ON_EDGE = Pendulum((RigidPart(20.0, 0.6, 1.5), RigidPart(70.0, 0.9, 12.0)))
@@ -86,6 +89,26 @@ def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> No
         assert heading in done.stdout
     (figure,) = (tmp_path / "figures").iterdir()
     assert figure.read_text().count("<svg") == 1
+
+
+def test_the_page_stands_alone(tmp_path: Path) -> None:
+    path, page = HOUSE / "examples" / "decay" / "roll.toml", tmp_path / "gap.html"
+    done = run(path, "--most", "1", "--page", page)
+    assert done.exit_code == 0, done.output
+    told = page.read_text()
+    for title in ("Where", "Which", "Laws of damping", "How far", "Records", "What remains"):
+        assert f"<h2>{title}</h2>" in told
+    assert done.stdout.splitlines()[0][1:] in told
+    assert told.count("<svg") == 4
+    assert not re.findall(r'(?:src|href)="(?!#)', told)
+    assert "<script" not in told
+
+
+def test_the_examples_record_is_what_its_script_makes() -> None:
+    folder = HOUSE / "examples" / "decay"
+    made = runpy.run_path(str(folder / "make.py"))["rows"]()
+    kept = np.loadtxt(folder / "roll.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(made, kept, atol=2e-6)
 
 
 def test_one_simulation_is_to_be_given(tmp_path: Path) -> None:

@@ -1,0 +1,118 @@
+"""Figures of a pendulum's gap: swings, heat map, ranking, before and after."""
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.pendulum.trial import Problem
+from analysis.gap.pendulum.verdict import as_stated, remainder
+from analysis.inertia.numeric import FloatArray
+from pmm.gap.pendulum_document import ranking
+from pmm.report.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
+from pmm.report.labels import plain
+from pmm.report.style import PALETTE, TRACE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LABELS: Final = {"decay": "ln amplitude", "period": "phase to reference (rad)"}
+_EACH: Final = 5  # windows from one number on the map to the next
+
+
+def heat_map(found: Diagnosis) -> "Figure":
+    """Draw E/u of each kind of observable and record over its windows, as stated and after."""
+    problem = found.problem
+    pairs = sorted(set(zip(problem.trial.tolist(), problem.kind.tolist(), strict=True)))
+    names = [f"{problem.trials[trial].name}: {KINDS[kind]}" for trial, kind in pairs]
+    count = max(one.windows.count for one in problem.trials)
+    columns = [str(at + 1) if at % _EACH == 0 else "" for at in range(count)]
+    breaks = [at for at in range(1, len(pairs)) if pairs[at][0] != pairs[at - 1][0]]
+    maps = [_map(problem, pairs, left) for left in (as_stated(problem), _after(found))]
+    titles = ("as stated", "with the best answer")
+    grid = Grid(names, columns, breaks, titles, "window of the record")
+    return before_and_after(grid, maps, "E/u")
+
+
+def _after(found: Diagnosis) -> FloatArray:
+    return remainder(found.problem, found.best)
+
+
+def _map(problem: Problem, pairs: list[tuple[int, int]], left: FloatArray) -> FloatArray:
+    """Return sizes by trial and kind over the windows; NaN where a record has none."""
+    count = max(one.windows.count for one in problem.trials)
+    values = np.full((len(pairs), count), np.nan)
+    for row, (trial, kind) in enumerate(pairs):
+        rows = (problem.trial == trial) & (problem.kind == kind)
+        windows = problem.centre_s[rows] / problem.trials[trial].windows.length_s
+        values[row, windows.astype(int)] = np.abs(left[rows])
+    return values
+
+
+def ranking_figure(found: Diagnosis) -> "Figure":
+    """Draw the answers' probabilities, the best one in its colour."""
+    shown = dict(ranking(found.verdict))
+    return probability_bars(shown, list(shown)[:1], "probability; in blue the most probable")
+
+
+def withheld_figure(found: Diagnosis) -> "Figure":
+    """Draw the gap of each withheld regime without a cause, with the best set and the control."""
+    rows = [regime.name for regime in found.regimes]
+    best, control = found.best.names, found.control
+    series = [
+        Dots("without a cause", "o", BEFORE, [_clear(one.before.gap) for one in found.regimes]),
+        Dots("best answer", "s", AFTER, _gaps(found, best)),
+    ]
+    if control:
+        series.append(Dots(f"wrong cause: {control[0]}", "^", PALETTE[3], _gaps(found, control)))
+    return dotted(rows, series)
+
+
+def _gaps(found: Diagnosis, names: tuple[str, ...]) -> list[float]:
+    gaps = []
+    for regime in found.regimes:
+        own = [_clear(one.gap) for one in regime.foretold if one.causes == names]
+        gaps.append(own[0] if own else math.nan)
+    return gaps
+
+
+def _clear(gap: float) -> float:
+    """Return a gap in u without the noise's own 1."""
+    return math.sqrt(max(gap**2 - 1.0, 0.0))
+
+
+def swings_figure(found: Diagnosis, at: int) -> "Figure":
+    """Draw one record's amplitude and phase over time: measured, simulated, and with the causes.
+
+    Both simulations have the release and the tolerances that fit best, as in the diagnosis.
+    """
+    from matplotlib.figure import Figure
+
+    problem = found.problem
+    trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
+    curves = {"simulated": (nothing, BEFORE), "with causes": (found.best.signature, AFTER)}
+    with drawing():
+        figure = Figure(figsize=(10.5, 5.0), layout="constrained")
+        axes = figure.subplots(2, 1, sharex=True)
+        for panel, (kind, label) in zip(axes, _LABELS.items(), strict=True):
+            row = KINDS.index(kind)
+            seen = trial.windows.centres_s, trial.observed[row]
+            panel.plot(*seen, "o", color=TRACE, markersize=3, label="measured")
+            rows = (problem.trial == at) & (problem.kind == row)
+            for name, (signature, colour) in curves.items() if rows.any() else ():
+                told = _told(problem, signature)[rows]
+                panel.plot(problem.centre_s[rows], told, color=colour, label=name)
+            panel.set_ylabel(label)
+        axes[1].legend()
+        axes[0].set_title(plain(trial.name), loc="left")
+        axes[1].set_xlabel("time after the start (s)")
+    return figure
+
+
+def _told(problem: Problem, signature: FloatArray) -> FloatArray:
+    """Return the observations as causes have them, with the release and tolerances that fit."""
+    nuisances = problem.nuisances
+    free = nuisances.columns @ nuisances.fitted(problem.residual - signature)
+    return problem.nominal + (signature + free) * problem.uncertainty
