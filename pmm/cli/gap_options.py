@@ -1,4 +1,4 @@
-"""What of a campaign and of the catalogue a diagnosis looks at: options that commands share."""
+"""What of records and of the catalogue a diagnosis looks at: options that commands share."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,19 +14,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
-class Looks:
-    """The options, by their names on the command line."""
+class Chosen:
+    """The options that choose from the catalogue, by their names on the command line."""
 
     effects: tuple[str, ...]
     without: tuple[str, ...]
-    sensors: str | None
-    hold_out: tuple[str, ...]
-
-    @property
-    def options(self) -> Options:
-        """What the diagnosis is told."""
-        names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
-        return Options(self.effects, self.without, names, self.hold_out)
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -50,36 +42,72 @@ class Looks:
 
     def words(self) -> Iterator[str]:
         """Yield the options as they are typed."""
-        for name, values in (
-            ("--effects", self.effects),
-            ("--without", self.without),
-            ("--sensors", (self.sensors,) if self.sensors else ()),
-            ("--hold-out", self.hold_out),
-        ):
+        for name, values in (("--effects", self.effects), ("--without", self.without)):
             for value in values:
                 yield from (name, value)
 
 
+@dataclass(frozen=True)
+class Looks(Chosen):
+    """Those and the options of a campaign's runs."""
+
+    sensors: str | None
+    hold_out: tuple[str, ...]
+
+    @property
+    def options(self) -> Options:
+        """What the diagnosis is told."""
+        names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
+        return Options(self.effects, self.without, names, self.hold_out)
+
+    def words(self) -> Iterator[str]:
+        """Yield the options as they are typed."""
+        yield from super().words()
+        if self.sensors:
+            yield from ("--sensors", self.sensors)
+        for value in self.hold_out:
+            yield from ("--hold-out", value)
+
+
 def looks(command: F) -> F:
     """Give a command the options of :class:`Looks`."""
-    for option in reversed(_OPTIONS):
+    return catalogue_options(_with(command, _RUNS))
+
+
+def catalogue_options(command: F) -> F:
+    """Give a command the options that choose from the catalogue."""
+    return _with(command, _CATALOGUE)
+
+
+def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
+    for option in reversed(options):
         command = option(command)
     return command
 
 
-_OPTIONS = (
+def _listed(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
+    """Take names apart that stand between commas."""
+    names = [one for text in given for one in text.split(",")]
+    return tuple(one.strip() for one in names if one.strip())
+
+
+_CATALOGUE: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--effects",
         multiple=True,
+        callback=_listed,
         metavar="NAME|FILE.py",
         help="Consider this effect only, or those of a Python file of your own too; repeatable.",
     ),
     click.option(
         "--without",
         multiple=True,
+        callback=_listed,
         metavar="NAME",
         help="Take an effect out of the catalogue; repeatable.",
     ),
+)
+_RUNS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--sensors",
         metavar="NAME,NAME",

@@ -4,10 +4,13 @@ from typing import Any
 
 import click
 
+from pmm.cli.gap_options import catalogue_options
+
 
 @click.command()
 @click.argument("file", metavar="FILE.toml")
 @click.option("--most", type=click.IntRange(1, 3), default=3, show_default=True, help="Causes.")
+@catalogue_options
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plot", metavar="FOLDER", help="Draw measured and simulated swings there.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")

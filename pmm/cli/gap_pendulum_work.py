@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
+from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.said import said
 from pmm.cli.folders import check_folder
 from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.gap.pendulum import load_problem
 from pmm.gap.pendulum_document import document, parameters
+from pmm.gap.pendulum_examine import Options, examine_pendulum
 from pmm.gap.pendulum_tables import Rows, percent, tables
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Request:
+class Request(Chosen):
     """The options, by their names there."""
 
     file: str
@@ -32,9 +33,15 @@ class Request:
     plot: str | None
     as_json: bool
 
+    @property
+    def options(self) -> Options:
+        """What the diagnosis is told."""
+        return Options(self.effects, self.without, self.most)
+
     def words(self) -> Iterator[str]:
         """Yield the options as they are typed."""
         yield from ("--most", str(self.most))
+        yield from super().words()
         if self.page is not None:
             yield from ("--page", self.page)
 
@@ -45,18 +52,21 @@ def run(request: Request) -> None:
     if request.page is not None:
         check_folder(Path(request.page).parent, "--page")
     with progress() as told:
-        found = diagnose_trials(load_problem(path), most=request.most, progress=told)
+        examined = examine_pendulum(path, request.options, told)
+    found = examined.diagnosis
     if request.as_json:
-        click.echo(json.dumps(document(path.stem, found), indent=1))
+        click.echo(json.dumps(document(path.stem, examined), indent=1))
     else:
         _print(output(), found)
+        for note in examined.notes:
+            output().print(f"\nNOTE  {note}", soft_wrap=True)
     if request.plot is not None:
         _draw(found, Path(request.plot))
     if request.page is not None:
         from pmm.report.pendulum_page import write_pendulum_page
 
         command = pasted("gap", "pendulum", request.file, *request.words())
-        write_pendulum_page(found, path.stem, Path(request.page), command=command)
+        write_pendulum_page(examined, path.stem, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
 
 

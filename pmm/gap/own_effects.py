@@ -1,15 +1,23 @@
 """Which effects a diagnosis considers, those of the user's own among them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.forward import Simulator
 from hardware.description.errors import ConfigurationError, PmmError
 from sim.effects.catalogue import catalogue, find, user_effects
 from sim.effects.effect import Effect
+from sim.pendulum import effects as pendulum
 from sim.rig import SimulatedRig
+
+FloatArray = NDArray[np.float64]
+Kind = TypeVar("Kind")
 
 
 def files_among(effects: Sequence[str]) -> tuple[str, ...]:
@@ -27,19 +35,77 @@ def chosen_effects(
     ConfigurationError
         If a name is not known or a file defines none.
     """
-    more: dict[str, type[Effect]] = {}
+    return _chosen(effects, without, Known(catalogue(), find, user_effects))
+
+
+def chosen_of_pendulums(
+    effects: Sequence[str], without: Sequence[str]
+) -> tuple[dict[str, type[Any]], dict[str, type[Any]]]:
+    """Return the same of the pendulums' catalogue.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`chosen_effects`.
+    """
+    return _chosen(
+        effects, without, Known(pendulum.by_name(), pendulum.find, pendulum.user_effects)
+    )
+
+
+@dataclass(frozen=True)
+class Known(Generic[Kind]):
+    """A catalogue: its effects by name, how one is found, how a user's file is read."""
+
+    every: dict[str, Kind]
+    find: Callable[[str, dict[str, Kind]], Kind]
+    read: Callable[[str], dict[str, Kind]]
+
+
+def _chosen(
+    effects: Sequence[str], without: Sequence[str], known: Known[Kind]
+) -> tuple[dict[str, Kind], dict[str, Kind]]:
+    more: dict[str, Kind] = {}
     files = files_among(effects)
     for one in files:
-        more |= user_effects(one)
+        more |= known.read(one)
     names = [one for one in effects if one not in files]
-    every = {**catalogue(), **more}
-    chosen = {name: find(name, more) for name in names} | more if names else every
+    every = known.every | more
+    chosen = {name: known.find(name, more) for name in names} | more if names else every
     for name in without:
-        find(name, more)
+        known.find(name, more)
     left = {name: kind for name, kind in chosen.items() if name not in without}
     if not left:
         raise ConfigurationError("--effects and --without leave no effect to consider")
     return left, more
+
+
+def tried(name: str, what: str, does: Callable[[], FloatArray]) -> None:
+    """Try an effect of the user's own, so that a fault in it is said by its name.
+
+    Parameters
+    ----------
+    what
+        What it acts on.
+    does
+        Returns what the effect makes of that.
+
+    Raises
+    ------
+    ConfigurationError
+        If it raises, or what it does is no number. One that refuses the test or rig does not.
+    """
+    try:
+        found = does()
+    except PmmError:
+        return
+    except Exception as error:  # a user's own code may raise anything
+        said = f"{type(error).__name__}: {error}"
+        raise ConfigurationError(f"effect {name}, of your own: {said}") from error
+    if not np.isfinite(found).all():
+        raise ConfigurationError(
+            f"effect {name}, of your own: what it does to {what} is not a number"
+        )
 
 
 def try_own(kinds: Mapping[str, type[Effect]], rig: SimulatedRig, runs: Sequence[GapRun]) -> None:
@@ -50,15 +116,10 @@ def try_own(kinds: Mapping[str, type[Effect]], rig: SimulatedRig, runs: Sequence
     ConfigurationError
         If one raises, or what it does is no number. One that refuses the rig does not.
     """
+    simulator = Simulator(rig, Stack.of(runs[:1]))
     for name, kind in kinds.items():
-        try:
-            found = Simulator(rig, Stack.of(runs[:1])).predict((kind(),))
-        except PmmError:
-            continue
-        except Exception as error:  # a user's own code may raise anything
-            said = f"{type(error).__name__}: {error}"
-            raise ConfigurationError(f"effect {name}, of your own: {said}") from error
-        if not np.isfinite(found).all():
-            raise ConfigurationError(
-                f"effect {name}, of your own: what it does to run {runs[0].name} is not a number"
-            )
+        tried(name, f"run {runs[0].name}", partial(_predicted, simulator, kind))
+
+
+def _predicted(simulator: Simulator, kind: type[Effect]) -> FloatArray:
+    return simulator.predict((kind(),))

@@ -4,23 +4,25 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any, Final
 
-from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict, told_apart
+from pmm.gap.pendulum_examine import Examined
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
 _SHOWN = 8  # answers
 _LEAST = 1e-4  # probability that is worth a row
 
 
-def document(name: str, found: Diagnosis) -> dict[str, Any]:
+def document(name: str, examined: Examined) -> dict[str, Any]:
     """Return everything that was found, as plain numbers and texts."""
+    found = examined.diagnosis
     verdict = found.verdict
     return {
         "schema": SCHEMA,
         "name": name,
         "said": list(said(found)),
+        "notes": list(examined.notes),
         "best": list(verdict.best),
         "inflation": verdict.inflation,
         "probabilities": {

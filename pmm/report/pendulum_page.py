@@ -6,6 +6,7 @@ from typing import Final
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.said import said
 from pmm.gap import pendulum_tables as tables
+from pmm.gap.pendulum_examine import Examined
 from pmm.report import pendulum_figures as figures
 from pmm.report.parts import Head, Part, Table, drawn, write_parts
 
@@ -20,7 +21,7 @@ _HEAT: Final = (
 )
 
 
-def write_pendulum_page(found: Diagnosis, name: str, path: Path, *, command: str) -> None:
+def write_pendulum_page(examined: Examined, name: str, path: Path, *, command: str) -> None:
     """Write a diagnosis as one HTML page.
 
     Parameters
@@ -32,7 +33,10 @@ def write_pendulum_page(found: Diagnosis, name: str, path: Path, *, command: str
     command
         What was run to make it.
     """
-    head = Head(f"{name}: measured and simulated", tuple(map(_sentence, said(found))), _NOTE)
+    found = examined.diagnosis
+    lines = tuple(map(_sentence, said(found)))
+    notices = tuple(("note", one) for one in examined.notes)
+    head = Head(f"{name}: measured and simulated", lines, _NOTE, notices)
     parts = (
         _where(found),
         _which(found),

@@ -1,8 +1,6 @@
 """Find effects by name, and build them from what a user types."""
 
-import importlib.util
 import pkgutil
-import sys
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from functools import cache
@@ -13,6 +11,7 @@ from typing import Any
 import sim.effects
 from hardware.description.errors import ConfigurationError
 from sim.effects.effect import Effect
+from sim.own_file import import_file, refuse_taken
 
 
 @cache
@@ -102,18 +101,8 @@ def load_file(path: Path) -> dict[str, type[Effect]]:
     ConfigurationError
         If the file cannot be imported or defines no effect.
     """
-    spec = importlib.util.spec_from_file_location(f"user_effects_{path.stem}", path)
-    if spec is None or spec.loader is None or not path.is_file():
-        raise ConfigurationError(f"{path}: no Python file of effects")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        raise ConfigurationError(
-            f"{path}: cannot be imported: {type(error).__name__}: {error}"
-        ) from error
-    found = {one.name: one for one in _concrete() if one.__module__ == spec.name}
+    module = import_file(path)
+    found = {one.name: one for one in _concrete() if one.__module__ == module.__name__}
     if not found:
         raise ConfigurationError(
             f"{path}: defines no effect (a subclass of sim.effects.effect.Effect)"
@@ -130,9 +119,5 @@ def user_effects(path: str | Path | None) -> dict[str, type[Effect]]:
         If the file defines none, or one whose name the catalogue has already.
     """
     found = {} if path is None else load_file(Path(path))
-    taken = sorted(set(found) & set(catalogue()))
-    if taken:
-        raise ConfigurationError(
-            f"{path}: {', '.join(taken)}: the catalogue has an effect of that name; rename yours"
-        )
+    refuse_taken(path or "", found, catalogue())
     return found

@@ -5,7 +5,7 @@ about its typical value. What is random from run to run shows in the scatter, no
 is no cause here; what only light gates have drops out where their passages are averaged.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any, Final
@@ -15,7 +15,7 @@ import numpy as np
 from analysis.gap.pendulum.trial import Tolerance, Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.pendulum.effects import CATALOGUE
+from sim.pendulum.effects import CATALOGUE, by_name
 from sim.pendulum.effects.base import PendulumEffect, Plausible, plausible
 from sim.pendulum.effects.setup import ON_LINES
 from sim.pendulum.floating import Floating
@@ -120,8 +120,10 @@ def _axis(name: str, known: Plausible) -> Axis:
     return Axis(name, known, 0.0, _TYPICAL * size)
 
 
-def causes_for(trials: Sequence[Trial]) -> tuple[Cause, ...]:
-    """Return every cause that these trials can have."""
+def causes_for(
+    trials: Sequence[Trial], kinds: Iterable[type[Any]] = CATALOGUE
+) -> tuple[Cause, ...]:
+    """Return every cause that these trials can have, of some effects."""
     first = trials[0].bench.body
     unfit = [*_RANDOM, *_GATES]
     if not isinstance(first, Suspension):
@@ -134,7 +136,7 @@ def causes_for(trials: Sequence[Trial]) -> tuple[Cause, ...]:
         unfit += ["yaw_pitch_resonance"]
     if not getattr(first, "linear", False):
         unfit += ["finite_amplitude"]
-    return tuple(cause(one) for one in CATALOGUE if one.name not in unfit)
+    return tuple(cause(one) for one in kinds if one.name not in unfit)
 
 
 def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
@@ -145,7 +147,7 @@ def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
     ConfigurationError
         If there is no such effect, or it has more numbers than one.
     """
-    known: dict[str, type[Any]] = {one.name: one for one in CATALOGUE}
+    known = by_name()
     fit = [key for key, kind in known.items() if len(cause(kind).axes) == 1]
     if name not in fit:
         near = get_close_matches(name, fit, n=1, cutoff=0.4)

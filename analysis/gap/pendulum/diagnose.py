@@ -79,7 +79,7 @@ def diagnose_trials(
     best = searched.best(verdict.inflation)
     damped = any(name in DAMPING for name in best.names)
     progress("laws of damping")
-    laws = damping_laws(problem, best, verdict.inflation) if damped else ()
+    laws = damping_laws(problem, best, tried, verdict.inflation) if damped else ()
     progress("what else it could be")
     others = alternatives(problem, best, tried, verdict.inflation)
     progress("withheld swings")

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,7 +24,7 @@ TOLERATED: Final = 0.1  # remainder over gap at which a name is worth half
 _STEEP: Final = 4.0
 _BEYOND: Final = 4.0
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
-LAWS: Final[Mapping[str, tuple[type, ...]]] = {
+LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
     "dry friction": (body.BearingFriction,),
     "linear": (body.ViscousDamping,),
     "quadratic": (body.QuadraticDrag,),
@@ -160,12 +160,17 @@ def told_apart(first: Law, other: Law) -> bool:
     return all(one <= two for one, two in zip(first.withheld, other.withheld, strict=False))
 
 
-def damping_laws(problem: Problem, best: Hypothesis, wide: float) -> tuple[Law, ...]:
-    """Fit every law of damping beside the best set's other causes; best first."""
+def damping_laws(
+    problem: Problem, best: Hypothesis, causes: Sequence[Cause], wide: float
+) -> tuple[Law, ...]:
+    """Fit every law of damping that the causes make beside the best set's others; best first."""
     others = [one for one in best.causes if one.name not in DAMPING]
-    fitted = {}
-    for name, kinds in LAWS.items():
-        fitted[name] = fit(problem, [*others, *(cause(kind) for kind in kinds)])
+    possible = {one.name for one in causes}
+    fitted = {
+        name: fit(problem, [*others, *(cause(kind) for kind in kinds)])
+        for name, kinds in LAWS.items()
+        if {kind.name for kind in kinds} <= possible
+    }
     top = max(one.log_evidence for one in fitted.values())
     laws = [Law(name, one, (one.log_evidence - top) / wide) for name, one in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))

@@ -3,10 +3,14 @@
 Add an effect by adding its class to a file here and to :data:`CATALOGUE`.
 """
 
+from collections.abc import Mapping
+from dataclasses import is_dataclass
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
+from sim.own_file import import_file, refuse_taken
 from sim.pendulum.effects import body, instruments, lines, setup
 from sim.pendulum.effects.base import PendulumEffect, check_plausible, plausible
 
@@ -40,8 +44,34 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
 )
 
 
-def make_effect(name: str, **parameters: Any) -> PendulumEffect:
-    """Return an effect of the catalogue by its name; parameters left out are typical.
+def find(name: str, more: Mapping[str, type[Any]] | None = None) -> type[Any]:
+    """Return an effect's class by its name.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is none; the message gives the nearest names.
+    """
+    known = by_name() | dict(more or {})
+    if name not in known:
+        raise ConfigurationError(f"no pendulum effect {name!r}{_near(name, list(known))}")
+    return known[name]
+
+
+def by_name() -> dict[str, type[Any]]:
+    """Return the catalogue by the effects' names."""
+    return {one.name: one for one in CATALOGUE}
+
+
+def make_effect(
+    name: str, more: Mapping[str, type[Any]] | None = None, /, **parameters: Any
+) -> PendulumEffect:
+    """Return an effect by its name; parameters left out are typical.
+
+    Parameters
+    ----------
+    more
+        Effects of the user's own, by name.
 
     Raises
     ------
@@ -49,16 +79,43 @@ def make_effect(name: str, **parameters: Any) -> PendulumEffect:
         For an unknown effect or parameter, with the nearest names, and for a value outside its
         plausible range.
     """
-    known = {one.name: one for one in CATALOGUE}
-    if name not in known:
-        raise ConfigurationError(f"no pendulum effect {name!r}{_near(name, list(known))}")
-    names = list(known[name].__dataclass_fields__)
+    kind = find(name, more)
+    names = list(kind.__dataclass_fields__)
     for key in parameters:
         if key not in names:
             raise ConfigurationError(f"{name} has no parameter {key!r}{_near(key, names)}")
-    effect: PendulumEffect = known[name](**parameters)
+    effect: PendulumEffect = kind(**parameters)
     check_plausible(effect)
     return effect
+
+
+def user_effects(path: str | Path) -> dict[str, type[Any]]:
+    """Return the effects of a user's own file, by name.
+
+    An effect there is what it is here: a frozen dataclass with a ``name``, that is called with a
+    test and returns the changed one.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be imported or defines none, or one whose name the catalogue has already.
+    """
+    module = import_file(Path(path))
+    own = [
+        one for one in vars(module).values() if getattr(one, "__module__", "") == module.__name__
+    ]
+    found = {str(one.name): one for one in own if _is_effect(one)}
+    if not found:
+        raise ConfigurationError(
+            f"{path}: defines no effect (a dataclass with a name, called with a test)"
+        )
+    refuse_taken(path, found, by_name())
+    return found
+
+
+def _is_effect(one: Any) -> bool:
+    called = isinstance(one, type) and any("__call__" in vars(base) for base in one.__mro__)
+    return called and is_dataclass(one) and isinstance(getattr(one, "name", None), str)
 
 
 def effects_table() -> str:
@@ -76,5 +133,4 @@ def effects_table() -> str:
 
 def _near(name: str, known: list[str]) -> str:
     near = get_close_matches(name, known, n=3, cutoff=0.4)
-    hint = f"; did you mean {', '.join(near)}?" if near else ""
-    return f"{hint} (known: {', '.join(known)})"
+    return f"; did you mean {', '.join(near)}?" if near else f" (known: {', '.join(known)})"

@@ -93,7 +93,7 @@ def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> No
 
 def test_the_page_stands_alone(tmp_path: Path) -> None:
     path, page = HOUSE / "examples" / "decay" / "roll.toml", tmp_path / "gap.html"
-    done = run(path, "--most", "1", "--page", page)
+    done = run(path, "--effects", "quadratic_drag,inertia", "--page", page)
     assert done.exit_code == 0, done.output
     told = page.read_text()
     for title in ("Where", "Which", "Laws of damping", "How far", "Records", "What remains"):
