@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from analysis.gap.pendulum.causes import tolerance
+from analysis.gap.pendulum.further import Reach
 from analysis.gap.pendulum.surrogate import surrogate
 from analysis.gap.pendulum.swings import (
     Windows,
@@ -61,6 +62,13 @@ class GateTable:
 
 
 @dataclass(frozen=True)
+class ReachTable(Reach):
+    """What a further suspension may be."""
+
+    __pydantic_config__: ClassVar = _KEEP
+
+
+@dataclass(frozen=True)
 class PendulumCase:
     """The file.
 
@@ -75,6 +83,8 @@ class PendulumCase:
         How many swings of a light gates' record count.
     tolerances
         Standard deviations of what is stated, by effect.
+    reach
+        Within which a further suspension is proposed.
     """
 
     name: str
@@ -87,6 +97,7 @@ class PendulumCase:
     gravity_m_s2: float = 9.80665
     swings: int = 60
     tolerances: Mapping[str, float] = field(default_factory=dict)
+    reach: ReachTable | None = None
 
     __pydantic_config__: ClassVar = _KEEP
 
@@ -125,7 +136,17 @@ def load_problem(path: Path) -> Problem:
     DataError
         If a record is.
     """
-    case = read_case(path)
+    return problem_of(read_case(path), path)
+
+
+def problem_of(case: PendulumCase, path: Path) -> Problem:
+    """Read the records of a file that has been read.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`load_problem`.
+    """
     scaled = bool(case.suspensions)
     known = tuple(
         tolerance(name, deviation, own=scaled and name in _OWN)

@@ -45,7 +45,8 @@ def document(name: str, examined: Examined) -> dict[str, Any]:
         ],
         "alternatives": [asdict(one) for one in found.alternatives],
         "withheld": [asdict(one) for one in found.regimes],
-        "next": [asdict(one) for one in found.proposals],
+        "rivals": [list(one.names) for one in found.rivals or ()],
+        "next": [{"what": one.what, "gain_ln_evidence": one.gain} for one in found.proposals],
     }
 
 

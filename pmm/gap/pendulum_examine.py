@@ -12,7 +12,7 @@ from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError
 from pmm.gap.own_effects import chosen_of_pendulums, tried
-from pmm.gap.pendulum import load_problem
+from pmm.gap.pendulum import problem_of, read_case
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ def examine_pendulum(
         If a record is.
     """
     kinds, more = chosen_of_pendulums(options.effects, options.without)
-    problem = load_problem(path)
+    case = read_case(path)
+    problem = problem_of(case, path)
     first = problem.trials[0]
     for name, kind in more.items():
         tried(name, f"record {first.name}", partial(_typical, first, cause(kind)))
@@ -70,7 +71,7 @@ def examine_pendulum(
     hidden = tuple(name for name in kinds if name not in shown) if options.effects else ()
     if not causes:
         raise ConfigurationError(f"--effects: these records cannot show {', '.join(hidden)}")
-    found = diagnose_trials(problem, causes, most=options.most, progress=progress)
+    found = diagnose_trials(problem, causes, most=options.most, reach=case.reach, progress=progress)
     return Examined(found, hidden)
 
 

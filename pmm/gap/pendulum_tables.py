@@ -109,8 +109,8 @@ def _asked(one: Foretold, found: Diagnosis) -> str:
 
 def next_rows(found: Diagnosis) -> Rows:
     """Return the proposed runs, best first."""
-    rows = tuple((one.what, f"{one.separation:.1f}") for one in found.proposals[:_SHOWN])
-    return Rows("Next", ("next run", "expected separation [sigma]"), rows)
+    rows = tuple((one.what, f"{one.gain:.1f}") for one in found.proposals[:_SHOWN])
+    return Rows("Next", ("next run", "expected ln evidence"), rows)
 
 
 def percent(share: float) -> str:

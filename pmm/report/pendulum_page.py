@@ -113,4 +113,11 @@ def _remains(found: Diagnosis) -> Part:
 
 def _next(found: Diagnosis) -> Part | None:
     rows = tables.next_rows(found)
-    return Part("Next", (), (), (_table(rows),)) if rows.rows else None
+    if not rows.rows or found.rivals is None:
+        return None
+    one, other = (" + ".join(rival.names) for rival in found.rivals)
+    line = (
+        "Records that a further test can make, by the ln evidence that the right one of two "
+        f"answers is expected to gain at least, whichever is right: {one}, or {other}."
+    )
+    return Part("Next", (line,), (), (_table(rows),))

@@ -1,14 +1,16 @@
 """The whole diagnosis of a pendulum test or a free decay."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from analysis.gap.pendulum.causes import DAMPING, Cause, causes_for
-from analysis.gap.pendulum.further import Proposal, propose
+from analysis.gap.pendulum.further import Proposal, Reach, propose
 from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.search import MOST_CAUSES, Searched, search
 from analysis.gap.pendulum.trial import Problem
 from analysis.gap.pendulum.verdict import (
+    TOLD_APART,
     Alternative,
     KindOfGap,
     Law,
@@ -20,6 +22,7 @@ from analysis.gap.pendulum.verdict import (
     where,
 )
 from analysis.gap.pendulum.withheld import Regime, foretell
+from analysis.inertia.spread import SURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +39,10 @@ class Diagnosis:
         What could stand in the place of each cause.
     regimes
         Withheld swings, foretold.
+    rivals
+        The two leading answers that cannot be told apart; none where all is told.
     proposals
-        Further releases that tell the two best laws apart, best first.
+        Further records that tell them apart, best first.
     """
 
     problem: Problem
@@ -48,7 +53,19 @@ class Diagnosis:
     laws: tuple[Law, ...]
     alternatives: tuple[Alternative, ...]
     regimes: tuple[Regime, ...]
-    proposals: tuple[Proposal, ...]
+    rivals: tuple[Hypothesis, Hypothesis] | None = None
+    proposals: tuple[Proposal, ...] = ()
+
+    @property
+    def foretells(self) -> float:
+        """Share of the gap, where it is least, that the best set foretells; NaN if not asked."""
+        shares = [one.shrinkage for regime in self.regimes for one in regime.foretold[:1]]
+        return min(shares, default=math.nan)
+
+    @property
+    def told(self) -> bool:
+        """Whether the best set foretells enough to be called the cause."""
+        return self.foretells >= SURE
 
     @property
     def control(self) -> tuple[str, ...]:
@@ -62,6 +79,7 @@ def diagnose_trials(
     causes: Sequence[Cause] | None = None,
     *,
     most: int = MOST_CAUSES,
+    reach: Reach | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Diagnosis:
     """Say what separates measured releases from their simulation.
@@ -72,6 +90,8 @@ def diagnose_trials(
         To be tried; every one that these tests can have where left out.
     most
         How many causes may act together.
+    reach
+        Within which a further suspension is proposed.
     """
     tried = tuple(causes_for(problem.trials) if causes is None else causes)
     searched = search(problem, tried, most, progress)
@@ -85,17 +105,35 @@ def diagnose_trials(
     progress("withheld swings")
     regimes = foretell(problem, _rivals(searched, best, laws)) if best.causes else ()
     laws = _with_withheld(laws, regimes)
-    rival = _rival(laws)
-    proposals = propose(problem, *rival, verdict.inflation) if rival else ()
-    return Diagnosis(
-        problem, searched, verdict, best, where(problem, best), laws, others, regimes, proposals
-    )
+    gap = where(problem, best)
+    found = Diagnosis(problem, searched, verdict, best, gap, laws, others, regimes)
+    progress("the next run")
+    rivals = leading(found)
+    proposals = propose(problem, *rivals, verdict.inflation, reach) if rivals else ()
+    return replace(found, rivals=rivals, proposals=proposals)
 
 
-def _rival(laws: Sequence[Law]) -> tuple[Hypothesis, Hypothesis] | None:
-    """Return the best law and the next one that cannot be told from it, if there is one."""
-    left = [law for law in laws[1:] if not told_apart(laws[0], law)]
-    return (laws[0].hypothesis, left[0].hypothesis) if left else None
+def leading(found: Diagnosis) -> tuple[Hypothesis, Hypothesis] | None:
+    """Return the two answers that a further record should tell apart; none where all is told."""
+    laws, wide = found.laws, found.verdict.inflation
+    left = [law.hypothesis for law in laws[1:] if not told_apart(laws[0], law)]
+    if left:
+        best = laws[0].hypothesis
+        return best, next((one for one in left if not _nested(best, one)), left[0])
+    if not found.best.causes:
+        return None
+    others = [one for one in found.searched.sets.values() if not _nested(found.best, one)]
+    weights = {one.names: found.searched.log_weight(one.names, wide) for one in others}
+    second = max(others, key=lambda one: weights[one.names], default=None)
+    if second is None:
+        return None
+    ahead = found.searched.log_weight(found.best.names, wide) - weights[second.names]
+    return None if found.told and ahead > math.log(TOLD_APART) else (found.best, second)
+
+
+def _nested(one: Hypothesis, other: Hypothesis) -> bool:
+    """Whether either has all causes of the other."""
+    return set(one.names) <= set(other.names) or set(other.names) <= set(one.names)
 
 
 _ASKED = 20.0  # ln evidence behind the best law within which the withheld swings are asked too

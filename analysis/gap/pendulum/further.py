@@ -1,34 +1,60 @@
-"""Which release would tell the leading answers apart, among those that a test can make."""
+"""Which further record would tell the leading answers apart, among those that a test can make."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
-from analysis.gap.gaussian import Nuisances, misfit
+from analysis.gap.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.hypothesis import Hypothesis, held
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.inertia.numeric import FloatArray
+from hardware.description.errors import ConfigurationError
+from sim.pendulum.effects.base import small_swing, suspension_of
 
 _DECAY, _MEAN = 0, 2
+_FACTORS: Final = (0.5, 1.0, 1.5, 2.0, 3.0)  # of the release
+_BEYOND: Final = 1.25  # how far past the lines that were used, where nothing is said
+_EACH: Final = 5  # spacings, and lines
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A further release and what it is expected to bring.
+    """A further record and what it is expected to bring.
 
     Attributes
     ----------
-    separation
-        Expected difference of the two answers in sigma, all that is free fitted again; half its
-        square is the expected gain in log evidence.
+    gains
+        By how much the right one of two answers is expected to gain on the other in ln evidence:
+        if the first is right, and if the second is.
     """
 
     what: str
-    factor: float
-    longer: float
-    separation: float
+    gains: tuple[float, float]
+
+    @property
+    def gain(self) -> float:
+        """The least of them: what it brings whichever is right."""
+        return min(self.gains)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Smallest and largest half spacing and length of lines, m, that a body can be hung on."""
+
+    half_spacing_m: tuple[float, float]
+    line_m: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        for name in ("half_spacing_m", "line_m"):
+            low, high = getattr(self, name)
+            if not 0.0 < low <= high:
+                raise ConfigurationError(
+                    f"{name} = [{low:g}, {high:g}] is no range of lengths: above 0, smallest first"
+                )
 
 
 def propose(
@@ -36,53 +62,123 @@ def propose(
     first: Hypothesis,
     second: Hypothesis,
     wide: float = 1.0,
-    factors: Sequence[float] = (0.5, 1.0, 1.5, 2.0, 3.0),
+    reach: Reach | None = None,
 ) -> tuple[Proposal, ...]:
-    """Rank further releases of the first trial: larger and smaller ones, and longer records.
+    """Rank further records: other suspensions where light gates watch one, else releases.
 
     Parameters
     ----------
     wide
-        Chi-square per degree of freedom of the record there is: uncertainties are this much wider.
+        Chi-square per degree of freedom of the records there are: uncertainties are this much
+        wider.
+    reach
+        Of suspensions; where left out a little beyond those that were used, but no wider.
     """
-    found = []
-    for factor in factors:
-        for longer in (1.0, 2.0):
-            trial = _planned(problem.trials[0], factor, longer, first, wide)
-            away = _separation(problem, trial, first, second)
-            what = f"release at {factor:g} times the amplitude"
-            what += ", a record twice as long" if longer > 1.0 else ", a record as long"
-            found.append(Proposal(what, factor, longer, away))
-    return tuple(sorted(found, key=lambda one: -one.separation))
-
-
-def _planned(trial: Trial, factor: float, longer: float, first: Hypothesis, wide: float) -> Trial:
-    """Return a trial as the first answer foretells it, with noise like the record's."""
-    windows = replace(trial.windows, count=round(longer * trial.windows.count))
-    held_at = trial.bench.release
-    release = replace(
-        held_at,
-        displacement=tuple(factor * value for value in held_at.displacement),
-        rate=tuple(factor * value for value in held_at.rate),
+    made = (
+        _suspensions(problem, first, reach or _reach(problem))
+        if problem.on_lines
+        else _releases(problem.trials[0], first)
     )
-    bench = replace(trial.bench, release=release)
-    planned = replace(trial, windows=windows, bench=bench)
+    found = []
+    for what, trial in made:
+        planned = replace(trial, uncertainty=trial.uncertainty * math.sqrt(wide))
+        one, other = (_foretold(problem, planned, h, wide) for h in (first, second))
+        found.append(Proposal(what, (_divergence(one, other), _divergence(other, one))))
+    return tuple(sorted(found, key=lambda one: -one.gain))
+
+
+def _releases(trial: Trial, first: Hypothesis) -> Iterator[tuple[str, Trial]]:
+    """Yield larger and smaller releases, and longer records, as the first answer foretells them."""
+    held_at = trial.bench.release
+    for factor in _FACTORS:
+        for longer in (1, 2):
+            release = replace(
+                held_at,
+                displacement=tuple(factor * value for value in held_at.displacement),
+                rate=tuple(factor * value for value in held_at.rate),
+            )
+            windows = replace(trial.windows, count=longer * trial.windows.count)
+            bench = replace(trial.bench, release=release)
+            what = f"release at {factor:g} times the amplitude"
+            what += ", a record twice as long" if longer > 1 else ", a record as long"
+            yield what, _planned(replace(trial, windows=windows, bench=bench), trial, first)
+
+
+def _suspensions(problem: Problem, first: Hypothesis, reach: Reach) -> Iterator[tuple[str, Trial]]:
+    """Yield suspensions within reach, as the first answer foretells their records."""
+    trial = problem.trials[0]
+    body = suspension_of(trial.bench, "a further suspension")
+    halves, lines = (
+        np.unique(np.round(np.geomspace(*one, _EACH), 2))
+        for one in (reach.half_spacing_m, reach.line_m)
+    )
+    for half in halves:
+        for line in lines:
+            hung = replace(body, half_spacing_m=float(half), line_length_m=float(line))
+            other = replace(trial, bench=replace(trial.bench, body=hung))
+            bench = other.bench.with_effects([*other.effects, *first.effects(other)])
+            inertia, restoring = small_swing(bench, trial.acts_on)
+            omega = math.sqrt(restoring / inertia)
+            other = replace(other, windows=replace(trial.windows, reference_rad_s=omega))
+            what = f"half spacing {half:.2f} m, lines of {line:.2f} m"
+            yield what, _planned(other, trial, first)
+
+
+def _reach(problem: Problem) -> Reach:
+    bodies = [suspension_of(trial.bench, "a further suspension") for trial in problem.trials]
+    halves = [one.half_spacing_m for one in bodies]
+    lines = [one.line_length_m for one in bodies]
+    return Reach((min(halves) / _BEYOND, max(halves)), (min(lines) / _BEYOND, _BEYOND * max(lines)))
+
+
+def _planned(planned: Trial, trial: Trial, first: Hypothesis) -> Trial:
+    """Return a trial as the first answer foretells it, with noise like the record's."""
     observed = planned.simulate(first.effects(trial))
-    known = np.exp(trial.observed[_DECAY])
-    size = np.exp(observed[_DECAY])
-    spread = np.empty_like(observed)
+    known, size = np.exp(trial.observed[_DECAY]), np.exp(observed[_DECAY])
+    spread = np.full_like(observed, np.nan)
     for kind in range(len(KINDS)):
-        own = trial.uncertainty[kind]
-        absolute = np.nanmedian(own if kind == _MEAN else own * known)
-        spread[kind] = absolute * math.sqrt(wide) / (1.0 if kind == _MEAN else size)
+        own = trial.uncertainty[kind] if kind == _MEAN else trial.uncertainty[kind] * known
+        if np.isfinite(own).any():
+            spread[kind] = np.nanmedian(own) / (1.0 if kind == _MEAN else size)
     return replace(planned, observed=observed, uncertainty=spread)
 
 
-def _separation(problem: Problem, trial: Trial, first: Hypothesis, second: Hypothesis) -> float:
+@dataclass(frozen=True, eq=False)
+class _Expected:
+    """What one answer expects of a record, in sigma: normal, with this mean and covariance."""
+
+    mean: FloatArray
+    covariance: FloatArray
+
+
+def _foretold(problem: Problem, trial: Trial, one: Hypothesis, wide: float) -> _Expected:
+    """Return what an answer expects of a planned record, given the records that there are."""
     there = replace(problem, trials=(trial,))
-    one, other = (held(there, h.causes, h.units) for h in (first, second))
-    root = np.linalg.cholesky(second.posterior.covariance)
-    columns = [there.nuisances.columns, other.columns @ root]
-    return math.sqrt(
-        max(misfit(one.signature - other.signature, Nuisances(np.hstack(columns))), 0.0)
-    )
+    again = len(problem.trials) == 1 and not problem.on_lines
+    (kept, free), (carried, begun) = (_parted(part, again=again) for part in (problem, there))
+    root = math.sqrt(wide)
+    columns = np.hstack([kept, one.columns]) / root
+    left = (one.without_signature(problem) + one.columns @ one.units) / root
+    known = posterior(left, columns, Nuisances(free / root))
+    planned = held(there, one.causes, one.units)
+    slopes = np.hstack([carried, planned.columns])
+    moved = known.mean - np.concatenate([np.zeros(kept.shape[1]), one.units])
+    covariance = np.eye(len(slopes)) + begun @ begun.T + slopes @ known.covariance @ slopes.T
+    return _Expected(planned.signature + slopes @ moved, covariance)
+
+
+def _parted(problem: Problem, *, again: bool) -> tuple[FloatArray, FloatArray]:
+    """Return the columns that a further record shares with the others, and those it does not."""
+    own: Sequence[FloatArray] = (problem.releases, problem.unsure)
+    if again:  # the same body in the same set-up: only the release is new
+        return np.hstack([problem.shared, problem.set_ups]), np.hstack(own)
+    return problem.shared, np.hstack([*own, problem.set_ups])
+
+
+def _divergence(right: _Expected, other: _Expected) -> float:
+    """Return the ln evidence that the right answer is expected to gain on the other one."""
+    solved = np.linalg.solve(other.covariance, right.covariance)
+    apart = other.mean - right.mean
+    square = float(apart @ np.linalg.solve(other.covariance, apart))
+    spread = float(np.trace(solved)) - apart.size - float(np.linalg.slogdet(solved)[1])
+    return 0.5 * (square + spread)

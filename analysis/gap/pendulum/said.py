@@ -1,11 +1,12 @@
 """What a pendulum's diagnosis comes to, in sentences; what cannot be told is said to be so."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Final
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.verdict import UNKNOWN, Law, told_apart
+from analysis.gap.pendulum.verdict import TOLD_APART, UNKNOWN, Law, told_apart
 from analysis.inertia.spread import said_of
 
 FASTER: Final = "damping that grows faster than linearly"
@@ -28,11 +29,23 @@ def _said(found: Diagnosis) -> Iterator[str]:
     rivals = open_laws(found.laws)
     others = [one for one in names if one not in DAMPING]
     damping = [] if len(others) == len(names) else [_damping(found.laws, rivals, names)]
-    shares = [one.shrinkage for regime in found.regimes for one in regime.foretold[:1]]
     what = " and ".join([*damping, *others])
-    yield said_of(what, min(shares)) if shares else f"the likeliest cause: {what}"
+    yield said_of(what, found.foretells) if found.regimes else f"the likeliest cause: {what}"
     if rivals:
         yield from _undecided(found.laws[0], rivals)
+    if found.rivals and found.proposals:
+        yield _would_tell(found)
+
+
+def _would_tell(found: Diagnosis) -> str:
+    one, other = (" + ".join(rival.names) for rival in found.rivals or ())
+    first = found.proposals[0]
+    told = first.gain > math.log(TOLD_APART)
+    would = "what would tell it" if told else "no further record within reach would; nearest to it"
+    return (
+        f"{would}: {first.what}, expected to bring {first.gain:.1f} in ln evidence between "
+        f"{one} and {other}"
+    )
 
 
 def open_laws(laws: Sequence[Law]) -> tuple[Law, ...]:

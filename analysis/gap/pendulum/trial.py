@@ -43,6 +43,8 @@ class Trial:
         At which a power law's damping is stated.
     variants
         Benches that the nominal one may be as well, one standard deviation away each.
+    effects
+        What the simulation has on already.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Trial:
     scaled: bool = False
     reference_amplitude: float = 0.1
     variants: tuple[PendulumBench, ...] = ()
+    effects: tuple[PendulumEffect, ...] = ()
 
     @property
     def acts_on(self) -> str:
@@ -61,8 +64,8 @@ class Trial:
         return self.coordinate if isinstance(self.bench.body, Suspension) else ""
 
     def simulate(self, effects: Iterable[PendulumEffect] = ()) -> FloatArray:
-        """Return what the record would show with some effects on, shape ``(5, windows)``."""
-        bench = self.bench.with_effects(effects)
+        """Return what the record would show with more effects on, shape ``(5, windows)``."""
+        bench = self.bench.with_effects((*self.effects, *effects))
         rate_hz = _SAMPLES_A_SWING * self.windows.reference_rad_s / (2.0 * math.pi)
         count = _SAMPLES_A_SWING * self.windows.swings * self.windows.count + 1
         true_rate_hz = rate_hz * (1.0 + bench.clock_error)
@@ -133,7 +136,12 @@ class Problem:
     @property
     def suspensions(self) -> bool:
         """Whether the records are of one body on several suspensions, watched by light gates."""
-        return len(self.trials) > 2 and all(one.scaled for one in self.trials)
+        return len(self.trials) > 2 and self.on_lines
+
+    @property
+    def on_lines(self) -> bool:
+        """Whether light gates watch a body on two lines."""
+        return all(one.scaled and isinstance(one.bench.body, Suspension) for one in self.trials)
 
     @cached_property
     def _seen(self) -> tuple[NDArray[np.bool_], ...]:

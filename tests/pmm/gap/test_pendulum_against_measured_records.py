@@ -1,13 +1,15 @@
 """Records that nobody of this project made: the roll decay of a tanker, and its simulation."""
 
+import math
 from pathlib import Path
 
 import pytest
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, cause, causes_for
+from analysis.gap.pendulum.further import Reach, propose
 from analysis.gap.pendulum.hypothesis import fit
 from analysis.gap.pendulum.search import search
-from analysis.gap.pendulum.verdict import judge
+from analysis.gap.pendulum.verdict import TOLD_APART, judge
 from analysis.gap.pendulum.withheld import foretell
 from analysis.inertia.spread import SURE
 from hardware.description.errors import ConfigurationError, DataError
@@ -88,6 +90,9 @@ def test_what_makes_a_rods_suspensions_differ_cannot_be_told(tmp_path: Path) -> 
     (regime,) = foretell(problem, [both])
     assert regime.name == "each suspension"
     assert 0.3 < regime.foretold[0].shrinkage < SURE
+    other = fit(problem, [cause(setup.LineExcess), cause(setup.SpacingError)])
+    (further,) = propose(problem, both, other, reach=Reach((0.16, 0.16), (1.1, 1.1)))
+    assert further.gain > 2.0 * math.log(TOLD_APART)
 
 
 @measured

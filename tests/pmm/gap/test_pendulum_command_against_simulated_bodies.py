@@ -111,6 +111,21 @@ def test_the_examples_record_is_what_its_script_makes() -> None:
     np.testing.assert_allclose(made, kept, atol=2e-6)
 
 
+def test_what_would_tell_a_law_is_said() -> None:
+    path = HOUSE / "examples" / "decay" / "roll.toml"
+    done = run(path, "--effects", "bearing_friction,quadratic_drag", "--most", "1", "--json")
+    found = json.loads(done.stdout)
+    assert found["said"][0].startswith("the cause: quadratic_drag")
+    assert not found["next"]
+    done = run(path, "--effects", "quadratic_drag,viscous_damping", "--most", "1", "--json")
+    found = json.loads(done.stdout)
+    assert "its law cannot be told" in found["said"][1]
+    assert "would" in found["said"][-1]
+    assert found["next"][0]["what"] in found["said"][-1]
+    gains = [one["gain_ln_evidence"] for one in found["next"]]
+    assert gains == sorted(gains, reverse=True)
+
+
 def test_one_simulation_is_to_be_given(tmp_path: Path) -> None:
     path = tmp_path / "decay.toml"
     path.write_text(FILE.format(channel="roll") + FLOATING + PIVOT)
