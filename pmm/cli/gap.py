@@ -6,12 +6,13 @@ import click
 
 from pmm.cli.group import NamingGroup
 
-# Job -> module with a click command of the same name; each is imported when it is asked for.
+# Job -> module with a click command of that name, "_" for "-"; imported when it is asked for.
 _JOBS = {
     "add": "pmm.cli.gap_add",
     "answer": "pmm.cli.gap_answer",
     "check": "pmm.cli.gap_check",
     "pendulum": "pmm.cli.gap_pendulum",
+    "add-pendulum": "pmm.cli.gap_add_pendulum",
     "diagnose": "pmm.cli.gap_diagnose",
 }
 
@@ -26,7 +27,7 @@ class Jobs(NamingGroup):
         """Import a job."""
         if name not in _JOBS:
             return None
-        command = getattr(import_module(_JOBS[name]), name)
+        command = getattr(import_module(_JOBS[name]), name.replace("-", "_"))
         return command if isinstance(command, click.Command) else None
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -15,6 +15,7 @@ from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import output
+from pmm.gap.appending import Added, append_effects, refuse_twice
 from pmm.gap.examine import Examined, examine
 from pmm.gap.report import gap_report
 from pmm.parallel import open_executor
@@ -53,15 +54,15 @@ def run(request: Request) -> None:
         _refuse_twice(path, (request.effect,))
     chosen = _effects(_examined(request, path), request)
     _refuse_twice(path, [one.name for one in chosen])
-    kept = append_effects(path, chosen)
+    added = [Added(one.name, asdict(one)) for one in chosen]
+    kept = append_effects(path, added, read_campaign)
     if request.as_json:
-        rows = [{"name": one.name, "parameters": asdict(one)} for one in chosen]
+        rows = [asdict(one) for one in added]
         document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
         click.echo(json.dumps(document, indent=1, allow_nan=False))
         return
-    for one in chosen:
-        said = ", ".join(f"{key} = {value:.6g}" for key, value in asdict(one).items())
-        output().print(f"added {one.name}: {said}", soft_wrap=True)
+    for one in added:
+        output().print(f"added {one.said}", soft_wrap=True)
     output().print(f"{path}; as it was: {kept}", soft_wrap=True)
     files = [word for one in request.files for word in ("--effects", one)]
     output().print(pasted("gap", request.campaign, *files), soft_wrap=True)
@@ -92,44 +93,4 @@ def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
 
 
 def _refuse_twice(path: Path, names: Sequence[str]) -> None:
-    there = {one.name for one in read_campaign(path).effects}
-    twice = sorted(there & set(names))
-    if twice:
-        raise ConfigurationError(
-            f"{path}: {', '.join(twice)} is in [[effects]] already; take it out first, so that its "
-            "parameters are fitted whole"
-        )
-
-
-def append_effects(path: Path, effects: Sequence[Effect]) -> Path:
-    """Append effects to a campaign file as tables, and return where the old file is kept.
-
-    Tables at the end of a TOML file leave everything before them as it is, comments too. The new
-    file takes the old one's place only once it is whole and has been read.
-    """
-    old = path.read_text(encoding="utf-8")
-    text = old.rstrip("\n") + "\n" + "".join(_table(one) for one in effects)
-    written = path.with_name(f"{path.name}.part")
-    written.write_text(text, encoding="utf-8")
-    try:
-        read_campaign(written)
-    except ConfigurationError:
-        written.unlink()
-        raise
-    kept = _free_name(path)
-    kept.write_text(old, encoding="utf-8")
-    written.replace(path)
-    return kept
-
-
-def _table(one: Effect) -> str:
-    values = ", ".join(f"{key} = {float(value)!r}" for key, value in asdict(one).items())
-    parameters = f"parameters = {{ {values} }}\n" if values else ""
-    return f'\n[[effects]]\nname = "{one.name}"\n{parameters}'
-
-
-def _free_name(path: Path) -> Path:
-    number = 1
-    while (kept := path.with_name(f"{path.name}.{number}")).exists():
-        number += 1
-    return kept
+    refuse_twice(path, [one.name for one in read_campaign(path).effects], names)

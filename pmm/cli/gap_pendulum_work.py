@@ -39,11 +39,9 @@ class Request(Chosen):
         return Options(self.effects, self.without, self.most)
 
     def words(self) -> Iterator[str]:
-        """Yield the options as they are typed."""
+        """Yield the options that decide what is found, as they are typed."""
         yield from ("--most", str(self.most))
         yield from super().words()
-        if self.page is not None:
-            yield from ("--page", self.page)
 
 
 def run(request: Request) -> None:
@@ -60,12 +58,16 @@ def run(request: Request) -> None:
         _print(output(), found)
         for note in examined.notes:
             output().print(f"\nNOTE  {note}", soft_wrap=True)
+        if found.told:
+            added = pasted("gap", "add-pendulum", request.file, *request.words())
+            output().print(f"\n{added}", soft_wrap=True)
     if request.plot is not None:
         _draw(found, Path(request.plot))
     if request.page is not None:
         from pmm.report.pendulum_page import write_pendulum_page
 
-        command = pasted("gap", "pendulum", request.file, *request.words())
+        words = (*request.words(), "--page", request.page)
+        command = pasted("gap", "pendulum", request.file, *words)
         write_pendulum_page(examined, path.stem, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
 
@@ -84,7 +86,7 @@ def _print(console: "Console", found: Diagnosis) -> None:
         console.print(line, style="bold", soft_wrap=True)
     best = ", ".join(found.verdict.best) or "none: no gap beyond u"
     console.print(f"most probable  {best} ({percent(next(iter(found.verdict.by_set.values())))})")
-    for name, values in parameters(found.best).items():
+    for name, values in parameters(found.settled.best).items():
         for key, one in values.items():
             console.print(f"  {name}: {key} = {one['value']:.4g} ± {one['uncertainty']:.2g}")
     for rows in tables(found):

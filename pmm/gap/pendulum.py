@@ -1,18 +1,14 @@
-"""``FILE.toml`` of a pendulum's gap: records, what the simulation believes, tolerances.
-
-``docs/gap-pendulums.md`` has the keys.
-"""
+"""The records that a pendulum's file names, beside the simulation that is to explain them."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, cast
 
 import numpy as np
 
 from analysis.gap.pendulum.causes import tolerance
-from analysis.gap.pendulum.further import Reach
 from analysis.gap.pendulum.surrogate import surrogate
 from analysis.gap.pendulum.swings import (
     Windows,
@@ -26,104 +22,18 @@ from analysis.inertia.gates import passages, read_gate_events
 from analysis.inertia.series import UsablePart, series_from_recording, usable_part
 from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.configuration import Fault, as_error, read_toml, validate
+from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
+from sim.pendulum.effects import make_effect
+from sim.pendulum.effects.base import PendulumEffect
 from sim.pendulum.floating import Floating
 from sim.pendulum.pivot import Pendulum
 from sim.pendulum.suspension import Suspension
 
-_KEEP: dict[str, Any] = {"extra": "forbid", "allow_inf_nan": False}
 _GATE_AMPLITUDE_RAD = 0.1
 _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
-
-
-@dataclass(frozen=True)
-class Record:
-    """A sampled record and its channel."""
-
-    record: str
-    channel: str
-
-    __pydantic_config__: ClassVar = _KEEP
-
-
-@dataclass(frozen=True)
-class GateTable:
-    """One suspension: edges of light gates, half spacing and line length as measured."""
-
-    name: str
-    gates: str
-    half_spacing_m: float
-    line_m: float
-
-    __pydantic_config__: ClassVar = _KEEP
-
-
-@dataclass(frozen=True)
-class ReachTable(Reach):
-    """What a further suspension may be."""
-
-    __pydantic_config__: ClassVar = _KEEP
-
-
-@dataclass(frozen=True)
-class PendulumCase:
-    """The file.
-
-    Attributes
-    ----------
-    measured, simulated
-        A decay pair; without ``simulated`` the simulation is of ``floating``, a body afloat, or of
-        ``pivot``, parts on a knife edge: a swing, or a compound pendulum.
-    suspensions
-        One body on several pairs of lines; ``gyradius_m`` is what it is thought to have.
-    swings
-        How many swings of a light gates' record count.
-    tolerances
-        Standard deviations of what is stated, by effect.
-    reach
-        Within which a further suspension is proposed.
-    """
-
-    name: str
-    measured: Record | None = None
-    simulated: Record | None = None
-    floating: Floating | None = None
-    pivot: Pendulum | None = None
-    suspensions: tuple[GateTable, ...] = ()
-    gyradius_m: float = 1.0
-    gravity_m_s2: float = 9.80665
-    swings: int = 60
-    tolerances: Mapping[str, float] = field(default_factory=dict)
-    reach: ReachTable | None = None
-
-    __pydantic_config__: ClassVar = _KEEP
-
-
-def read_case(path: Path) -> PendulumCase:
-    """Read the file.
-
-    Raises
-    ------
-    ConfigurationError
-        With every error of it.
-    """
-    table = read_toml(path)
-    faults: list[Fault] = []
-    case = validate(PendulumCase, table, faults)
-    if case is not None:
-        given = (case.measured is not None, bool(case.suspensions))
-        if sum(given) != 1:
-            faults.append(Fault(("measured",), "or [[suspensions]]: give exactly one of them"))
-        told = (case.simulated, case.floating, case.pivot)
-        if case.measured and sum(one is not None for one in told) != 1:
-            said = "or [floating], or [pivot]: give exactly one of them"
-            faults.append(Fault(("simulated",), said))
-    if case is None or faults:
-        raise as_error(path, faults, table)
-    return case
 
 
 def load_problem(path: Path) -> Problem:
@@ -139,8 +49,15 @@ def load_problem(path: Path) -> Problem:
     return problem_of(read_case(path), path)
 
 
-def problem_of(case: PendulumCase, path: Path) -> Problem:
+def problem_of(
+    case: PendulumCase, path: Path, more: Mapping[str, type[Any]] | None = None
+) -> Problem:
     """Read the records of a file that has been read.
+
+    Parameters
+    ----------
+    more
+        Effects of the user's own, by name; the file may have one on.
 
     Raises
     ------
@@ -154,8 +71,20 @@ def problem_of(case: PendulumCase, path: Path) -> Problem:
     )
     if scaled:
         trials = tuple(_suspended(case, one, path.parent) for one in case.suspensions)
-        return _checked(path, Problem(trials, known, kinds=("period",)))
-    return _checked(path, _decay(case, path.parent, known))
+        problem = Problem(trials, known, kinds=("period",))
+    else:
+        problem = _decay(case, path.parent, known)
+    on = [make_effect(one.name, more, **one.parameters) for one in case.effects]
+    return _checked(path, replace(problem, trials=tuple(_with(one, on) for one in problem.trials)))
+
+
+def _with(trial: Trial, effects: Sequence[PendulumEffect]) -> Trial:
+    """Return a trial whose simulation has effects on, each on the coordinate that is watched."""
+    placed: list[PendulumEffect] = []
+    for one in effects:
+        told = getattr(one, "coordinate", None) == ""
+        placed.append(replace(cast("Any", one), coordinate=trial.acts_on) if told else one)
+    return replace(trial, effects=tuple(placed))
 
 
 def _checked(path: Path, problem: Problem) -> Problem:

@@ -32,7 +32,7 @@ def document(name: str, examined: Examined) -> dict[str, Any]:
         },
         "classes": verdict.by_class,
         "causes": verdict.by_cause,
-        "parameters": parameters(found.best),
+        "parameters": parameters(found.settled.best),
         "where": [asdict(one) for one in found.where],
         "laws": [
             {

@@ -1,18 +1,22 @@
 """From a pendulum's file to its diagnosis, effects of the user's own among the causes."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from analysis.gap.pendulum.causes import Cause, cause, causes_for
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
+from analysis.gap.pendulum.hypothesis import fit
 from analysis.gap.pendulum.search import MOST_CAUSES
-from analysis.gap.pendulum.trial import Trial
+from analysis.gap.pendulum.settle import Settled, settle
+from analysis.gap.pendulum.trial import Problem, Trial
 from analysis.inertia.numeric import FloatArray
-from hardware.description.errors import ConfigurationError
-from pmm.gap.own_effects import chosen_of_pendulums, tried
-from pmm.gap.pendulum import problem_of, read_case
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.gap.own_effects import chosen_of_pendulums, files_among, tried
+from pmm.gap.pendulum import problem_of
+from pmm.gap.pendulum_file import PendulumCase, read_case
 
 
 @dataclass(frozen=True)
@@ -44,8 +48,11 @@ class Examined:
     @property
     def notes(self) -> tuple[str, ...]:
         """What has to be known besides."""
-        names = ", ".join(self.hidden)
-        return (f"these records cannot show {names}",) if names else ()
+        on = [one.name for one in self.diagnosis.problem.trials[0].effects]
+        said = [f"the simulation has {', '.join(on)} on"] if on else []
+        if self.hidden:
+            said.append(f"these records cannot show {', '.join(self.hidden)}")
+        return tuple(said)
 
 
 def examine_pendulum(
@@ -60,12 +67,8 @@ def examine_pendulum(
     DataError
         If a record is.
     """
-    kinds, more = chosen_of_pendulums(options.effects, options.without)
     case = read_case(path)
-    problem = problem_of(case, path)
-    first = problem.trials[0]
-    for name, kind in more.items():
-        tried(name, f"record {first.name}", partial(_typical, first, cause(kind)))
+    problem, kinds = _prepared(case, path, options)
     causes = causes_for(problem.trials, kinds.values())
     shown = {one.name for one in causes}
     hidden = tuple(name for name in kinds if name not in shown) if options.effects else ()
@@ -73,6 +76,35 @@ def examine_pendulum(
         raise ConfigurationError(f"--effects: these records cannot show {', '.join(hidden)}")
     found = diagnose_trials(problem, causes, most=options.most, reach=case.reach, progress=progress)
     return Examined(found, hidden)
+
+
+def fitted_causes(path: Path, names: Sequence[str], options: Options) -> Settled:
+    """Fit some causes together, whatever others there may be.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`examine_pendulum`; also if the records cannot show one of the causes.
+    """
+    wanted = (*names, *files_among(options.effects))
+    problem, kinds = _prepared(read_case(path), path, replace(options, effects=wanted))
+    causes = {one.name: one for one in causes_for(problem.trials, kinds.values())}
+    missing = [name for name in names if name not in causes]
+    if missing:
+        raise DataError(f"{path.stem}: these records cannot show {', '.join(missing)}")
+    return settle(problem, fit(problem, [causes[name] for name in names]))
+
+
+def _prepared(
+    case: PendulumCase, path: Path, options: Options
+) -> tuple[Problem, dict[str, type[Any]]]:
+    """Return the records, and the effects to consider; the user's own have been tried."""
+    kinds, more = chosen_of_pendulums(options.effects, options.without)
+    problem = problem_of(case, path, more)
+    first = problem.trials[0]
+    for name, kind in more.items():
+        tried(name, f"record {first.name}", partial(_typical, first, cause(kind)))
+    return problem, kinds
 
 
 def _typical(trial: Trial, one: Cause) -> FloatArray:

@@ -45,8 +45,9 @@ def where_rows(found: Diagnosis) -> Rows:
 def answer_rows(found: Diagnosis) -> Rows:
     """Return the answers with their parameters and probabilities."""
     sets = {" and ".join(names): one for names, one in found.searched.sets.items() if names}
+    sets[" and ".join(found.best.names)] = found.settled.best
     rows = tuple(
-        (name, fitted(sets[name]) if name in sets else "", percent(share))
+        (name, fitted(sets[name]) if sets.get(name) else "", percent(share))
         for name, share in ranking(found.verdict)
     )
     return Rows("Answers", ("answer", "parameters (u)", "probability"), rows, 2)

@@ -37,7 +37,7 @@ def heat_map(found: Diagnosis) -> "Figure":
 
 
 def _after(found: Diagnosis) -> FloatArray:
-    return remainder(found.problem, found.best)
+    return remainder(found.settled.problem, found.settled.best)
 
 
 def _map(problem: Problem, pairs: list[tuple[int, int]], left: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ from analysis.gap.pendulum.causes import DAMPING, Cause, causes_for
 from analysis.gap.pendulum.further import Proposal, Reach, propose
 from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.search import MOST_CAUSES, Searched, search
+from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.trial import Problem
 from analysis.gap.pendulum.verdict import (
     TOLD_APART,
@@ -33,6 +34,8 @@ class Diagnosis:
     ----------
     best
         The most probable set of causes; of no causes where there is no gap.
+    settled
+        The best set, its parameters fitted about itself.
     laws
         Laws of damping beside the best set's other causes; empty where no damping is missing.
     alternatives
@@ -49,6 +52,7 @@ class Diagnosis:
     searched: Searched
     verdict: Verdict
     best: Hypothesis
+    settled: Settled
     where: tuple[KindOfGap, ...]
     laws: tuple[Law, ...]
     alternatives: tuple[Alternative, ...]
@@ -105,8 +109,10 @@ def diagnose_trials(
     progress("withheld swings")
     regimes = foretell(problem, _rivals(searched, best, laws)) if best.causes else ()
     laws = _with_withheld(laws, regimes)
-    gap = where(problem, best)
-    found = Diagnosis(problem, searched, verdict, best, gap, laws, others, regimes)
+    progress("how large")
+    after = settle(problem, best)
+    gap = where(problem, after)
+    found = Diagnosis(problem, searched, verdict, best, after, gap, laws, others, regimes)
     progress("the next run")
     rivals = leading(found)
     proposals = propose(problem, *rivals, verdict.inflation, reach) if rivals else ()

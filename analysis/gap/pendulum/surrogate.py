@@ -109,8 +109,6 @@ def _start(best: Hypothesis, one: Cause) -> FloatArray:
 
 def _released(problem: Problem, trial: Trial, best: Hypothesis) -> PendulumBench:
     """Return the bench with the effects, released as the record was."""
-    left = problem.nuisances.fitted(best.without_signature(problem))
-    error = trial.release_error(0.05 * float(left[0]), 0.1 * float(left[1]))
-    if trial.scaled:
-        error = trial.release_error(0.0, 0.1 * float(left[1]))
-    return trial.bench.with_effects([*best.effects(trial), error])
+    free = problem.nuisances.fitted(best.without_signature(problem))
+    released = trial.as_released(float(free[0]), float(free[1]))
+    return released.bench.with_effects(best.effects(trial))

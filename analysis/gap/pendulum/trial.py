@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -92,6 +92,16 @@ class Trial:
         bench = replace(self.bench, release=release)
         return replace(self, bench=bench, reference_amplitude=amplitude)
 
+    @property
+    def release_columns(self) -> int:
+        """How many columns of a problem its release has."""
+        return 3 if self.scaled else 2
+
+    def as_released(self, further: float, turned: float) -> "Trial":
+        """Return the trial let go as its release's columns say; a size that nobody knows stays."""
+        error = self.release_error(0.0 if self.scaled else _FURTHER * further, _TURNED * turned)
+        return replace(self, bench=replace(self.bench, release=error(self.bench).release))
+
     def release_error(self, further: float, turned: float) -> ReleaseError:
         """Return another release of this trial."""
         return ReleaseError(further, turned, self.acts_on, self.windows.reference_rad_s)
@@ -115,6 +125,10 @@ class Tolerance:
     own: bool = False
 
 
+def _nothing(_: Trial) -> Sequence[PendulumEffect]:
+    return ()
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """What every hypothesis is held against.
@@ -126,12 +140,15 @@ class Problem:
     model_error
         Standard deviation of what the nominal simulation itself is unsure of, one for each kind;
         a smooth curve over each trial.
+    about
+        Effects beside which releases and tolerances act; none where left out.
     """
 
     trials: tuple[Trial, ...]
     tolerances: tuple[Tolerance, ...] = ()
     kinds: tuple[str, ...] = KINDS
     model_error: tuple[float, ...] = (0.0,) * len(KINDS)
+    about: Callable[[Trial], Sequence[PendulumEffect]] = field(default=_nothing)
 
     @property
     def suspensions(self) -> bool:
@@ -276,12 +293,15 @@ class Problem:
     def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
         trial = self.trials[at]
         other = replace(trial, bench=replace(bench, release=trial.bench.release))
-        return self._change(at, other.simulate() - trial.simulate())
+        there = self.about(trial)
+        return self._change(at, other.simulate(there) - trial.simulate(there))
 
     def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
         """Return the change by an effect on one trial, per whole of which it is a share."""
         trial = self.trials[at]
-        return self._change(at, (trial.simulate([effect]) - trial.simulate()) / share)
+        there = self.about(trial)
+        change = trial.simulate([*there, effect]) - trial.simulate(there)
+        return self._change(at, change / share)
 
     def _change(self, at: int, change: FloatArray) -> FloatArray:
         parts = [np.zeros(one.observed.shape) for one in self.trials]

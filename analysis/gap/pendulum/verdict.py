@@ -11,6 +11,7 @@ from analysis.gap.gaussian import Nuisances, misfit
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS, Cause, cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
 from analysis.gap.pendulum.search import Searched
+from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Problem
 from analysis.inertia.numeric import FloatArray
@@ -238,9 +239,10 @@ class KindOfGap:
         return self.after**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
 
 
-def where(problem: Problem, best: Hypothesis) -> tuple[KindOfGap, ...]:
+def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
-    lefts = (as_stated(problem), remainder(problem, null(problem)), remainder(problem, best))
+    left = remainder(after.problem, after.best)
+    lefts = (as_stated(problem), remainder(problem, null(problem)), left)
     found = []
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind

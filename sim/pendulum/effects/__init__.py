@@ -76,14 +76,17 @@ def make_effect(
     Raises
     ------
     ConfigurationError
-        For an unknown effect or parameter, with the nearest names, and for a value outside its
-        plausible range.
+        For an unknown effect or parameter, with the nearest names, and for a value that is no
+        number or outside its plausible range.
     """
     kind = find(name, more)
     names = list(kind.__dataclass_fields__)
-    for key in parameters:
+    numbers = plausible(kind)
+    for key, value in parameters.items():
         if key not in names:
             raise ConfigurationError(f"{name} has no parameter {key!r}{_near(key, names)}")
+        if key in numbers and not isinstance(value, int | float):
+            raise ConfigurationError(f"{name}: {key} = {value!r} is no number")
     effect: PendulumEffect = kind(**parameters)
     check_plausible(effect)
     return effect

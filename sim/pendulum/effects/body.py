@@ -240,5 +240,11 @@ class AirAround:
 
         if not hasattr(bench.body, "air"):
             return bench
-        air = Air(self.buoyancy_ratio, self.added_mass_ratio, self.added_inertia_ratio)
-        return replace(bench, body=replace(cast("Any", bench.body), air=air))
+        body = cast("Any", bench.body)
+        old: Air = body.air
+        air = Air(
+            old.buoyancy_ratio + self.buoyancy_ratio,
+            old.added_mass_ratio + self.added_mass_ratio,
+            old.added_inertia_ratio + self.added_inertia_ratio,
+        )
+        return replace(bench, body=replace(body, air=air))

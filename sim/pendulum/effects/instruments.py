@@ -3,6 +3,7 @@
 An empty ``channel`` means every sensor of the test.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -34,7 +35,8 @@ class WrongClock:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return replace(bench, clock_error=self.clock_error)
+        error = (1.0 + bench.clock_error) * (1.0 + self.clock_error) - 1.0
+        return replace(bench, clock_error=error)
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class SensorLag:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _sensors(bench, self.channel, lambda one: replace(one, lag_s=self.lag_s))
+        return _sensors(bench, self.channel, lambda one: replace(one, lag_s=one.lag_s + self.lag_s))
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,9 @@ class SensorOffset:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _sensors(bench, self.channel, lambda one: replace(one, offset=self.offset))
+        return _sensors(
+            bench, self.channel, lambda one: replace(one, offset=one.offset + self.offset)
+        )
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,7 @@ class SensorGain:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         gain = 1.0 + self.gain_error
-        return _sensors(bench, self.channel, lambda one: replace(one, gain=gain))
+        return _sensors(bench, self.channel, lambda one: replace(one, gain=one.gain * gain))
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,8 @@ class SensorNoise:
         chosen = _chosen(bench, self.channel)
 
         def noisy(how: Digitiser) -> Digitiser:
-            return replace(how, noise_rms=self.noise_rms, drift_per_s=self.drift_per_s)
+            noise = math.hypot(how.noise_rms, self.noise_rms)
+            return replace(how, noise_rms=noise, drift_per_s=how.drift_per_s + self.drift_per_s)
 
         changed = tuple(
             noisy(how) if one in chosen else how

@@ -30,7 +30,8 @@ class LineStretch:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         body = suspension_of(bench, self.name)
-        return replace(bench, body=replace(body, stretch_ratio=self.stretch_ratio))
+        stretched = (1.0 + body.stretch_ratio) * (1.0 + self.stretch_ratio) - 1.0
+        return replace(bench, body=replace(body, stretch_ratio=stretched))
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,8 @@ class LineCreep:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         body = suspension_of(bench, self.name)
-        changed = replace(body, creep_per_decade=self.creep_per_decade, linear=False)
+        creep = body.creep_per_decade + self.creep_per_decade
+        changed = replace(body, creep_per_decade=creep, linear=False)
         return replace(bench, body=changed)
 
 
@@ -77,7 +79,8 @@ class OffLevel:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         body = suspension_of(bench, self.name)
-        return replace(bench, body=replace(body, off_level_rad=self.pitch_rad))
+        pitch = body.off_level_rad + self.pitch_rad
+        return replace(bench, body=replace(body, off_level_rad=pitch))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,8 @@ from analysis.gap.pendulum.verdict import TOLD_APART, judge
 from analysis.gap.pendulum.withheld import foretell
 from analysis.inertia.spread import SURE
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.gap.pendulum import load_problem, read_case
+from pmm.gap.pendulum import load_problem
+from pmm.gap.pendulum_file import read_case
 from sim.pendulum.effects import body, setup
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"

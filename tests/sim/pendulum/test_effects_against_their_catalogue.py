@@ -51,6 +51,34 @@ def test_every_effect_changes_the_record_of_a_yaw_and_sway_test(effect) -> None:
         assert edges != [gate.time_s.tolist() for gate in after.gates]
 
 
+_SMALL = (
+    "line_stretch",
+    "line_creep",
+    "off_level",
+    "air",
+    "sensor_lag",
+    "sensor_offset",
+    "sensor_gain",
+    "wrong_clock",
+)
+
+
+@pytest.mark.parametrize("name", _SMALL)
+def test_an_effect_adds_to_what_the_test_has_already(name: str) -> None:
+    effect = make_effect(name)
+    twice = make_effect(
+        name, **{key: 2.0 * getattr(effect, key) for key in plausible(type(effect))}
+    )
+    bench = bifilar_bench(MODEL_HULL_2014, sway_m=0.03)
+    rows = []
+    for effects in ((), (effect,), (effect, effect), (twice,)):
+        run = record(bench.with_effects(effects), duration_s=10.0, sample_rate_hz=50.0, seed=1)
+        rows.append(run.dataset["stern_displacement"].values)
+    change = np.linalg.norm(rows[1] - rows[0])
+    assert np.linalg.norm(rows[2] - rows[3]) < 0.1 * change
+    assert np.linalg.norm(rows[2] - rows[1]) > 0.8 * change
+
+
 def test_wrong_names_and_values_are_refused_with_what_is_near() -> None:
     with pytest.raises(ConfigurationError, match="did you mean bearing_friction"):
         make_effect("bearing_frction")

@@ -1,0 +1,45 @@
+"""A set of causes fitted with releases and tolerances as they act where the causes do.
+
+Everything that is free is linear in a diagnosis, about the simulation as it is stated. Where a
+cause is large that is not good enough for its size: how a swing that starts a little further goes
+on depends on the damping, too.
+"""
+
+from dataclasses import dataclass, replace
+
+from analysis.gap.pendulum.hypothesis import Hypothesis, fit
+from analysis.gap.pendulum.trial import Problem, Trial
+from hardware.description.errors import PmmError
+
+_ROUNDS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """A set of causes, and the problem that is linear about it."""
+
+    problem: Problem
+    best: Hypothesis
+
+
+def settle(problem: Problem, best: Hypothesis) -> Settled:
+    """Fit a set again about itself; as it is where the body would not swing back there."""
+    found = Settled(problem, best)
+    for _ in range(_ROUNDS if best.causes else 0):
+        try:
+            about = _about(found)
+            found = Settled(about, fit(about, best.causes, found.best.units))
+        except PmmError:
+            break
+    return found
+
+
+def _about(found: Settled) -> Problem:
+    problem, best = found.problem, found.best
+    free = problem.nuisances.fitted(best.without_signature(problem))
+    trials: list[Trial] = []
+    at = 0
+    for trial in problem.trials:
+        trials.append(trial.as_released(float(free[at]), float(free[at + 1])))
+        at += trial.release_columns
+    return replace(problem, trials=tuple(trials), about=best.effects)

@@ -1,0 +1,81 @@
+"""What ``pmm gap add-pendulum`` does: fit, append to the file, and keep the old one."""
+
+import json
+import os
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, cast
+
+import click
+
+from analysis.gap.pendulum.said import said
+from analysis.gap.pendulum.settle import Settled
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.gap_options import Chosen
+from pmm.cli.hints import pasted
+from pmm.cli.screen import output
+from pmm.gap.appending import Added, append_effects, refuse_twice
+from pmm.gap.pendulum_examine import Options, examine_pendulum, fitted_causes
+from pmm.gap.pendulum_file import read_case
+
+JSON_SCHEMA = "pmm-gap-add-pendulum-1"
+
+
+@dataclass(frozen=True)
+class Request(Chosen):
+    """The options of the command, by their names there."""
+
+    file: str
+    causes: tuple[str, ...]
+    most: int
+    as_json: bool
+
+
+def run(request: Request) -> None:
+    """Add effects to a pendulum's file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file or an option is wrong, or the file has that effect already.
+    DataError
+        If no cause is found, or a named one cannot be fitted.
+    """
+    path = Path(request.file)
+    there = [one.name for one in read_case(path).effects]
+    if not os.access(path, os.W_OK):
+        raise ConfigurationError(f"{path}: cannot be written to")
+    refuse_twice(path, there, request.causes)
+    after = _settled(request, path)
+    refuse_twice(path, there, after.best.names)
+    effects = after.best.effects(after.problem.trials[0])
+    added = [Added(one.name, _told(one)) for one in effects]
+    kept = append_effects(path, added, read_case)
+    if request.as_json:
+        rows = [asdict(one) for one in added]
+        document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
+        click.echo(json.dumps(document, indent=1, allow_nan=False))
+        return
+    for one in added:
+        output().print(f"added {one.said}", soft_wrap=True)
+    output().print(f"{path}; as it was: {kept}", soft_wrap=True)
+    files = [word for one in request.files for word in ("--effects", one)]
+    output().print(pasted("gap", "pendulum", request.file, *files), soft_wrap=True)
+
+
+def _settled(request: Request, path: Path) -> Settled:
+    """Return the causes to add, fitted."""
+    options = Options(request.effects, request.without, request.most)
+    if request.causes:
+        return fitted_causes(path, request.causes, options)
+    with progress() as shown:
+        found = examine_pendulum(path, options, shown).diagnosis
+    if not found.told:
+        raise DataError(f"{path.stem}: {said(found)[0]}; nothing to add")
+    return found.settled
+
+
+def _told(effect: object) -> dict[str, float | str]:
+    """Return an effect's parameters; what is left to the record is left out."""
+    return {key: value for key, value in asdict(cast("Any", effect)).items() if value != ""}

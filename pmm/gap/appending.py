@@ -1,0 +1,84 @@
+"""Effects that are put into the file of a campaign or of a pendulum."""
+
+import json
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hardware.description.errors import ConfigurationError
+
+
+@dataclass(frozen=True)
+class Added:
+    """An effect by its name, with its parameters."""
+
+    name: str
+    parameters: Mapping[str, float | str]
+
+    @property
+    def said(self) -> str:
+        """Name and parameters for people."""
+        parts = [
+            f"{key} = {value if isinstance(value, str) else format(value, '.6g')}"
+            for key, value in self.parameters.items()
+        ]
+        return f"{self.name}: {', '.join(parts)}"
+
+    @property
+    def table(self) -> str:
+        """The effect as it stands in a file."""
+        values = ", ".join(
+            f"{key} = {json.dumps(value) if isinstance(value, str) else repr(float(value))}"
+            for key, value in self.parameters.items()
+        )
+        parameters = f"parameters = {{ {values} }}\n" if values else ""
+        return f'\n[[effects]]\nname = "{self.name}"\n{parameters}'
+
+
+def append_effects(path: Path, effects: Sequence[Added], read: Callable[[Path], object]) -> Path:
+    """Append effects to a file as tables, and return where the old file is kept.
+
+    Tables at the end of a TOML file leave everything before them as it is, comments too. The new
+    file takes the old one's place only once it is whole and has been read.
+
+    Parameters
+    ----------
+    read
+        Reads such a file.
+    """
+    old = path.read_text(encoding="utf-8")
+    text = old.rstrip("\n") + "\n" + "".join(one.table for one in effects)
+    written = path.with_name(f"{path.name}.part")
+    written.write_text(text, encoding="utf-8")
+    try:
+        read(written)
+    except ConfigurationError:
+        written.unlink()
+        raise
+    kept = _free_name(path)
+    kept.write_text(old, encoding="utf-8")
+    written.replace(path)
+    return kept
+
+
+def refuse_twice(path: Path, there: Collection[str], names: Collection[str]) -> None:
+    """Refuse effects that a file has already.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming them.
+    """
+    twice = sorted(set(there) & set(names))
+    if twice:
+        raise ConfigurationError(
+            f"{path}: {', '.join(twice)} is in [[effects]] already; take it out first, so that its "
+            "parameters are fitted whole"
+        )
+
+
+def _free_name(path: Path) -> Path:
+    number = 1
+    while (kept := path.with_name(f"{path.name}.{number}")).exists():
+        number += 1
+    return kept
