@@ -53,7 +53,7 @@ def run(request: Request) -> None:
         examined = examine_pendulum(path, request.options, told)
     found = examined.diagnosis
     if request.as_json:
-        click.echo(json.dumps(document(path.stem, examined), indent=1))
+        click.echo(json.dumps(document(path.stem, examined), indent=1, allow_nan=False))
     else:
         _print(output(), found)
         for note in examined.notes:

@@ -8,6 +8,7 @@ from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict, told_apart
 from pmm.gap.pendulum_examine import Examined
+from pmm.gap.plain import plain_values
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
 _SHOWN = 8  # answers
@@ -15,10 +16,10 @@ _LEAST = 1e-4  # probability that is worth a row
 
 
 def document(name: str, examined: Examined) -> dict[str, Any]:
-    """Return everything that was found, as plain numbers and texts."""
+    """Return everything that was found, as plain numbers and texts; what is not known is null."""
     found = examined.diagnosis
     verdict = found.verdict
-    return {
+    told = {
         "schema": SCHEMA,
         "name": name,
         "said": list(said(found)),
@@ -48,6 +49,8 @@ def document(name: str, examined: Examined) -> dict[str, Any]:
         "rivals": [list(one.names) for one in found.rivals or ()],
         "next": [{"what": one.what, "gain_ln_evidence": one.gain} for one in found.proposals],
     }
+    plain: dict[str, Any] = plain_values(told)
+    return plain
 
 
 def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:

@@ -6,8 +6,6 @@ from dataclasses import asdict, dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from analysis.gap.description import Description
 from analysis.gap.diagnose import SHIFTED
 from analysis.gap.propose import Proposal
@@ -26,6 +24,7 @@ from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
+from pmm.gap.plain import plain_values
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from sim.effects.catalogue import catalogue
 
@@ -78,19 +77,8 @@ class GapReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as a document for programs; what is not known is ``null``."""
-        found: dict[str, Any] = {"schema": JSON_SCHEMA, **_plain(asdict(self))}
+        found: dict[str, Any] = {"schema": JSON_SCHEMA, **plain_values(asdict(self))}
         return found
-
-
-def _plain(value: Any) -> Any:
-    """Return numbers, texts, lists and tables only; NaN and infinity as ``None``."""
-    if isinstance(value, dict):
-        return {str(key): _plain(one) for key, one in value.items()}
-    if isinstance(value, list | tuple | np.ndarray):
-        return [_plain(one) for one in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value
 
 
 def gap_report(examined: Examined) -> GapReport:
