@@ -90,9 +90,12 @@ def swings_figure(found: Diagnosis, at: int) -> "Figure":
     """
     from matplotlib.figure import Figure
 
-    problem = found.problem
+    problem, after = found.problem, found.settled
     trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
-    curves = {"simulated": (nothing, BEFORE), "with causes": (found.best.signature, AFTER)}
+    curves = {
+        "simulated": (_told(problem, nothing), BEFORE),
+        "with causes": (_told(after.problem, after.best.signature), AFTER),
+    }
     with drawing():
         figure = Figure(figsize=(10.5, 5.0), layout="constrained")
         axes = figure.subplots(2, 1, sharex=True)
@@ -101,9 +104,8 @@ def swings_figure(found: Diagnosis, at: int) -> "Figure":
             seen = trial.windows.centres_s, trial.observed[row]
             panel.plot(*seen, "o", color=TRACE, markersize=3, label="measured")
             rows = (problem.trial == at) & (problem.kind == row)
-            for name, (signature, colour) in curves.items() if rows.any() else ():
-                told = _told(problem, signature)[rows]
-                panel.plot(problem.centre_s[rows], told, color=colour, label=name)
+            for name, (told, colour) in curves.items() if rows.any() else ():
+                panel.plot(problem.centre_s[rows], told[rows], color=colour, label=name)
             panel.set_ylabel(label)
         axes[1].legend()
         axes[0].set_title(plain(trial.name), loc="left")

@@ -105,10 +105,12 @@ def _remains(found: Diagnosis) -> Part:
         (one.kind, "gap" if one.beyond else "no gap", f"{one.after:.2f}") for one in found.where
     )
     wide = found.verdict.inflation
-    line = f"The best answer leaves a chi-square of {wide:.2f} per degree of freedom"
-    weakened = "; all evidence is weakened by it." if wide > 1.0 else " or less."
+    line = (
+        f"All evidence is weakened by {wide:.2f}, the chi-square per degree of freedom that the "
+        "search's best fit leaves."
+    )
     table = Table("Remainder", ("where", "verdict", "E/u"), rows, 2)
-    return Part("What remains", (line + weakened,), (), (table,))
+    return Part("What remains", (line,) if wide > 1.0 else (), (), (table,))
 
 
 def _next(found: Diagnosis) -> Part | None:
