@@ -61,6 +61,7 @@ def gap() -> None:
 
     \b
     pmm gap my-campaign --page gap.html
+    pmm gap pendulum roll.toml --page gap.html
     pmm gap answer board
     pmm gap check board --page board.html
     """  # noqa: D301

@@ -10,7 +10,13 @@ from pmm.cli.gap_options import catalogue_options
 @click.command("add-pendulum")
 @click.argument("file", metavar="FILE.toml")
 @click.argument("causes", nargs=-1, metavar="[EFFECT]...")
-@click.option("--most", type=click.IntRange(1, 3), default=3, show_default=True, help="Causes.")
+@click.option(
+    "--most",
+    type=click.IntRange(1, 3),
+    default=3,
+    show_default=True,
+    help="Causes that may act together.",
+)
 @catalogue_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
 def add_pendulum(**options: Any) -> None:
