@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from analysis.gap.pendulum.causes import tolerance
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.surrogate import surrogate
 from analysis.gap.pendulum.swings import (
     Windows,
@@ -17,7 +18,7 @@ from analysis.gap.pendulum.swings import (
     swings_of_passages,
     swings_of_samples,
 )
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.gates import passages, read_gate_events
 from analysis.inertia.series import UsablePart, series_from_recording, usable_part
 from analysis.readers import read_recording

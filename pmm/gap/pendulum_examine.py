@@ -9,9 +9,10 @@ from typing import Any
 from analysis.gap.pendulum.causes import Cause, cause, causes_for
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
 from analysis.gap.pendulum.hypothesis import fit
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import MOST_CAUSES
 from analysis.gap.pendulum.settle import Settled, settle
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.own_effects import chosen_of_pendulums, files_among, tried

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.trial import Problem
 from analysis.gap.pendulum.verdict import as_stated, remainder
 from analysis.inertia.numeric import FloatArray
 from pmm.gap.pendulum_document import ranking

@@ -12,7 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.pendulum.trial import Tolerance, Trial
+from analysis.gap.pendulum.problem import Tolerance
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects import CATALOGUE, by_name

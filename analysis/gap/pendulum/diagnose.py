@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from analysis.gap.pendulum.causes import DAMPING, Cause, causes_for
 from analysis.gap.pendulum.further import Proposal, Reach, propose
 from analysis.gap.pendulum.hypothesis import Hypothesis
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import MOST_CAUSES, Searched, search
 from analysis.gap.pendulum.settle import Settled, settle
-from analysis.gap.pendulum.trial import Problem
 from analysis.gap.pendulum.verdict import (
     TOLD_APART,
     Alternative,

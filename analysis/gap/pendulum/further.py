@@ -9,8 +9,9 @@ import numpy as np
 
 from analysis.gap.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.hypothesis import Hypothesis, held
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects.base import small_swing, suspension_of

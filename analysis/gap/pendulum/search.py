@@ -10,7 +10,7 @@ import numpy as np
 from analysis.gap.gaussian import Nuisances, misfit
 from analysis.gap.pendulum.causes import Cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
-from analysis.gap.pendulum.trial import Problem
+from analysis.gap.pendulum.problem import Problem
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import PmmError
 

@@ -7,8 +7,10 @@ on depends on the damping, too.
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.problem import Problem
 from hardware.description.errors import PmmError
 
 _ROUNDS = 3
@@ -37,9 +39,9 @@ def settle(problem: Problem, best: Hypothesis) -> Settled:
 def _about(found: Settled) -> Problem:
     problem, best = found.problem, found.best
     free = problem.nuisances.fitted(best.without_signature(problem))
-    trials: list[Trial] = []
-    at = 0
-    for trial in problem.trials:
-        trials.append(trial.as_released(float(free[at]), float(free[at + 1])))
-        at += trial.release_columns
-    return replace(problem, trials=tuple(trials), about=best.effects)
+    first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])
+    trials = tuple(
+        trial.as_released(float(free[at]), float(free[at + 1]))
+        for trial, at in zip(problem.trials, first, strict=False)
+    )
+    return replace(problem, trials=trials, about=best.effects)

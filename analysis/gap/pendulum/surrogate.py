@@ -12,8 +12,9 @@ import numpy as np
 
 from analysis.gap.pendulum.causes import Cause, cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, effects_at, fit, null
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.bench import PendulumBench

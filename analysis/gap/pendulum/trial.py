@@ -1,15 +1,12 @@
-"""One measured release beside its simulation, and several of them as one problem."""
+"""One measured release beside its simulation."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.gap.gaussian import Nuisances
-from analysis.gap.pendulum.swings import KINDS, Windows, swings_of_samples
+from analysis.gap.pendulum.swings import Windows, swings_of_samples
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import DataError
 from sim.pendulum.bench import PendulumBench
@@ -20,10 +17,7 @@ from sim.signals import recorded
 
 _SAMPLES_A_SWING = 40
 _SEED = 0  # nothing random is switched on
-_FURTHER, _TURNED = 0.05, 0.1  # a release's tolerance where it is read off the record
-_LONG = 0.4  # of a record: over which a smooth deviation keeps its value
-_FAINT = 1e-3  # variance of a curve that is left out
-_ANY_SIZE = 1.0  # of the logarithm: a light gate does not tell the amplitude
+FURTHER, TURNED = 0.05, 0.1  # a release's tolerance where it is read off the record
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,211 +93,9 @@ class Trial:
 
     def as_released(self, further: float, turned: float) -> "Trial":
         """Return the trial let go as its release's columns say; a size that nobody knows stays."""
-        error = self.release_error(0.0 if self.scaled else _FURTHER * further, _TURNED * turned)
+        error = self.release_error(0.0 if self.scaled else FURTHER * further, TURNED * turned)
         return replace(self, bench=replace(self.bench, release=error(self.bench).release))
 
     def release_error(self, further: float, turned: float) -> ReleaseError:
         """Return another release of this trial."""
         return ReleaseError(further, turned, self.acts_on, self.windows.reference_rad_s)
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """A number of the set-up that is known within a standard deviation.
-
-    Attributes
-    ----------
-    make
-        From its error to the effect.
-    own
-        Whether each trial has its own error; all share one otherwise.
-    """
-
-    name: str
-    make: Callable[[float, Trial], PendulumEffect]
-    deviation: float
-    own: bool = False
-
-
-def _nothing(_: Trial) -> Sequence[PendulumEffect]:
-    return ()
-
-
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """What every hypothesis is held against.
-
-    Attributes
-    ----------
-    kinds
-        The observables that count, of :data:`~analysis.gap.pendulum.swings.KINDS`.
-    model_error
-        Standard deviation of what the nominal simulation itself is unsure of, one for each kind;
-        a smooth curve over each trial.
-    about
-        Effects beside which releases and tolerances act; none where left out.
-    """
-
-    trials: tuple[Trial, ...]
-    tolerances: tuple[Tolerance, ...] = ()
-    kinds: tuple[str, ...] = KINDS
-    model_error: tuple[float, ...] = (0.0,) * len(KINDS)
-    about: Callable[[Trial], Sequence[PendulumEffect]] = field(default=_nothing)
-
-    @property
-    def suspensions(self) -> bool:
-        """Whether the records are of one body on several suspensions, watched by light gates."""
-        return len(self.trials) > 2 and self.on_lines
-
-    @property
-    def on_lines(self) -> bool:
-        """Whether light gates watch a body on two lines."""
-        return all(one.scaled and isinstance(one.bench.body, Suspension) for one in self.trials)
-
-    @cached_property
-    def _seen(self) -> tuple[NDArray[np.bool_], ...]:
-        counts = np.array([name in self.kinds for name in KINDS])[:, None]
-        return tuple(
-            counts & np.isfinite(one.observed) & np.isfinite(one.uncertainty) for one in self.trials
-        )
-
-    def flat(self, parts: Sequence[FloatArray]) -> FloatArray:
-        """Return the trials' values that count, one after the other."""
-        return np.concatenate([part[seen] for part, seen in zip(parts, self._seen, strict=True)])
-
-    @cached_property
-    def uncertainty(self) -> FloatArray:
-        """Standard deviation of each observation, shape ``(observations,)``."""
-        return self.flat([one.uncertainty for one in self.trials])
-
-    @cached_property
-    def observed(self) -> FloatArray:
-        """The observations, shape ``(observations,)``."""
-        return self.flat([one.observed for one in self.trials])
-
-    @cached_property
-    def trial(self) -> NDArray[np.intp]:
-        """Number of each observation's trial."""
-        parts = [np.full(seen.shape, at) for at, seen in enumerate(self._seen)]
-        return np.concatenate([p[seen] for p, seen in zip(parts, self._seen, strict=True)])
-
-    @cached_property
-    def kind(self) -> NDArray[np.intp]:
-        """Number of each observation's kind."""
-        return np.concatenate([np.nonzero(seen)[0] for seen in self._seen])
-
-    @cached_property
-    def amplitude(self) -> FloatArray:
-        """Amplitude of the window that each observation belongs to."""
-        parts = [
-            np.broadcast_to(np.exp(one.observed[0]), one.observed.shape) for one in self.trials
-        ]
-        return self.flat(parts)
-
-    @cached_property
-    def centre_s(self) -> FloatArray:
-        """Middle of the window that each observation belongs to."""
-        parts = [np.broadcast_to(one.windows.centres_s, one.observed.shape) for one in self.trials]
-        return self.flat(parts)
-
-    def predict(self, effects: Callable[[Trial], Sequence[PendulumEffect]]) -> FloatArray:
-        """Return what all records would show, shape ``(observations,)``."""
-        return self.flat([one.simulate(effects(one)) for one in self.trials])
-
-    @cached_property
-    def nominal(self) -> FloatArray:
-        """What the nominal simulation shows."""
-        return self.predict(lambda _: ())
-
-    @cached_property
-    def residual(self) -> FloatArray:
-        """Measured less nominal, in sigma."""
-        return (self.observed - self.nominal) / self.uncertainty
-
-    @cached_property
-    def nuisances(self) -> Nuisances:
-        """Releases, amplitudes of gates, tolerances: columns in sigma."""
-        return Nuisances(np.hstack([self.releases, self.set_ups, self.shared, self.unsure]))
-
-    @cached_property
-    def releases(self) -> FloatArray:
-        """Columns of how each record began, and of its scale where that is unknown."""
-        columns = []
-        for at, trial in enumerate(self.trials):
-            spread = _ANY_SIZE if trial.scaled else _FURTHER
-            further = trial.release_error(0.2 * spread, 0.0)
-            columns.append(self._column(at, further, 0.2))
-            columns.append(self._column(at, trial.release_error(0.0, 0.2 * _TURNED), 0.2))
-            if trial.scaled:
-                own = (self.trial == at) & (self.kind == 0)
-                columns.append(_ANY_SIZE * own / self.uncertainty)
-        return np.column_stack(columns)
-
-    @cached_property
-    def set_ups(self) -> FloatArray:
-        """Columns of what each trial's own set-up leaves open: variants, its own tolerances."""
-        columns = [
-            self._varied(at, one) for at, trial in enumerate(self.trials) for one in trial.variants
-        ]
-        for known in self.tolerances:
-            columns += self._tolerated(known) if known.own else []
-        return self._stacked(columns)
-
-    @cached_property
-    def shared(self) -> FloatArray:
-        """Columns of the tolerances that all trials share."""
-        tolerated = [self._tolerated(known) for known in self.tolerances if not known.own]
-        return self._stacked([np.sum(each, axis=0) for each in tolerated])
-
-    @cached_property
-    def unsure(self) -> FloatArray:
-        """Columns of what the nominal simulation itself may be wrong by."""
-        found: list[FloatArray] = []
-        for kind, error in enumerate(self.model_error):
-            for at in range(len(self.trials)) if error > 0.0 else ():
-                smooth = self.smooth((self.trial == at) & (self.kind == kind))
-                found += list((error * smooth / self.uncertainty[:, None]).T)
-        return self._stacked(found)
-
-    def _stacked(self, columns: Sequence[FloatArray]) -> FloatArray:
-        return np.column_stack(columns) if columns else np.empty((self.uncertainty.size, 0))
-
-    def smooth(self, rows: NDArray[np.bool_]) -> FloatArray:
-        """Return columns whose random sum is a smooth curve of unit size over some windows.
-
-        Parameters
-        ----------
-        rows
-            Observations of one kind and trial; the columns are zero elsewhere.
-        """
-        if not rows.any():
-            return np.empty((rows.size, 0))
-        time_s = self.centre_s[rows]
-        apart = (time_s[:, None] - time_s) / (_LONG * max(float(np.ptp(time_s)), 1e-9))
-        values, vectors = np.linalg.eigh(np.exp(-0.5 * apart**2))
-        kept = values > _FAINT
-        columns = np.zeros((rows.size, int(kept.sum())))
-        columns[rows] = vectors[:, kept] * np.sqrt(values[kept])
-        return columns
-
-    def _tolerated(self, known: Tolerance) -> list[FloatArray]:
-        made = [known.make(known.deviation, trial) for trial in self.trials]
-        return [self._column(at, effect, 1.0) for at, effect in enumerate(made)]
-
-    def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
-        trial = self.trials[at]
-        other = replace(trial, bench=replace(bench, release=trial.bench.release))
-        there = self.about(trial)
-        return self._change(at, other.simulate(there) - trial.simulate(there))
-
-    def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
-        """Return the change by an effect on one trial, per whole of which it is a share."""
-        trial = self.trials[at]
-        there = self.about(trial)
-        change = trial.simulate([*there, effect]) - trial.simulate(there)
-        return self._change(at, change / share)
-
-    def _change(self, at: int, change: FloatArray) -> FloatArray:
-        parts = [np.zeros(one.observed.shape) for one in self.trials]
-        parts[at] = change
-        return self.flat(parts) / self.uncertainty

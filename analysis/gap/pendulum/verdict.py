@@ -10,10 +10,10 @@ import numpy as np
 from analysis.gap.gaussian import Nuisances, misfit
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS, Cause, cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import Searched
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.trial import Problem
 from analysis.inertia.numeric import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.effects import body

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, held, null
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.numeric import FloatArray
 
 _DRAWS = 400

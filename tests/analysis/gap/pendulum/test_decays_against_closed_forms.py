@@ -7,9 +7,10 @@ import pytest
 
 from analysis.gap.pendulum.causes import Cause, cause, causes_for, tolerance
 from analysis.gap.pendulum.hypothesis import fit
+from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import search
 from analysis.gap.pendulum.swings import cut_into_windows, scatter, swings_of_samples
-from analysis.gap.pendulum.trial import Problem, Trial
+from analysis.gap.pendulum.trial import Trial
 from analysis.gap.pendulum.verdict import judge
 from analysis.gap.pendulum.withheld import foretell
 from analysis.inertia.numeric import FloatArray
