@@ -73,8 +73,8 @@ def _laws(found: Diagnosis) -> Part | None:
     rows = tables.law_rows(found)
     line = (
         "Each law beside what else the answer holds. One is told from the best only if the whole "
-        "record prefers the best by a factor of 20, and withheld swings are not foretold better "
-        "by the other."
+        "record prefers the best by a factor of 20, and the other foretells no withheld swings "
+        "better by more than 0.2 u."
     )
     return Part("Laws of damping", (line,), (), (_table(rows),)) if rows.rows else None
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.verdict import TOLD_APART, UNKNOWN, Law, told_apart
+from analysis.gap.pendulum.verdict import TOLD_APART, UNKNOWN, Law, foretells_better, told_apart
 from analysis.inertia.spread import said_of
 
 FASTER: Final = "damping that grows faster than linearly"
@@ -66,10 +66,6 @@ def _undecided(first: Law, rivals: Sequence[Law]) -> Iterator[str]:
         f"its law cannot be told: {first.name} has the best evidence, but it cannot be told apart "
         f"from {', '.join(law.name for law in rivals)}"
     )
-    better = [
-        law.name
-        for law in rivals
-        if any(two < one for one, two in zip(first.withheld, law.withheld, strict=False))
-    ]
+    better = [law.name for law in rivals if foretells_better(law, first)]
     if better:
         yield f"withheld swings are foretold better by {', '.join(better)}"

@@ -24,6 +24,7 @@ TOLD_APART: Final = 20.0  # ratio of evidence from which one answer is preferred
 TOLERATED: Final = 0.1  # remainder over gap at which a name is worth half
 _STEEP: Final = 4.0
 _BEYOND: Final = 4.0
+_CHANCE_U: Final = 0.2  # standard deviation of the gap that noise alone leaves in a dozen windows
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
 LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
     "dry friction": (body.BearingFriction,),
@@ -153,12 +154,16 @@ def told_apart(first: Law, other: Law) -> bool:
     """Whether the law of the best evidence can be told from another one.
 
     Both have to say so: the evidence of the whole record, by a factor of 20, and the swings that
-    were withheld, none of which the other one foretells better. A law far behind in evidence is not
-    asked to foretell.
+    were withheld, none of which the other one foretells better by more than chance. A law far
+    behind in evidence is not asked to foretell.
     """
-    if first.name == other.name or other.possible:
-        return False
-    return all(one <= two for one, two in zip(first.withheld, other.withheld, strict=False))
+    return first.name != other.name and not other.possible and not foretells_better(other, first)
+
+
+def foretells_better(one: Law, other: Law) -> bool:
+    """Whether a law foretells any withheld swings better than another one by more than chance."""
+    gaps = zip(one.withheld, other.withheld, strict=False)
+    return any(mine < its - _CHANCE_U for mine, its in gaps)
 
 
 def damping_laws(

@@ -36,6 +36,7 @@ FAR = -math.log(TOLD_APART) - 1.0
         (law("behind in both", FAR, 5.2, 21.6), True),
         (law("behind, but foretells small swings better", FAR, 3.4, 30.0), False),
         (law("behind, but foretells large swings better", FAR, 9.0, 9.8), False),
+        (law("behind, foretells better by a chance of noise", FAR, 5.0, 21.4), True),
         (law("far behind, not asked", -100.0), True),
         (BEST, False),
     ],
