@@ -10,13 +10,13 @@ import click
 
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE
-from pmm.campaign_file import read_campaign
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import output
 from pmm.gap.appending import Added, append_effects, refuse_twice
 from pmm.gap.examine import Examined, examine
+from pmm.gap.load import campaign_of
 from pmm.gap.report import gap_report
 from pmm.parallel import open_executor
 from sim.effects.effect import Effect
@@ -55,7 +55,7 @@ def run(request: Request) -> None:
     chosen = _effects(_examined(request, path), request)
     _refuse_twice(path, [one.name for one in chosen])
     added = [Added(one.name, asdict(one)) for one in chosen]
-    kept = append_effects(path, added, read_campaign)
+    kept = append_effects(path, added, campaign_of)
     if request.as_json:
         rows = [asdict(one) for one in added]
         document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
@@ -93,4 +93,4 @@ def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
 
 
 def _refuse_twice(path: Path, names: Sequence[str]) -> None:
-    refuse_twice(path, [one.name for one in read_campaign(path).effects], names)
+    refuse_twice(path, [one.name for one in campaign_of(path).effects], names)

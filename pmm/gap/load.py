@@ -9,12 +9,13 @@ from analysis.gap.components import GapRun
 from analysis.gap.observe import Observed, observe
 from analysis.readers import read_recording
 from analysis.recording import Recording
-from hardware.description.errors import PmmError
+from hardware.description.errors import ConfigurationError, PmmError
 from hardware.description.oscillator import Range
 from pmm.calibrated import calibrated
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
 from pmm.campaign_order import place_in
+from pmm.configuration import read_toml
 from pmm.gap.at_rest import records_at_rest
 from sim.rig import SimulatedRig
 
@@ -64,7 +65,7 @@ def load_campaign(
         If the campaign does not say what the simulation needs.
     """
     path = path / CAMPAIGN_FILE if path.is_dir() else path
-    campaign = read_campaign(path)
+    campaign = campaign_of(path)
     rig = unlimited(campaign.rig())
     left_out: dict[str, str] = {}
     found: list[tuple[Run, Observed]] = []
@@ -85,6 +86,23 @@ def load_campaign(
     runs = tuple(_gap_runs(campaign, kept))
     at_rest, unused = records_at_rest(campaign, path.parent, sensors)
     return Loaded(campaign, rig, runs, left_out | unused, reference, at_rest)
+
+
+def campaign_of(path: Path) -> Campaign:
+    """Read a campaign's file; that of a pendulum is said to be one.
+
+    Raises
+    ------
+    ConfigurationError
+        If it is no campaign.
+    """
+    keys = read_toml(path).keys()
+    if "runs" not in keys and keys & {"measured", "suspensions"}:
+        raise ConfigurationError(
+            f"{path} describes a pendulum or a free decay, no campaign: see pmm gap pendulum and "
+            "pmm gap add-pendulum"
+        )
+    return read_campaign(path)
 
 
 def unlimited(rig: SimulatedRig) -> SimulatedRig:

@@ -14,10 +14,9 @@ from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import COEFFICIENTS, NONE
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE, Campaign
-from pmm.campaign_file import read_campaign
 from pmm.gap.case import Case, read_case
 from pmm.gap.hold_out import held_out_runs
-from pmm.gap.load import Loaded, load_campaign
+from pmm.gap.load import Loaded, campaign_of, load_campaign
 from sim.effects.effect import Effect
 
 PHOTOCELL: Final = "photocell"
@@ -76,7 +75,7 @@ def prepare(
     """
     file = campaign_file(folder)
     _check_sensors(sensors)
-    campaign, case = read_campaign(file), read_case(file.parent)
+    campaign, case = campaign_of(file), read_case(file.parent)
     held_out = held_out_runs(campaign, hold_out)
     on = campaign.effects_on(more or {})
     progress("reading")

@@ -6,6 +6,7 @@ import runpy
 from pathlib import Path
 
 import numpy as np
+import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
@@ -137,3 +138,12 @@ def test_one_simulation_is_to_be_given(tmp_path: Path) -> None:
     done = run(path)
     assert done.exit_code == 2
     assert "or [floating], or [pivot]: give exactly one of them" in done.stderr
+
+
+@pytest.mark.parametrize("verb", [(), ("add",), ("diagnose",)])
+def test_a_campaigns_command_names_the_pendulums(verb: tuple[str, ...]) -> None:
+    found = CliRunner().invoke(cli, ["gap", *verb, str(HOUSE / "examples/decay/roll.toml")])
+    assert found.exit_code == 2
+    assert "no campaign: see pmm gap pendulum and pmm gap add-pendulum" in " ".join(
+        found.output.split()
+    )
