@@ -98,7 +98,8 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
     found += _pulses(recording)
     if analysis.stretch.period_count >= _FEW_PERIODS:
         found += [*_trends(analysis), *_scatter(analysis), *_between(analysis), *_surges(analysis)]
-    parts, values, uncertainty = zip(*found, strict=True)
+    # Cycles with missing samples have no trend and no scatter, and records with some no spectrum.
+    parts, values, uncertainty = zip(*(one for one in found if np.isfinite(one[1])), strict=True)
     seen = Observation(parts, np.array(values), np.array(uncertainty))
     if quiet:
         seen = replace(
@@ -238,9 +239,12 @@ def _plateaus(analysis: Analysis, recording: Recording) -> dict[str, Plateau]:
 def _quiet(analysis: Analysis) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     part, reading = _steady(analysis), analysis.readings[0]
-    values = np.stack([part.values(name) for name in reading.channel_names])
+    names = [one for one in reading.channel_names if np.isfinite(part.values(one)).all()]
+    if not names:
+        return {}
+    values = np.stack([part.values(name) for name in names])
     found = quiet_lines(part.time_s(), values, reading.frequency_hz, reading.order)
-    return dict(zip(reading.channel_names, found, strict=True))
+    return dict(zip(names, found, strict=True))
 
 
 def _surges(analysis: Analysis) -> Found:

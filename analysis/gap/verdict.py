@@ -104,7 +104,8 @@ def _to_the_larger(weighed: Weighed, weights: dict[str, float]) -> None:
 def deserved(one: Named, margin: float) -> float:
     """Return how much of a named hypothesis's weight its name deserves.
 
-    By what it leaves, or, if that is much, by how far everything without it falls behind.
+    By what it leaves, or, if that is much, by how far everything without it falls behind; but what
+    leaves more than it explains is not the name of a gap.
 
     Parameters
     ----------
@@ -112,7 +113,8 @@ def deserved(one: Named, margin: float) -> float:
         Log evidence over the best hypothesis without its effects.
     """
     odds = math.pow(TOLERATED / max(one.remainder, _LEAST), _STEEP)
-    odds += math.pow(max(margin, 0.0) / DEMANDED, _STEEP)
+    if one.remainder < 1.0:
+        odds += math.pow(max(margin, 0.0) / DEMANDED, _STEEP)
     clean = odds / (1.0 + odds)
     return clean if len(one.fit.names) < 2 else _EARNEST * clean
 

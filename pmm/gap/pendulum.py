@@ -27,11 +27,13 @@ from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
 from sim.pendulum.effects import make_effect
-from sim.pendulum.effects.base import PendulumEffect
+from sim.pendulum.effects.base import PendulumEffect, small_swing
 from sim.pendulum.floating import Floating
 from sim.pendulum.pivot import Pendulum
 from sim.pendulum.suspension import Suspension
 
+_LARGEST_RAD = 1.6  # no pendulum test begins with a quarter of a turn
+_PERIODS_APART = 1.5  # factor: no gap that is told by swings, but another body
 _GATE_AMPLITUDE_RAD = 0.1
 _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
@@ -104,7 +106,9 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
     part = _part(case.measured, folder)
     body = case.floating or case.pivot
     if body is not None:
-        return Problem((_sampled(part, body, part.period_s),), known)
+        trial = _sampled(part, body, part.period_s)
+        _check_period(trial, part.period_s)
+        return Problem((trial,), known)
     if case.simulated is None:
         raise ConfigurationError(f"{case.name}: no [simulated] record, [floating] or [pivot]")
     theirs = _part(case.simulated, folder)
@@ -117,8 +121,26 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
     return Problem((trial,), known, model_error=model.rms)
 
 
+def _check_period(trial: Trial, period_s: float) -> None:
+    inertia, restoring = small_swing(trial.bench, trial.acts_on)
+    told_s = 2.0 * math.pi * math.sqrt(inertia / restoring)
+    if abs(math.log(period_s / told_s)) > math.log(_PERIODS_APART):
+        raise DataError(
+            f"{trial.name}: the record swings in {period_s:.3g} s, the body of the file in "
+            f"{told_s:.3g} s: is its inertia or restoring in other units?"
+        )
+
+
 def _part(one: Record, folder: Path) -> UsablePart:
-    return usable_part(series_from_recording(read_recording(folder / one.record), one.channel))
+    path = folder / one.record
+    part = usable_part(series_from_recording(read_recording(path), one.channel))
+    if part.series.unit in ("rad", "") and part.first_amplitude > _LARGEST_RAD:
+        raise DataError(
+            f"{path}: the first swing of {one.channel} is "
+            f"{part.first_amplitude:.3g}, taken as rad: "
+            f'in degrees? Then write the unit in its heading: "{one.channel} [deg]"'
+        )
+    return part
 
 
 def _sampled(part: UsablePart, body: Floating | Pendulum, period_s: float) -> Trial:

@@ -68,8 +68,8 @@ class Diagnosis:
 
     @property
     def told(self) -> bool:
-        """Whether the best set foretells enough to be called the cause."""
-        return self.foretells >= SURE
+        """Whether the best set is the answer, and foretells enough to be called the cause."""
+        return self.verdict.best == self.best.names and self.foretells >= SURE
 
     @property
     def control(self) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from analysis.gap.pendulum.search import Searched
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
 from analysis.inertia.numeric import FloatArray
-from hardware.description.errors import PmmError
+from hardware.description.errors import DataError, PmmError
 from sim.pendulum.effects import body
 
 UNKNOWN: Final = "unknown"
@@ -72,10 +72,17 @@ def judge(problem: Problem, searched: Searched) -> Verdict:
 
     A set that leaves much of the gap counts for its names only in part; the rest of its weight
     goes to ``"unknown"``.
+
+    Raises
+    ------
+    DataError
+        If the evidence is no number.
     """
     wide = inflation(problem, searched.best())
     logs = {names: searched.log_weight(names, wide) for names in searched.sets}
     logs[(UNKNOWN,)] = searched.log_weight_unknown(wide)
+    if not all(math.isfinite(one) for one in logs.values()):
+        raise DataError("the simulation cannot follow these records: their evidence is no number")
     top = max(logs.values())
     weights = {names: math.exp(value - top) for names, value in logs.items()}
     total = sum(weights.values())

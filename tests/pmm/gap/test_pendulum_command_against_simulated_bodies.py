@@ -147,3 +147,33 @@ def test_a_campaigns_command_names_the_pendulums(verb: tuple[str, ...]) -> None:
     assert "no campaign: see pmm gap pendulum and pmm gap add-pendulum" in " ".join(
         found.output.split()
     )
+
+
+@pytest.mark.parametrize(
+    ("factor", "restoring", "said"),
+    [
+        (57.29578, "800.0", 'in degrees? Then write the unit in its heading: "roll [deg]"'),
+        (1.0, "8.0", "is its inertia or restoring in other units?"),
+    ],
+)
+def test_a_record_that_cannot_be_the_bodys_is_refused(
+    tmp_path: Path, factor: float, restoring: str, said: str
+) -> None:
+    table = FLOATING.replace("800.0", restoring)
+    path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", table)
+    rows = np.loadtxt(tmp_path / "decay.csv", delimiter=",", skiprows=1)
+    rows[:, 1] *= factor
+    np.savetxt(tmp_path / "decay.csv", rows, delimiter=",", header="time_s,roll", comments="")
+    done = run(path)
+    assert done.exit_code == 1
+    assert said in " ".join(done.stderr.split())
+
+
+def test_nothing_is_added_where_the_answer_is_unknown(tmp_path: Path) -> None:
+    path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
+    before = path.read_text()
+    words = ["gap", "add-pendulum", str(path), "--effects", "sensor_lag"]
+    done = CliRunner().invoke(cli, words)
+    assert done.exit_code == 1
+    assert "nothing to add" in " ".join(done.stderr.split())
+    assert path.read_text() == before
