@@ -29,6 +29,7 @@ from hardware.description.setpoint import Medium, SetPoint
 FloatArray = NDArray[np.float64]
 
 ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
+NO_GAP: Final = "no gap"
 _FREQUENCIES: Final = 3
 _RADII: Final = 2
 
@@ -65,13 +66,15 @@ class Proposal:
         ``"oscillation"`` or one of the special ones.
     gain
         Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``.
+    between
+        Those answers, by name, ``"no gap"`` among them.
     """
 
     kind: str
     set_point: SetPoint | None
     preload_n: float
     gain: float
-    reason: str
+    between: tuple[str, ...] = ()
 
 
 def proposals(
@@ -83,7 +86,9 @@ def proposals(
 ) -> tuple[Proposal, ...]:
     """Return runs in the order of what they are worth."""
     found = [*_oscillations(problem, leading, choices, free, priors), *_special(leading, choices)]
-    return tuple(sorted(found, key=lambda one: -one.gain))
+    answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
+    ranked = sorted(found, key=lambda one: -one.gain)
+    return tuple(replace(one, between=answers) for one in ranked)
 
 
 def _oscillations(
@@ -104,7 +109,7 @@ def _oscillations(
     for number, run in enumerate(runs):
         rows = there.simulator.stack.run == number
         odds = _apart(np.column_stack([one[rows] for one in means]), [one[rows] for one in roots])
-        yield Proposal("oscillation", run.set_point, 0.0, gained(shares, odds), "")
+        yield Proposal("oscillation", run.set_point, 0.0, gained(shares, odds))
 
 
 def gained(shares: Sequence[float], odds: FloatArray) -> float:
@@ -188,7 +193,7 @@ def _special(leading: Leading, choices: Choices) -> Iterator[Proposal]:
     for kind in choices.special:
         told = [_tells(kind, fit) for fit, _ in leading]
         odds = [[ENOUGH * (one != other) for other in told] for one in told]
-        yield Proposal(kind, None, 0.0, gained(shares, np.array(odds)), "")
+        yield Proposal(kind, None, 0.0, gained(shares, np.array(odds)))
 
 
 def _tells(kind: str, fit: Fit | None) -> frozenset[str]:

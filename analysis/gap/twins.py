@@ -13,6 +13,8 @@ _WEIGHT = "a check weight: a gain shows in it, jitter does not"
 _INJECTION = "a sine fed into all force amplifiers in place of the bridges"
 _AIR = "the same runs in air, without the water's part"
 _PRELOAD = "the same run with a dead weight that takes up the play"
+_SPEED = "the same runs at another speed"
+_LOOSE = "the same run with the cable disconnected"
 _SLOW = "a record at rest over the same time: a drift goes on, waves die out"
 
 _SEPARATED: Final = {
@@ -40,6 +42,8 @@ _SEPARATED: Final = {
             ("coulomb-friction", "quadratic-damping"),
             ("gauge-hysteresis", "quadratic-damping"),
         ],
+        _SPEED: [("dynamic-trim", "restoring-error"), ("carriage-speed", "damping-error")],
+        _LOOSE: [("cable", "coulomb-friction"), ("cable", "nonlinear-restoring")],
         _PRELOAD: [
             ("joint-play", "gear-backlash"),
             ("free-play", "joint-play"),
@@ -49,6 +53,13 @@ _SEPARATED: Final = {
     }.items()
     for pair in pairs
 }
+
+_COEFFICIENTS: Final = {"a": "added-mass-error", "b": "damping-error", "c": "restoring-error"}
+
+
+def coefficient_error(name: str) -> str:
+    """Return what an error of a coefficient, ``a11`` or ``c12``, is called among the pairs."""
+    return _COEFFICIENTS.get(name[:1], name)
 
 
 def separating_measurements(names: Sequence[str]) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
-from analysis.gap.components import Component, GapRun, Part
+from analysis.gap.components import Component, GapRun, Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator, read_steady
 from analysis.gap.gaussian import Nuisances
@@ -47,7 +47,7 @@ class Gap:
     count
         Components that were compared.
     worst
-        The largest one, in words.
+        The largest one, with its run, in words.
     stated
         As ``rms``, of the simulation as it is stated, with no number free; NaN where nobody asked.
     """
@@ -109,11 +109,11 @@ def walk(problem: Problem) -> Walk:
     whole = problem.residual
     left = left_by_step(problem, whole)
     of_step = {what: _of_step(stack.components, what) for what in CHAIN}
-    steps = [gap_of(stack.components, left, what, rows, whole) for what, rows in of_step.items()]
+    steps = [gap_of(stack, left, what, rows, whole) for what, rows in of_step.items()]
     fed = _fed(problem)
     if fed is not None:
         after = CHAIN.index(FORCE) + 1
-        steps.insert(after, gap_of(stack.components, fed, FORCE_FED, of_step[FORCE]))
+        steps.insert(after, gap_of(stack, fed, FORCE_FED, of_step[FORCE]))
     steps = [one for one in steps if one.count]
     return Walk(tuple(steps), tuple(_contrasts(problem, left)))
 
@@ -154,7 +154,7 @@ def _of_step(components: Sequence[Component], what: str) -> NDArray[np.bool_]:
 
 
 def gap_of(
-    components: Sequence[Component],
+    stack: Stack,
     left: FloatArray,
     what: str,
     rows: NDArray[np.bool_],
@@ -165,7 +165,8 @@ def gap_of(
         return Gap(what, 0.0, 0, "")
     size = np.where(rows, np.abs(left), 0.0)
     worst = int(np.argmax(size))
-    said = f"{components[worst]}: {left[worst]:+.1f} u"
+    run = stack.runs[stack.run[worst]].name
+    said = f"{run}: {stack.components[worst]} {left[worst]:+.1f} u"
     stated = math.nan if whole is None else _rms(whole[rows])
     return Gap(what, _rms(left[rows]), int(rows.sum()), said, stated)
 
@@ -179,7 +180,7 @@ def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
     forces = np.array([one.channel in FORCES for one in stack.components])
     for kind in contrasts(stack.runs):
         rows = forces & np.isin(stack.run, kind.runs)
-        yield gap_of(stack.components, left, str(kind), rows, whole)
+        yield gap_of(stack, left, str(kind), rows, whole)
 
 
 def _fed(problem: Problem) -> FloatArray | None:

@@ -156,6 +156,8 @@ def _print_remains(console: "Console", report: GapReport) -> None:
 def _print_next(console: "Console", report: GapReport) -> None:
     if not report.next_runs:
         return
-    console.print("\nnext: the run that tells the leading answers apart best", style="bold")
+    *others, last = report.next_runs[0]["between"]
+    answers = f"{', '.join(others)} and {last}" if others else last
+    console.print(f"\nnext: the run that tells {answers} apart best", style="bold", soft_wrap=True)
     for one in report.next_runs[:3]:
         console.print(f"{one['said']}: {one['gain_log_odds']:.1f} expected log odds")

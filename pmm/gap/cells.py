@@ -60,11 +60,11 @@ def remains(examined: Examined) -> Iterator[StepRow]:
     """Yield what the cause that is named leaves, step by step along the chain."""
     problem = examined.diagnosis.problem
     left = left_by_step(problem, examined.diagnosis.left)
-    parts = problem.simulator.stack.components
+    stack = problem.simulator.stack
     for what in CHAIN:
-        rows = np.array([step_of(one) == what for one in parts])
+        rows = np.array([step_of(one) == what for one in stack.components])
         if rows.any():
-            yield step_row(gap_of(parts, left, what, rows))
+            yield step_row(gap_of(stack, left, what, rows))
 
 
 def heat_cells(examined: Examined) -> Iterator[Cell]:

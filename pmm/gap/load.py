@@ -76,7 +76,7 @@ def load_campaign(
         try:
             found.append((run, _observed(campaign, run, path.parent, sensors)))
         except (PmmError, OSError) as error:
-            left_out[run.name] = str(error)
+            left_out[run.name] = str(error).removeprefix(f"{run.name}: ")
     reference = _usual_reference(found)
     for run, one in found:
         if one.reference_channel != reference:

@@ -10,7 +10,7 @@ from analysis.gap.description import Description
 from analysis.gap.diagnose import SHIFTED
 from analysis.gap.propose import Proposal
 from analysis.gap.regimes import describe as in_words
-from analysis.gap.twins import separating_measurements
+from analysis.gap.twins import coefficient_error, separating_measurements
 from analysis.gap.verdict import (
     COEFFICIENTS,
     NONE,
@@ -182,9 +182,11 @@ def _notes(examined: Examined) -> Iterator[str]:
     if found.cause is not None:
         twins = coefficient_twins(found.problem, found.cause, examined.free)
         for name, (off, units) in twins.items():
+            how = separating_measurements([coefficient_error(name), *found.cause.names])
             yield (
                 f"{name} off by {off:+.4g} {UNITS.get(name, '')} ({abs(units):.3g} tolerances) "
                 f"would do the same in these runs as {joined(answer_of(found.cause))}"
+                + (f"; to tell them apart: {'; '.join(how)}" if how else "")
             )
     if best is not None and found.cause is not None and best.remainder > 0.2:
         yield (
@@ -248,4 +250,9 @@ def _regimes(examined: Examined) -> Iterator[RegimeRow]:
 
 def _next(one: Proposal) -> dict[str, Any]:
     said = one.kind if one.set_point is None else in_words(one.set_point)
-    return {"run": next_run(one), "said": said, "gain_log_odds": one.gain}
+    return {
+        "run": next_run(one),
+        "said": said,
+        "gain_log_odds": one.gain,
+        "between": list(one.between),
+    }

@@ -157,6 +157,7 @@ def _next(report: GapReport) -> Part | None:
     if not report.next_runs:
         return None
     rows = tuple((one["said"], f"{one['gain_log_odds']:.1f}") for one in report.next_runs)
-    line = "Runs of this rig, by how well they are expected to tell the leading answers apart."
+    answers = ", ".join(report.next_runs[0]["between"])
+    line = f"Runs of this rig, by how well they are expected to tell apart: {answers}."
     table = Table("Next", ("run", "expected log odds"), rows)
     return Part("Next", (line,), (), (table,))

@@ -24,8 +24,8 @@ POINTS = (
 
 @pytest.fixture
 def plan(tmp_path: Path) -> Path:
-    ran = [Proposal("oscillation", one, 0.0, 5.0, "") for one in POINTS]
-    special = [Proposal(kind, None, 0.0, 3.0, "") for kind in ("rest", "check-weight", "injection")]
+    ran = [Proposal("oscillation", one, 0.0, 5.0) for one in POINTS]
+    special = [Proposal(kind, None, 0.0, 3.0) for kind in ("rest", "check-weight", "injection")]
     copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
     copy(EXAMPLES / "vertical" / "simulated.toml", tmp_path)
     path = tmp_path / "plan.toml"
@@ -50,7 +50,7 @@ def test_what_no_plan_can_do_is_said(plan: Path) -> None:
 def test_a_dead_weight_is_asked_for(tmp_path: Path) -> None:
     copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
     path = tmp_path / "plan.toml"
-    proposed = [Proposal("oscillation", POINTS[1], 50.0, 5.0, "")]
+    proposed = [Proposal("oscillation", POINTS[1], 50.0, 5.0)]
     path.write_text(plan_text("next", proposed), encoding="utf-8")
     assert "Hang 50 N on the model" in {
         said for one in read_plan(path).runs for said in one.prompts
