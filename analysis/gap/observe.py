@@ -19,7 +19,7 @@ from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
 from analysis.resolver.analyse import Analysis, Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
-from analysis.resolver.estimate import solve_periods
+from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
 from hardware.description import channels
 from hardware.description.errors import DataError
@@ -83,7 +83,7 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
     Raises
     ------
     DataError
-        If the recording has no force, or too few whole periods.
+        If the recording has no force, or too few whole periods without missing samples.
     """
     names = tuple(one for one in COMPARED if one in recording.channel_names)
     if not set(names) & set(FORCES):
@@ -94,6 +94,7 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
     kept = tuple(one for one in names if one != choice.channel or one in FORCES)
     settings = Settings(channels=kept, harmonics=_orders(recording))
     analysis = analyse(unwrapped(recording), choice, settings)
+    _check_periods(analysis)
     found = [*_harmonics(analysis), *_frequency(analysis, recording)]
     found += _pulses(recording)
     if analysis.stretch.period_count >= _FEW_PERIODS:
@@ -109,6 +110,15 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
             turns_per_period=turns_per_period(recording, analysis.readings[0].frequency_hz),
         )
     return Observed(seen, analysis)
+
+
+def _check_periods(analysis: Analysis) -> None:
+    count, whole = analysis.stretch.period_count, usable(analysis.steady_sums).period_count
+    if whole < min(count, _FEW_PERIODS):
+        raise DataError(
+            f"{analysis.recording.name}: {whole} of {count} whole periods have no missing samples; "
+            f"{_FEW_PERIODS} are needed"
+        )
 
 
 def _choice(recording: Recording, latency_s: float) -> ReferenceChoice:

@@ -125,6 +125,27 @@ def test_one_bad_run(rig: Path, tmp_path: Path, change: Any, said: str) -> None:
     assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
 
 
+@pytest.mark.parametrize(("torn_periods", "left_out"), [((1, 4), False), ((0, 1, 3, 4), True)])
+def test_samples_that_are_missing_in_some_periods(
+    rig: Path, tmp_path: Path, torn_periods: tuple[int, ...], left_out: bool
+) -> None:
+    """No stretch of whole periods is left; those that are torn count for nothing."""
+
+    def torn(record: xr.Dataset) -> xr.Dataset:
+        values = record["force_aft"].values.copy()
+        for period in torn_periods:
+            begins = int((period + 0.5) / 6.0 * len(values))
+            values[begins : begins + 30] = np.nan
+        return record.assign(force_aft=record["force_aft"].copy(data=values))
+
+    document = found(changed(rig, tmp_path, "heave-0.80-20", torn))
+    assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
+    assert document["class_probability"] > 0.9
+    assert ("heave-0.80-20" in document["left_out"]) is left_out
+    if left_out:
+        assert "whole periods have no missing samples" in document["left_out"]["heave-0.80-20"]
+
+
 def test_shaft_angles_in_degrees_in_all_runs(rig: Path, tmp_path: Path) -> None:
     campaign = with_angles(rig, tmp_path, in_degrees)
     done = run("gap", campaign, *FEW)
