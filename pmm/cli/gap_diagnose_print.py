@@ -66,9 +66,9 @@ def _print_where(console: "Console", report: GapReport) -> None:
 
 def _print_which(console: "Console", report: GapReport) -> None:
     console.print("\nwhich", style="bold")
-    table = _table("answer", "stage", "parameters (95 %)", "probability", text=3)
+    table = _table("answer", "stage", "parameters (95 %)", "probability", "withheld [u]", text=3)
     for one in report.ranking:
-        table.add_row(joined(one.answer), one.stage, _parameters(one), f"{one.probability:.4f}")
+        table.add_row(joined(one.answer), one.stage, _parameters(one), *one.said)
     console.print(table)
     for one in report.ranking:
         if one.alike:

@@ -1,9 +1,11 @@
 """A campaign's folder examined: what can be used, the diagnosis, and its controls."""
 
+import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -19,11 +21,14 @@ from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.withheld import Predicted, predict_withheld
+from analysis.gap.verdict import NONE, answer_of
+from analysis.gap.withheld import Predicted, gap_of, predict_withheld
 from pmm.campaign import Campaign
 from pmm.gap.own_effects import chosen_effects, try_own
 from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
 from sim.effects.effect import Effect
+
+_LIKELIEST: Final = 6  # answers that are asked to foretell
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,8 @@ class Judged:
     plain, cured, rival, free_form
         Without an effect, with the best answer, with the wrong-effect control (the second best) and
         with the free polynomial; empty where there is none.
+    by_answer
+        The gap that each of the likeliest answers leaves of them all, in u, noise taken off.
     chosen
         Whether the user chose the runs, so that nothing was fitted to them.
     """
@@ -65,6 +72,7 @@ class Judged:
     cured: tuple[Predicted, ...]
     rival: tuple[Predicted, ...]
     free_form: tuple[Predicted, ...]
+    by_answer: Mapping[str, float]
     chosen: bool
 
 
@@ -143,17 +151,38 @@ def _judged(
     if not withheld:
         every = regimes(found.problem.simulator.stack.runs)
         fits = [None if one is None else one.fit for one in (found.best, found.rival)]
-        return _predicted(found.problem, fits, every, polynomial(found.problem), chosen=False)
+        by_answer = _left_by(_likeliest(found), found.problem, every)
+        free_form = polynomial(found.problem)
+        return _predicted(found.problem, fits, every, free_form, by_answer, chosen=False)
     joint = _joint(found.problem, fitted, withheld, free, priors)
     regime = chosen_regime(joint.simulator.stack.runs, [run.name for run in withheld])
     ones = [Regime("run", joint.simulator.stack.runs[at_].name, (at_,)) for at_ in regime.runs]
     kept = ~np.isin(joint.simulator.stack.run, regime.runs)
-    fits = [
-        None if one is None else at(joint, one.fit.candidates, one.fit.units)
-        for one in (found.best, found.rival)
-    ]
-    whole = _predicted(joint, fits, [regime], polynomial(joint, kept), chosen=True)
+    leading = [None if one is None else one.fit for one in (found.best, found.rival)]
+    asked = _likeliest(found) | {answer_of(one): one for one in leading if one is not None}
+    there = {name: at(joint, one.candidates, one.units) for name, one in asked.items()}
+    fits = [None if one is None else there[answer_of(one)] for one in leading]
+    by_answer = _left_by(there, joint, [regime])
+    whole = _predicted(joint, fits, [regime], polynomial(joint, kept), by_answer, chosen=True)
     return _by_run(whole, joint, ones)
+
+
+def _likeliest(found: Diagnosis) -> dict[str, Fit]:
+    """Return the likeliest named answers."""
+    shares = found.probabilities.by_answer
+    fits = {answer_of(one.fit): one.fit for one in (*found.weighed.singles, *found.weighed.pairs)}
+    return {name: fits[name] for name in sorted(fits, key=lambda one: -shares[one])[:_LIKELIEST]}
+
+
+def _left_by(
+    fits: Mapping[str, Fit], problem: Problem, withheld: Sequence[Regime]
+) -> dict[str, float]:
+    """Return the gap that each answer leaves of what is withheld; NaN where nothing is."""
+    found = {}
+    for name, fit in {NONE: None, **fits}.items():
+        left = [one.left for one in predict_withheld(problem, fit, withheld)]
+        found[name] = gap_of(np.concatenate(left)) if left else math.nan
+    return found
 
 
 def _joint(
@@ -175,6 +204,7 @@ def _predicted(
     fits: Sequence[Fit | None],
     withheld: Sequence[Regime],
     control: Fit,
+    by_answer: Mapping[str, float],
     *,
     chosen: bool,
 ) -> Judged:
@@ -184,6 +214,7 @@ def _predicted(
         () if best is None else predict_withheld(problem, best, withheld),
         () if rival is None else predict_withheld(problem, rival, withheld),
         predict_withheld(problem, control, withheld),
+        by_answer,
         chosen,
     )
 
@@ -204,5 +235,6 @@ def _by_run(whole: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:
         apart(whole.cured),
         apart(whole.rival),
         apart(whole.free_form),
+        whole.by_answer,
         whole.chosen,
     )

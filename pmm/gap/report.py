@@ -218,7 +218,8 @@ def _ranking(examined: Examined) -> Iterator[Ranked]:
             for own, group in members.items()
             for how in separating_measurements([own, *(other for other, _ in group)])
         ]
-        yield Ranked(name, float(shares[name]), stage, effects, alike, measure)
+        left = examined.judged.by_answer.get(name, math.nan)
+        yield Ranked(name, float(shares[name]), left, stage, effects, alike, measure)
 
 
 def _controls(examined: Examined) -> Iterator[ControlRow]:

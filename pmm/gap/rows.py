@@ -11,6 +11,9 @@ class Ranked:
 
     Attributes
     ----------
+    withheld_u
+        The gap that it leaves of withheld regimes or runs, in u, noise taken off; NaN where it
+        foretells none.
     alike
         Effects that these runs cannot tell from it, with the sigma that they leave.
     measure
@@ -19,10 +22,17 @@ class Ranked:
 
     answer: str
     probability: float
+    withheld_u: float
     stage: str
     effects: list[dict[str, Any]]
     alike: dict[str, float]
     measure: list[str]
+
+    @property
+    def said(self) -> tuple[str, str]:
+        """Probability and withheld gap as people read them."""
+        left = "-" if math.isnan(self.withheld_u) else f"{self.withheld_u:.2f}"
+        return f"{self.probability:.4f}", left
 
 
 @dataclass(frozen=True)

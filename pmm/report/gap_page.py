@@ -83,11 +83,14 @@ def _which(report: GapReport) -> Part:
             one.stage,
             _parameters(one),
             ", ".join(one.alike),
-            f"{one.probability:.4f}",
+            *one.said,
         )
         for one in report.ranking
     )
-    headings = ("answer", "stage", "parameters (95 %)", "cannot be told from", "probability")
+    headings = (
+        "answer", "stage", "parameters (95 %)", "cannot be told from", "probability",
+        "withheld gap [u]",
+    )  # fmt: skip
     first = report.ranking[0].measure if report.ranking else []
     said = [f"What would tell the class apart: {one}." for one in first]
     if report.hidden:
