@@ -26,6 +26,7 @@ from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
 from pmm.gap.plain import plain_values
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
+from pmm.gap.run_notes import run_notes
 from sim.effects.catalogue import catalogue
 
 if TYPE_CHECKING:
@@ -173,6 +174,7 @@ def _notes(examined: Examined) -> Iterator[str]:
     if far:
         said = ", ".join(f"{name} {moved.moved[name]:+.4g}" for name in far)
         yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
+    yield from run_notes(examined)
     found = examined.diagnosis
     best = found.best
     pulled = coefficient_shift(found.problem, found.problem.residual)
