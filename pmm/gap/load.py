@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from analysis.gap.components import GapRun
@@ -17,6 +17,7 @@ from pmm.campaign_file import read_campaign
 from pmm.campaign_order import place_in
 from pmm.configuration import read_toml
 from pmm.gap.at_rest import records_at_rest
+from pmm.gap.cut_short import cut_short
 from sim.rig import SimulatedRig
 
 
@@ -32,6 +33,9 @@ class Loaded:
         The campaign's zero runs.
     reference_channel
         The channel whose fundamental is phase 0; ``None`` with a photocell.
+    cut_short
+        Runs of which many periods are not used, or some for want of samples, by name, with the
+        reason.
     """
 
     campaign: Campaign
@@ -40,6 +44,7 @@ class Loaded:
     left_out: dict[str, str]
     reference_channel: str | None
     at_rest: tuple[GapRun, ...] = ()
+    cut_short: dict[str, str] = field(default_factory=dict)
 
 
 def load_campaign(
@@ -85,7 +90,8 @@ def load_campaign(
     kept = [pair for pair in found if pair[0].name not in left_out]
     runs = tuple(_gap_runs(campaign, kept))
     at_rest, unused = records_at_rest(campaign, path.parent, sensors)
-    return Loaded(campaign, rig, runs, left_out | unused, reference, at_rest)
+    cut = {run.name: said for run, one in kept if (said := cut_short(one.analysis))}
+    return Loaded(campaign, rig, runs, left_out | unused, reference, at_rest, cut)
 
 
 def campaign_of(path: Path) -> Campaign:

@@ -1,7 +1,7 @@
 """From a campaign's folder to what is diagnosed: the same for one campaign and for a board."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
@@ -38,6 +38,9 @@ class Prepared:
         The rig to begin with: moved to the coefficients that fit where the stated ones are far off.
     fitted, withheld
         The runs to fit, records at rest among them, and those that nobody looks at until the end.
+    cut_short
+        Runs of which many periods are not used, or some for want of samples, by name, with the
+        reason.
     """
 
     campaign: Campaign
@@ -47,6 +50,7 @@ class Prepared:
     fitted: tuple[GapRun, ...]
     withheld: tuple[GapRun, ...]
     settings: Settings
+    cut_short: Mapping[str, str] = field(default_factory=dict)
 
 
 def prepare(
@@ -94,7 +98,8 @@ def prepare(
     )
     for one in loaded.at_rest:
         (withheld if one.name in held_out else fitted).append(one)
-    return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings)
+    cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
+    return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings, cut)
 
 
 def campaign_file(folder: Path) -> Path:

@@ -1,4 +1,4 @@
-"""What is said of single runs that are used: one that alone is off."""
+"""What is said of single runs that are used: one that alone is off, and those cut short."""
 
 from collections.abc import Iterator
 
@@ -8,6 +8,13 @@ from pmm.gap.examine import Examined
 
 
 def run_notes(examined: Examined) -> Iterator[str]:
+    """Yield notes about single runs."""
+    yield from _odd(examined)
+    for name, said in examined.ready.cut_short.items():
+        yield f"run {name}: {said}"
+
+
+def _odd(examined: Examined) -> Iterator[str]:
     """Yield the run that alone is off, unless the cause that is named explains it too.
 
     An effect may show beyond noise in the one run that drives it hardest.
