@@ -52,8 +52,9 @@ def _allowed(problem: Problem, walked: Walk) -> frozenset[StageName]:
     feels_its_load = problem.simulator.rig.drive.motor is not None
     if feels_its_load or not beyond.get(MOTION, False):
         return frozenset(StageName)
-    even = not beyond.get(SHAFT, True)
-    return frozenset(walked.stages) - {StageName.DRIVE if even else None}
+    left = frozenset(walked.stages)
+    turns_evenly = not beyond.get(SHAFT, True)
+    return left - {StageName.DRIVE} if turns_evenly else left
 
 
 def _by_channels(problem: Problem, weighed: Weighed) -> StageName:
