@@ -3,8 +3,9 @@
 What nobody knows resembles what is known: of the effects of the right stage one usually explains
 more than those of any other, for they act at the same place of the chain and follow the same
 motion, force or clock. Where the motion is off already, nothing behind it is to blame, nor the
-drive of a shaft that turns as it should. Where no effect explains anything, the channels that
-deviate have to do.
+drive of a shaft that turns as it should; where it is not, drive and mechanism are heard less: play
+and teeth may strike at orders that are not compared. Where no effect explains anything, the
+channels that deviate have to do.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,7 @@ from sim.effects.effect import Effect, StageName
 
 _POWER: Final = 2.0  # of what is explained, in the odds
 _BY_CHANNELS: Final = 1.0  # log evidence that the deviating channels count for
+_FINE: Final = 0.3  # of their evidence, where what they move moves as it should
 _STAYS: Final = 0.3  # of the mean square in water: what is there in air as well
 
 
@@ -34,27 +36,31 @@ def unknown_stages(
     By the log evidence of the best effect of each stage, without a remainder, over that of no gap.
     """
     explained = {_by_channels(problem, weighed): _BY_CHANNELS}
-    allowed = _allowed(problem, walked)
+    heard = _heard(problem, walked)
     refined = [one.fit for one in weighed.singles]
     looked = [one.fit for one in weighed.looked if one.fit is not None]
     for fit in (*refined, *looked):
         stage = catalogue[fit.names[0]].stage
-        gain = max(fit.log_evidence - weighed.none, 0.0) if stage in allowed else 0.0
+        gain = heard[stage] * max(fit.log_evidence - weighed.none, 0.0)
         explained[stage] = max(explained.get(stage, 0.0), gain)
     top = max(explained.values())
     odds = {stage.value: (gain / top) ** _POWER for stage, gain in explained.items()}
     return {name: value / sum(odds.values()) for name, value in odds.items()}
 
 
-def _allowed(problem: Problem, walked: Walk) -> frozenset[StageName]:
-    """Return the stages that the walk leaves, where it finds the motion off."""
+def _heard(problem: Problem, walked: Walk) -> dict[StageName, float]:
+    """Return which share of its evidence each stage is given, by the motion that is recorded."""
     beyond = {one.what: one.beyond for one in walked.steps}
-    feels_its_load = problem.simulator.rig.drive.motor is not None
-    if feels_its_load or not beyond.get(MOTION, False):
-        return frozenset(StageName)
-    left = frozenset(walked.stages)
-    turns_evenly = not beyond.get(SHAFT, True)
-    return left - {StageName.DRIVE} if turns_evenly else left
+    whole = dict.fromkeys(StageName, 1.0)
+    if problem.simulator.rig.drive.motor is not None or MOTION not in beyond:
+        return whole  # a drive that feels its load moves by what is behind it, too
+    shaft_is_off = beyond.get(SHAFT)  # None where it is not recorded
+    if beyond[MOTION]:
+        acquitted = {StageName.DRIVE} if shaft_is_off is False else set()
+        return {one: float(one in walked.stages and one not in acquitted) for one in StageName}
+    if not shaft_is_off:
+        whole |= {StageName.DRIVE: _FINE, StageName.MECHANISM: _FINE}
+    return whole
 
 
 def _by_channels(problem: Problem, weighed: Weighed) -> StageName:
