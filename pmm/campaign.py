@@ -24,7 +24,7 @@ from sim.acting import Acting
 from sim.carriage import CarriageSettings
 from sim.drive import DriveSettings
 from sim.dynamometer import Dynamometers
-from sim.effects.catalogue import build_from, catalogue
+from sim.effects.catalogue import build_from
 from sim.effects.effect import Effect
 from sim.hull import HullCoefficients
 from sim.hull_forces import CrossFlow
@@ -273,9 +273,7 @@ class Campaign:
             try:
                 built.append(build_from(one.name, one.parameters, dict(more or {})))
             except ConfigurationError as error:
-                unknown = one.name not in {*catalogue(), *(more or {})}
-                own = " If it is one of your own: --effects FILE.py" if unknown else ""
-                faults.append(f"effects[{number}]: {error}{own}")
+                faults.append(f"effects[{number}]: {error}")
         if faults:
             raise ConfigurationError(f"campaign {self.name!r}: " + "; ".join(faults))
         return tuple(built)

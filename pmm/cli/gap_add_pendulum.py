@@ -4,19 +4,13 @@ from typing import Any
 
 import click
 
-from pmm.cli.gap_options import catalogue_options
+from pmm.cli.gap_options import catalogue_options, most_option
 
 
 @click.command("add-pendulum")
 @click.argument("file", metavar="FILE.toml")
 @click.argument("causes", nargs=-1, metavar="[EFFECT]...")
-@click.option(
-    "--most",
-    type=click.IntRange(1, 3),
-    default=3,
-    show_default=True,
-    help="Causes that may act together.",
-)
+@most_option
 @catalogue_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
 def add_pendulum(**options: Any) -> None:

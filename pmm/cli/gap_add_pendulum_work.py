@@ -1,21 +1,17 @@
 """What ``pmm gap add-pendulum`` does: fit, append to the file, and keep the old one."""
 
-import json
-import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, cast
 
-import click
-
 from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.settle import Settled
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
+from pmm.cli.gap_adding import add_and_say, check_writable
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
-from pmm.cli.screen import output
-from pmm.gap.appending import Added, append_effects, refuse_twice
+from pmm.gap.appending import Added, refuse_twice
 from pmm.gap.pendulum_examine import Options, examine_pendulum, fitted_causes
 from pmm.gap.pendulum_file import read_case
 
@@ -44,24 +40,16 @@ def run(request: Request) -> None:
     """
     path = Path(request.file)
     there = [one.name for one in read_case(path).effects]
-    if not os.access(path, os.W_OK):
-        raise ConfigurationError(f"{path}: cannot be written to")
+    check_writable(path)
     refuse_twice(path, there, request.causes)
     after = _settled(request, path)
     refuse_twice(path, there, after.best.names)
     effects = after.best.effects(after.problem.trials[0])
     added = [Added(one.name, _told(one)) for one in effects]
-    kept = append_effects(path, added, read_case)
-    if request.as_json:
-        rows = [asdict(one) for one in added]
-        document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
-        click.echo(json.dumps(document, indent=1, allow_nan=False))
-        return
-    for one in added:
-        output().print(f"added {one.said}", soft_wrap=True)
-    output().print(f"{path}; as it was: {kept}", soft_wrap=True)
     files = [word for one in request.files for word in ("--effects", one)]
-    output().print(pasted("gap", "pendulum", request.file, *files), soft_wrap=True)
+    again = pasted("gap", "pendulum", request.file, *files)
+    schema = JSON_SCHEMA if request.as_json else None
+    add_and_say(path, added, read_case, again=again, schema=schema)
 
 
 def _settled(request: Request, path: Path) -> Settled:

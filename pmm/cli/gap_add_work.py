@@ -1,20 +1,16 @@
 """What ``pmm gap add`` does: fit, append to the campaign file, and keep the old one."""
 
-import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-import click
-
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE
+from pmm.cli.gap_adding import add_and_say, check_writable
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
-from pmm.cli.screen import output
-from pmm.gap.appending import Added, append_effects, refuse_twice
+from pmm.gap.appending import Added, refuse_twice
 from pmm.gap.examine import Examined, examine
 from pmm.gap.load import campaign_of
 from pmm.gap.report import gap_report
@@ -48,24 +44,16 @@ def run(request: Request) -> None:
     path = folder / CAMPAIGN_FILE if folder.is_dir() else folder
     if not path.exists():
         raise ConfigurationError(f"{path}: no such folder or campaign file")
-    if not os.access(path, os.W_OK):
-        raise ConfigurationError(f"{path}: cannot be written to")
+    check_writable(path)
     if request.effect is not None:
         _refuse_twice(path, (request.effect,))
     chosen = _effects(_examined(request, path), request)
     _refuse_twice(path, [one.name for one in chosen])
     added = [Added(one.name, asdict(one)) for one in chosen]
-    kept = append_effects(path, added, campaign_of)
-    if request.as_json:
-        rows = [asdict(one) for one in added]
-        document = {"schema": JSON_SCHEMA, "file": str(path), "kept": str(kept), "effects": rows}
-        click.echo(json.dumps(document, indent=1, allow_nan=False))
-        return
-    for one in added:
-        output().print(f"added {one.said}", soft_wrap=True)
-    output().print(f"{path}; as it was: {kept}", soft_wrap=True)
     files = [word for one in request.files for word in ("--effects", one)]
-    output().print(pasted("gap", request.campaign, *files), soft_wrap=True)
+    again = pasted("gap", request.campaign, *files)
+    schema = JSON_SCHEMA if request.as_json else None
+    add_and_say(path, added, campaign_of, again=again, schema=schema)
 
 
 def _examined(request: Request, path: Path) -> Examined:

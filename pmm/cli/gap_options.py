@@ -122,3 +122,11 @@ _RUNS: tuple[Callable[[Any], Any], ...] = (
         "[default: each regime in its turn]",
     ),
 )
+
+most_option = click.option(
+    "--most",
+    type=click.IntRange(1, 3),
+    default=3,
+    show_default=True,
+    help="Causes that may act together.",
+)

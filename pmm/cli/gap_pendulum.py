@@ -4,18 +4,12 @@ from typing import Any
 
 import click
 
-from pmm.cli.gap_options import catalogue_options
+from pmm.cli.gap_options import catalogue_options, most_option
 
 
 @click.command()
 @click.argument("file", metavar="FILE.toml")
-@click.option(
-    "--most",
-    type=click.IntRange(1, 3),
-    default=3,
-    show_default=True,
-    help="Causes that may act together.",
-)
+@most_option
 @catalogue_options
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plot", metavar="FOLDER", help="Draw measured and simulated swings there.")

@@ -148,41 +148,30 @@ def _judged(
     free: Sequence[Free],
     priors: Priors,
 ) -> Judged:
+    asked: dict[str, Fit | None] = {NONE: None, **_likeliest(found)}
     if not withheld:
-        every = regimes(found.problem.simulator.stack.runs)
-        fits = [None if one is None else one.fit for one in (found.best, found.rival)]
-        by_answer = _left_by(_likeliest(found), found.problem, every)
-        free_form = polynomial(found.problem)
-        return _predicted(found.problem, fits, every, free_form, by_answer, chosen=False)
+        problem = found.problem
+        every = regimes(problem.simulator.stack.runs)
+        return _foretold(found, problem, asked, every, polynomial(problem), chosen=False)
     joint = _joint(found.problem, fitted, withheld, free, priors)
     regime = chosen_regime(joint.simulator.stack.runs, [run.name for run in withheld])
     ones = [Regime("run", joint.simulator.stack.runs[at_].name, (at_,)) for at_ in regime.runs]
     kept = ~np.isin(joint.simulator.stack.run, regime.runs)
-    leading = [None if one is None else one.fit for one in (found.best, found.rival)]
-    asked = _likeliest(found) | {answer_of(one): one for one in leading if one is not None}
-    there = {name: at(joint, one.candidates, one.units) for name, one in asked.items()}
-    fits = [None if one is None else there[answer_of(one)] for one in leading]
-    by_answer = _left_by(there, joint, [regime])
-    whole = _predicted(joint, fits, [regime], polynomial(joint, kept), by_answer, chosen=True)
+    there = {
+        name: None if one is None else at(joint, one.candidates, one.units)
+        for name, one in asked.items()
+    }
+    whole = _foretold(found, joint, there, [regime], polynomial(joint, kept), chosen=True)
     return _by_run(whole, joint, ones)
 
 
 def _likeliest(found: Diagnosis) -> dict[str, Fit]:
-    """Return the likeliest named answers."""
+    """Return the likeliest named answers, and the control."""
     shares = found.probabilities.by_answer
     fits = {answer_of(one.fit): one.fit for one in (*found.weighed.singles, *found.weighed.pairs)}
-    return {name: fits[name] for name in sorted(fits, key=lambda one: -shares[one])[:_LIKELIEST]}
-
-
-def _left_by(
-    fits: Mapping[str, Fit], problem: Problem, withheld: Sequence[Regime]
-) -> dict[str, float]:
-    """Return the gap that each answer leaves of what is withheld; NaN where nothing is."""
-    found = {}
-    for name, fit in {NONE: None, **fits}.items():
-        left = [one.left for one in predict_withheld(problem, fit, withheld)]
-        found[name] = gap_of(np.concatenate(left)) if left else math.nan
-    return found
+    names = sorted(fits, key=lambda one: -shares[one])[:_LIKELIEST]
+    leading = [answer_of(one.fit) for one in (found.best, found.rival) if one is not None]
+    return {name: fits[name] for name in dict.fromkeys((*names, *leading))}
 
 
 def _joint(
@@ -199,24 +188,29 @@ def _joint(
     return Problem(simulator, Nuisances(columns(simulator, free, priors)), problem.free)
 
 
-def _predicted(
+def _foretold(
+    found: Diagnosis,
     problem: Problem,
-    fits: Sequence[Fit | None],
+    asked: Mapping[str, Fit | None],
     withheld: Sequence[Regime],
     control: Fit,
-    by_answer: Mapping[str, float],
     *,
     chosen: bool,
 ) -> Judged:
-    best, rival = fits
-    return Judged(
-        predict_withheld(problem, None, withheld),
-        () if best is None else predict_withheld(problem, best, withheld),
-        () if rival is None else predict_withheld(problem, rival, withheld),
-        predict_withheld(problem, control, withheld),
-        by_answer,
-        chosen,
+    """Ask answers, by name, for what is withheld."""
+    told = {name: predict_withheld(problem, fit, withheld) for name, fit in asked.items()}
+    best, rival = (
+        () if one is None else told[answer_of(one.fit)] for one in (found.best, found.rival)
     )
+    free_form = predict_withheld(problem, control, withheld)
+    by_answer = {name: _gap(one) for name, one in told.items()}
+    return Judged(told[NONE], best, rival, free_form, by_answer, chosen)
+
+
+def _gap(predicted: Sequence[Predicted]) -> float:
+    """Return the gap over all that was foretold; NaN where nothing was."""
+    left = [one.left for one in predicted]
+    return gap_of(np.concatenate(left)) if left else math.nan
 
 
 def _by_run(whole: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:

@@ -49,7 +49,7 @@ def find(name: str, more: dict[str, type[Effect]] | None = None) -> type[Effect]
         return known[name]
     near = get_close_matches(name, known, n=3, cutoff=0.4)
     hint = f"did you mean {', '.join(near)}?" if near else "pmm effects lists them"
-    raise ConfigurationError(f"no effect {name!r}; {hint}")
+    raise ConfigurationError(f"no effect {name!r}; {hint} (one of your own: name its file)")
 
 
 def build(text: str, more: dict[str, type[Effect]] | None = None) -> Effect:
