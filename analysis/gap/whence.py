@@ -52,8 +52,12 @@ def _heard(problem: Problem, walked: Walk) -> dict[StageName, float]:
     """Return which share of its evidence each stage is given, by the motion that is recorded."""
     beyond = {one.what: one.beyond for one in walked.steps}
     whole = dict.fromkeys(StageName, 1.0)
-    if problem.simulator.rig.drive.motor is not None or MOTION not in beyond:
+    if problem.simulator.rig.drive.motor is not None:
         return whole  # a drive that feels its load moves by what is behind it, too
+    if walked.comes_with_the_shaft:
+        return {one: float(one is StageName.DRIVE) for one in StageName}
+    if MOTION not in beyond:
+        return whole
     shaft_is_off = beyond.get(SHAFT)  # None where it is not recorded
     if beyond[MOTION]:
         acquitted = {StageName.DRIVE} if shaft_is_off is False else set()
