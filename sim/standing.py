@@ -1,11 +1,14 @@
 """A rig whose shaft stands: what its gauges read where nothing moves.
 
 A zero run is made so, and a diagnosis asks for it. It is an oscillation of no eccentricity whose
-shaft does not turn; the period is only what its length is counted in.
+shaft does not turn; the period is only what its length is counted in. What is done to a standing
+rig, check weights that are put on and taken off or a sine in place of the bridges, has a period of
+its own.
 """
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +16,7 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive import DriveSettings
+from sim.linear import ComplexArray
 from sim.period import Period
 from sim.periodic import SteadyState, steady_state
 from sim.rig import SimulatedRig
@@ -20,10 +24,50 @@ from sim.rig import SimulatedRig
 _ORDERS = 2
 _POINTS = 64
 _TURN_HZ = 1.0  # of the period in which nothing happens
+_SLOW_HZ = 1e-3  # weights are put on and taken off so slowly that no filter shows
 _MOTIONS = (
     (signals.DISPLACEMENT_AFT, signals.VELOCITY_AFT, signals.ACCELERATION_AFT),
     (signals.DISPLACEMENT_FORE, signals.VELOCITY_FORE, signals.ACCELERATION_FORE),
 )
+
+
+@dataclass(frozen=True)
+class Applied:
+    """What is done to a standing rig, over a period of its own.
+
+    Attributes
+    ----------
+    forces_n
+        By signal, its mean and first harmonic, ``x(t) = Re sum X_n exp(i n w t)``.
+    in_place
+        Whether they take the place of what is there; else they come on top.
+    """
+
+    forces_n: tuple[tuple[str, complex, complex], ...]
+    frequency_hz: float
+    in_place: bool
+
+    def of(self, there: Mapping[str, ComplexArray]) -> dict[str, ComplexArray]:
+        """Return the signals' harmonics, where ``there`` are those without it."""
+        given = {}
+        for name, mean, first in self.forces_n:
+            own = np.zeros(_ORDERS + 1, dtype=np.complex128)
+            own[:2] = mean, first
+            given[name] = own if self.in_place else there[name] + own
+        return given
+
+
+def check_weight(weight_n: float, fore: bool = False) -> Applied:
+    """Return a check weight that is put on one strut's dynamometer, and taken off again."""
+    name = (signals.FORCE_FORE if fore else signals.FORCE_AFT).name
+    return Applied(((name, 0.5 * weight_n, -0.5 * weight_n),), _SLOW_HZ, in_place=False)
+
+
+def injection(force_n: float, frequency_hz: float) -> Applied:
+    """Return a sine that is fed into both force amplifiers in place of the bridges."""
+    names = (signals.DYNAMOMETER_FORCE_AFT.name, signals.DYNAMOMETER_FORCE_FORE.name)
+    forces = tuple((name, 0j, -1j * force_n) for name in names)
+    return Applied(forces, frequency_hz, in_place=True)
 
 
 def standing(rig: SimulatedRig) -> SimulatedRig:
@@ -43,7 +87,10 @@ def standing(rig: SimulatedRig) -> SimulatedRig:
 
 
 def standing_state(
-    rig: SimulatedRig, set_point: SetPoint, stands_at_m: tuple[float, float] = (0.0, 0.0)
+    rig: SimulatedRig,
+    set_point: SetPoint,
+    stands_at_m: tuple[float, float] = (0.0, 0.0),
+    applied: Applied | None = None,
 ) -> SteadyState:
     """Return what every signal is where the struts stand: the means, all harmonics 0.
 
@@ -53,17 +100,24 @@ def standing_state(
         Of eccentricity 0; carriage speed and medium count.
     stands_at_m
         Displacement of the aft and the fore strut.
+    applied
+        What is done to the rig, whose harmonics the signals then have.
 
     Raises
     ------
     ConfigurationError
         If an effect or the mechanism cannot be at this set-point.
     """
-    turn = replace(set_point, frequency_hz=_TURN_HZ)
-    period = Period(_TURN_HZ, _ORDERS, _POINTS)
+    turn_hz = _TURN_HZ if applied is None else applied.frequency_hz
+    turn = replace(set_point, frequency_hz=turn_hz)
+    period = Period(turn_hz, _ORDERS, _POINTS)
     still = np.zeros(_ORDERS + 1, dtype=np.complex128)
     given = {one.name: still for motion in _MOTIONS for one in motion}
     for (displacement, *_), at_m in zip(_MOTIONS, stands_at_m, strict=True):
         given[displacement.name] = period.constant(at_m)
     turning = replace(standing(rig), drive=DriveSettings())  # a period needs a turn
-    return steady_state(turning.chain(turn), period, given)
+    chain = turning.chain(turn)
+    alone = steady_state(chain, period, given)
+    return (
+        alone if applied is None else steady_state(chain, period, given | applied.of(alone.spectra))
+    )

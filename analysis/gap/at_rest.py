@@ -72,10 +72,12 @@ def observe_at_rest(recording: Recording) -> Observation:
 
 
 def steady_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun) -> FloatArray:
-    """Return the means of a standing rig in the order of a run's components."""
-    spectra = standing_state(rig, set_point, run.stands_at_m or (0.0, 0.0)).spectra
-    names = [one.channel for one in run.observed.components]
-    return np.array([float(spectra[f"recorded_{name}"][0].real) for name in names])
+    """Return the components of a standing rig in the order of a run's: means, and what is done."""
+    spectra = standing_state(rig, set_point, run.stands_at_m or (0.0, 0.0), run.applied).spectra
+    layout = run.observed.layout
+    own = np.stack([spectra[f"recorded_{name}"] for name in layout.channels])
+    found = own[layout.row, layout.order]
+    return np.asarray(layout.real * found.real + layout.imaginary * found.imag, np.float64)
 
 
 def record_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) -> Observation:

@@ -13,6 +13,7 @@ from analysis.gap.plateau import Plateau
 from analysis.gap.spectrum import Lines
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
+from sim.standing import Applied
 
 FloatArray = NDArray[np.float64]
 
@@ -153,6 +154,10 @@ class GapRun:
     stands_at_m
         Of a record at rest (:mod:`analysis.gap.at_rest`): where its aft and fore strut stand;
         ``None`` where the shaft turns.
+    applied
+        What is done to a rig that stands; ``None`` for nothing.
+    preload_n
+        Of a run that turns: a dead weight on the model that takes up play in the joints.
     """
 
     name: str
@@ -163,6 +168,8 @@ class GapRun:
     sample_rate_hz: float
     lead_s: float = 0.0
     stands_at_m: tuple[float, float] | None = None
+    applied: Applied | None = None
+    preload_n: float = 0.0
 
     @property
     def turns(self) -> bool:

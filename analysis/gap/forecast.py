@@ -55,8 +55,26 @@ class Forecast:
         return simulator.nominal + self.mean * simulator.stack.uncertainty
 
 
-def planned(problem: Problem, set_point: SetPoint, number: int) -> GapRun:
-    """Return a run that has not been made, with the noise of the nearest one that has."""
+def next_place(problem: Problem) -> CampaignRun:
+    """Return when the next run would be made: as long after the last one as they are apart."""
+    stack = problem.simulator.stack
+    began_s = np.sort([run.place.since_start_s for run in stack.turning])
+    lapse_s = float(np.median(np.diff(began_s))) if len(began_s) > 1 else 0.0
+    last = max(stack.turning, key=lambda run: run.place.since_start_s)
+    waited_s = last.place.waited_s
+    return CampaignRun(len(stack.runs), float(began_s[-1]) + lapse_s, waited_s, last.set_point)
+
+
+def planned(
+    problem: Problem, set_point: SetPoint, number: int, place: CampaignRun | None = None
+) -> GapRun:
+    """Return a run that has not been made, with the noise of the nearest one that has.
+
+    Parameters
+    ----------
+    place
+        When it would be made; nobody knows if not given, and it is as when the campaign began.
+    """
     made = problem.simulator.stack.turning
     near = min(
         made, key=lambda run: abs(math.log(run.set_point.frequency_hz / set_point.frequency_hz))
@@ -65,10 +83,10 @@ def planned(problem: Problem, set_point: SetPoint, number: int) -> GapRun:
     parts = tuple(near.observed.components[at] for at in kept)
     longer = set_point.frequency_hz / near.set_point.frequency_hz
     noise = near.observed.uncertainty[kept] * math.sqrt(longer)
-    place = CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
+    there = place or CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
     observed = Observation(parts, np.zeros(len(parts)), noise)
     return replace(
-        near, name=f"further {number}", set_point=set_point, place=place, observed=observed
+        near, name=f"further {number}", set_point=set_point, place=there, observed=observed
     )
 
 

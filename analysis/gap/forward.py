@@ -19,8 +19,10 @@ from analysis.gap.components import Component, GapRun, Layout, Observation, Part
 from analysis.gap.observe import FORCES, observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
+from sim.acting import Acting
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
+from sim.laws import Spring
 from sim.period import Period
 from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
@@ -94,7 +96,7 @@ class Simulator:
         moving = tuple(one for one in effects if not one.repeats)
         sure = tuple(one for one in moving if not one.by_chance)
         steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
-        if sure:
+        if sure and run.applied is None:  # of what is done to a standing rig, what repeats is told
             steady = steady + self._record(number, sure) - self._record(number)
         repeats = run.observed.layout.steady
         if repeats.all():
@@ -129,7 +131,7 @@ class Simulator:
         told = replace(
             run.set_point, frequency_hz=run.set_point.frequency_hz * self.frequency_ratio
         )
-        rig, set_point = switch_on(effects, self.rig, told, run.place)
+        rig, set_point = switch_on(*_preloaded(effects, self.rig, run), told, run.place)
         if not run.turns:
             return steady_at_rest(rig, set_point, run)
         period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
@@ -140,7 +142,8 @@ class Simulator:
         from analysis.readers.dataset import from_dataset
         from sim.run import simulate
 
-        rig, set_point = switch_on(effects, self.rig, run.set_point, run.place)
+        acting, believed = _preloaded(effects, self.rig, run)
+        rig, set_point = switch_on(acting, believed, run.set_point, run.place)
         if not run.turns:
             seen = record_at_rest(rig, set_point, run, seed + run.place.index)
             return align(seen, run.observed)
@@ -159,6 +162,17 @@ class Simulator:
         found = observe(record, quiet=False)
         later_s = run.lead_s - found.lead_s
         return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
+
+
+def _preloaded(
+    effects: Sequence[Effect], rig: SimulatedRig, run: GapRun
+) -> tuple[Sequence[Effect], SimulatedRig]:
+    """Return the rig with a run's dead weight on the model, and the effects that it leaves."""
+    if not run.preload_n:
+        return effects, rig
+    weight = Acting(Spring(preload_n=run.preload_n))
+    left = [one for one in effects if not one.taken_up]
+    return left, replace(rig, forces=(*rig.forces, weight))
 
 
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:

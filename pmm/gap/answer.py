@@ -16,6 +16,7 @@ from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import Forecast, forecast, further, planned
 from analysis.gap.free import Free, free_numbers
+from analysis.gap.measurements import INJECTED_HZ
 from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
@@ -24,6 +25,7 @@ from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import answer_of
 from pmm.gap.case import HeldOut
 from pmm.gap.prepare import shares_of
+from sim.effects.effect import Measurement
 
 FloatArray = NDArray[np.float64]
 
@@ -107,7 +109,7 @@ def _fixed(value: float) -> dict[str, float]:
 def next_run(one: Proposal) -> dict[str, Any]:
     """Return a proposed run as the plan and the sealed rig take it."""
     if one.set_point is None:
-        return {"kind": one.kind, **_SPECIAL.get(one.kind, {})}
+        return {"kind": str(one.kind), **_besides(one)}
     return {
         "kind": one.kind,
         "frequency_hz": one.set_point.frequency_hz,
@@ -115,14 +117,16 @@ def next_run(one: Proposal) -> dict[str, Any]:
         "strut_phase_rad": one.set_point.strut_phase_rad,
         "carriage_speed_m_s": one.set_point.carriage_speed_m_s,
         "medium": one.set_point.medium.value,
-        "preload_n": one.preload_n,
+        "preload_n": one.force_n,
     }
 
 
-_SPECIAL: Final[Mapping[str, Mapping[str, Any]]] = {
-    "check-weight": {"weight_n": 50.0, "strut": "aft"},
-    "injection": {"frequency_hz": 1.0, "force_n": 20.0},
-}
+def _besides(one: Proposal) -> dict[str, Any]:
+    if one.kind == Measurement.CHECK_WEIGHT:
+        return {"weight_n": one.force_n, "strut": "aft"}
+    if one.kind == Measurement.INJECTION:
+        return {"frequency_hz": INJECTED_HZ, "force_n": one.force_n}
+    return {}
 
 
 @dataclass(frozen=True, eq=False)

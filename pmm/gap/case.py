@@ -13,6 +13,7 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign import Campaign
 from pmm.configuration import Fault, as_error, read_toml, validate
+from sim.effects.effect import Measurement
 
 CASE_FILE = "case.toml"
 
@@ -51,7 +52,7 @@ class RigChoices:
     carriage_speed_m_s: Range = field(default_factory=lambda: Range(0.0, 0.0))
     strut_phase_rad: tuple[float, ...] = (0.0,)
     media: tuple[Medium, ...] = (Medium.WATER,)
-    special: tuple[str, ...] = ()
+    special: tuple[Measurement, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,14 @@
 from collections.abc import Sequence
 from typing import Any, Final
 
+from analysis.gap.measurements import REST_S
 from analysis.gap.propose import Proposal
 from hardware.description.setpoint import Medium
-from pmm.gap.answer import next_run
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.toml_text import toml_table, toml_value
 from sim.effects.effect import Measurement
 
 RIG_FILE: Final = "rig.toml"
-_REST_S: Final = 60.0
 
 
 def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
@@ -32,7 +31,7 @@ def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
     for number, one in enumerate(proposals, 1):
         table = _entry(one, f"next-{number}")
         worth = f"# {one.gain:.1f} expected log odds between the leading answers\n"
-        done = "# by hand: a sine into all force amplifiers in place of the bridges\n"
+        done = f"# by hand: {one}\n"
         parts.append(worth + (toml_table("runs", table, array=True) if table else done))
     return "\n".join(parts)
 
@@ -51,14 +50,14 @@ def _entry(one: Proposal, name: str) -> dict[str, Any]:
         "amplitudes_m": point.eccentricity_m,
         "strut_phases_rad": point.strut_phase_rad,
         "speeds_m_s": point.carriage_speed_m_s or None,
-        "prompt": f"Hang {one.preload_n:g} N on the model" if one.preload_n else None,
+        "prompt": f"Hang {one.force_n:g} N on the model" if one.force_n else None,
     }
 
 
 def _special(one: Proposal, name: str) -> dict[str, Any]:
     if one.kind == Measurement.REST:
-        return {"kind": str(RunKind.ZERO), "name": name, "duration_s": _REST_S}
+        return {"kind": str(RunKind.ZERO), "name": name, "duration_s": REST_S}
     if one.kind == Measurement.CHECK_WEIGHT:
-        loads_n = [0.0, next_run(one)["weight_n"]]
+        loads_n = [0.0, 0.5 * one.force_n, one.force_n]
         return {"kind": str(RunKind.CHECK_WEIGHT), "name": name, "loads_n": loads_n}
     return {}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 from analysis.gap.description import Description
 from analysis.gap.diagnose import SHIFTED
 from analysis.gap.propose import Proposal
-from analysis.gap.regimes import describe as in_words
 from analysis.gap.twins import coefficient_error, separating_measurements
 from analysis.gap.verdict import (
     COEFFICIENTS,
@@ -252,10 +251,9 @@ def _regimes(examined: Examined) -> Iterator[RegimeRow]:
 
 
 def _next(one: Proposal) -> dict[str, Any]:
-    said = one.kind if one.set_point is None else in_words(one.set_point)
     return {
         "run": next_run(one),
-        "said": said,
+        "said": str(one),
         "gain_log_odds": one.gain,
         "between": list(one.between),
     }

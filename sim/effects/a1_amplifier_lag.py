@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Digitiser
 from sim.amplifier import FilterKind, LowPass
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -27,7 +27,6 @@ class AmplifierLag(Effect):
     name: ClassVar[str] = "amplifier-lag"
     title: ClassVar[str] = "Low-pass of the force amplifiers"
     stage: ClassVar[StageName] = StageName.ACQUISITION
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.INJECTION,)
 
     cutoff_hz: float = parameter(10.0, 0.5, 10000.0, "Hz", "3 dB down")
     poles: float = parameter(1.0, 1.0, 8.0, "1", "number of poles, rounded", held=True)

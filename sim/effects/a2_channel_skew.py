@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -23,7 +23,6 @@ class ChannelSkew(Effect):
     name: ClassVar[str] = "channel-skew"
     title: ClassVar[str] = "Sampling skew of the force channels"
     stage: ClassVar[StageName] = StageName.ACQUISITION
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.INJECTION,)
 
     aft_s: float = parameter(0.0, 0.0, 0.02, "s", "delay of the aft force")
     fore_s: float = parameter(1e-3, 0.0, 0.02, "s", "delay of the fore force")

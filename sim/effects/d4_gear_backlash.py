@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
@@ -33,7 +33,6 @@ class GearBacklash(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
     costly: ClassVar[bool] = True
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.SHAFT,)
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.PRELOAD,)
 
     # The nominal gear does not give way at all. Beside it the clearance of a good gear shows, and
     # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain

@@ -53,7 +53,7 @@ class Trace(StrEnum):
 
 
 class Measurement(StrEnum):
-    """What can be measured besides oscillations."""
+    """What can be measured besides plain oscillations."""
 
     REST = "rest"
     CHECK_WEIGHT = "check-weight"
@@ -155,7 +155,10 @@ class Effect(ABC):
         a diagnosis does not look at it. If empty it is always looked at; what does not repeat,
         where anything deviates.
     shown_by
-        Measurements that show it by themselves, whatever its size.
+        For one that does not repeat: measurements besides oscillations that show it. Of what
+        repeats the simulation tells.
+    taken_up
+        True for play that a dead weight on the model takes up.
 
     Raises
     ------
@@ -173,6 +176,7 @@ class Effect(ABC):
     costly: ClassVar[bool] = False
     shows_in: ClassVar[tuple[Trace, ...]] = ()
     shown_by: ClassVar[tuple[Measurement, ...]] = ()
+    taken_up: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         for one in self.parameters():

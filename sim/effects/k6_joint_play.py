@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -26,7 +26,7 @@ class JointPlay(Effect):
     name: ClassVar[str] = "joint-play"
     title: ClassVar[str] = "Play in the struts' last joints, taken up against friction"
     stage: ClassVar[StageName] = StageName.MECHANISM
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.PRELOAD,)
+    taken_up: ClassVar[bool] = True
 
     half_play_m: float = parameter(5e-5, 0.0, 1e-3, "m", "clearance to either side, h")
 

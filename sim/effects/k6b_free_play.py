@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
 from sim.linear import ComplexArray
@@ -32,7 +32,7 @@ class FreePlay(Effect):
     title: ClassVar[str] = "Play in the struts' last joints, crossed by inertia"
     stage: ClassVar[StageName] = StageName.MECHANISM
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.STEADY,)
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.PRELOAD,)
+    taken_up: ClassVar[bool] = True
 
     half_play_m: float = parameter(5e-5, 1e-7, 1e-3, "m", "clearance to either side, h")
     preload_n: float = parameter(0.0, 0.0, 1000.0, "N", "force that presses the joint to one side")

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -23,7 +23,6 @@ class GainError(Effect):
     name: ClassVar[str] = "gain-error"
     title: ClassVar[str] = "Gain error of the dynamometers"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.CHECK_WEIGHT,)
 
     aft: float = parameter(0.005, -0.05, 0.05, "1", "gain error of the aft dynamometer")
     fore: float = parameter(0.0, -0.05, 0.05, "1", "gain error of the fore dynamometer")

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.description.setpoint import Medium, SetPoint
 from sim.dynamometer import Gauge
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.linear import ComplexArray
@@ -24,7 +24,6 @@ class CrossTalk(Effect):
     name: ClassVar[str] = "cross-talk"
     title: ClassVar[str] = "Cross-talk between the dynamometers, and from the drag"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.CHECK_WEIGHT,)
 
     aft: float = parameter(0.01, -0.1, 0.1, "1", "what the aft gauge feels of the fore force")
     fore: float = parameter(0.01, -0.1, 0.1, "1", "what the fore gauge feels of the aft force")

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, squared, with_gauges
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -22,7 +22,6 @@ class QuadraticGauge(Effect):
     name: ClassVar[str] = "quadratic-gauge"
     title: ClassVar[str] = "Quadratic non-linearity of the dynamometers"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.CHECK_WEIGHT,)
 
     curvature_1_n: float = parameter(
         2e-6, -1e-4, 1e-4, "1/N", "q of both gauges; 0.1 % of a full scale of 500 N is 2e-6"

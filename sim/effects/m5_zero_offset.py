@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
@@ -24,7 +24,6 @@ class ZeroOffset(Effect):
     name: ClassVar[str] = "zero-offset"
     title: ClassVar[str] = "Zero offset of the dynamometers"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
 
     aft_n: float = parameter(0.3, -5.0, 5.0, "N", "offset of the aft dynamometer")
     fore_n: float = parameter(0.0, -5.0, 5.0, "N", "offset of the fore dynamometer")

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.dynamometer import Gauge
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
@@ -25,7 +25,6 @@ class Saturation(Effect):
     name: ClassVar[str] = "saturation"
     title: ClassVar[str] = "Saturation of the dynamometers"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.CHECK_WEIGHT, Measurement.INJECTION)
 
     upper_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest positive reading")
     lower_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest negative reading, its size")

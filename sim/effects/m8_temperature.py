@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.dynamometer import Gauge
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Measurement, Signature, StageName, parameter
+from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.hydrodynamic import radiation_of, scaled, through_water
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
@@ -35,7 +35,6 @@ class Temperature(Effect):
     title: ClassVar[str] = "Temperature: gain, zero, viscosity and density over the run order"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
     changes_others: ClassVar[bool] = True
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
 
     rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature", held=True)
     hours: float = parameter(

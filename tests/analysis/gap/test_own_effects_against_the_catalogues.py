@@ -10,6 +10,7 @@ import pytest
 from analysis.gap.candidate import candidates
 from analysis.gap.components import GapRun
 from analysis.gap.fit import Fit, Problem, at
+from analysis.gap.free import free_numbers
 from analysis.gap.hypotheses import COEFFICIENTS
 from analysis.gap.look import Looked
 from analysis.gap.priors import Priors
@@ -91,9 +92,9 @@ def test_what_is_costly_has_to_promise_more(
 @pytest.mark.parametrize(
     ("name", "shown"),
     [
-        ("gear-backlash", {"preload"}),
-        ("saturation", {"check-weight", "injection"}),
-        ("zero-offset", {"rest"}),
+        ("hum", {"rest", "injection"}),
+        ("gain-error", {"check-weight"}),
+        ("amplifier-lag", {"injection"}),
         ("coulomb-friction", set()),
     ],
 )
@@ -103,8 +104,9 @@ def test_the_same_measurements_show_it(
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=(), special=tuple(Measurement))
     for kind in both(name, tmp_path):
         leading = ((begun(problem, kind), 0.6), (None, 0.4))
-        found = proposals(problem, leading, choices, (), Priors())
-        assert {one.kind for one in found if one.gain > 0.0} == shown
+        free = free_numbers(problem.simulator.rig, Priors())
+        found = proposals(problem, leading, choices, free, Priors())
+        assert {one.kind for one in found if one.gain > 1.0} == shown
 
 
 def test_a_start_out_of_range_is_refused() -> None:

@@ -25,7 +25,7 @@ POINTS = (
 @pytest.fixture
 def plan(tmp_path: Path) -> Path:
     ran = [Proposal("oscillation", one, 0.0, 5.0) for one in POINTS]
-    special = [Proposal(kind, None, 0.0, 3.0) for kind in ("rest", "check-weight", "injection")]
+    special = [Proposal(kind, None, 50.0, 3.0) for kind in ("rest", "check-weight", "injection")]
     copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
     copy(EXAMPLES / "vertical" / "simulated.toml", tmp_path)
     path = tmp_path / "plan.toml"
@@ -40,11 +40,12 @@ def test_every_run_is_as_it_was_proposed(plan: Path) -> None:
     assert [one.kind for one in turning] == [RunKind.OSCILLATION] * 2 + [RunKind.DRY]
     assert {one.kind for one in runs} >= {RunKind.ZERO, RunKind.CHECK_WEIGHT}
     loads_n = {one.load.force_n for one in runs if one.load is not None}
-    assert loads_n == {0.0, 50.0}
+    assert loads_n == {0.0, 25.0, 50.0}
 
 
 def test_what_no_plan_can_do_is_said(plan: Path) -> None:
-    assert "# by hand: a sine into all force amplifiers" in plan.read_text(encoding="utf-8")
+    said = plan.read_text(encoding="utf-8")
+    assert "# by hand: a sine of 50 N at 1 Hz into all force amplifiers" in said
 
 
 def test_a_dead_weight_is_asked_for(tmp_path: Path) -> None:

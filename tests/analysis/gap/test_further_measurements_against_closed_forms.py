@@ -1,0 +1,140 @@
+"""What further measurements show of an effect, against what its closed form says."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import pytest
+
+from analysis.gap.candidate import candidates
+from analysis.gap.components import GapRun, Part, Stack
+from analysis.gap.fit import Problem, at
+from analysis.gap.forecast import next_place, planned
+from analysis.gap.free import free_numbers
+from analysis.gap.measurements import INJECTED_HZ, measured_besides
+from analysis.gap.priors import Priors
+from analysis.gap.propose import OSCILLATION, Choices, proposals
+from hardware.description.oscillator import Range
+from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
+from sim.effects.catalogue import build, find
+from sim.effects.effect import Effect, Measurement
+from sim.effects.k6_joint_play import JointPlay
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of, record
+
+WEIGHT_N = 100.0
+REST = Measurement.REST
+POINT = SetPoint(0.8, 0.02)
+
+
+@pytest.fixture(scope="module")
+def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
+    return problem_of(rig, clean[:2])
+
+
+def shown(problem: Problem, runs: Sequence[GapRun], *effects: Effect) -> list[dict[str, complex]]:
+    """Return each record's harmonics, ``channel`` and ``channel order``, as H = S + i C."""
+    simulator = replace(problem.simulator, stack=Stack.of(runs))
+    values = simulator.predict(effects)
+    found: list[dict[str, complex]] = [{} for _ in runs]
+    for number, one, value in zip(
+        simulator.stack.run, simulator.stack.components, values, strict=True
+    ):
+        key = one.channel if one.part is Part.MEAN else f"{one.channel} {one.order}"
+        part = 1j * value if one.part is Part.QUADRATURE else complex(value)
+        found[number][key] = found[number].get(key, 0j) + part
+    return found
+
+
+def weights(problem: Problem) -> tuple[GapRun, ...]:
+    return measured_besides(problem, Measurement.CHECK_WEIGHT, CampaignRun(), WEIGHT_N)
+
+
+def test_a_check_weight_goes_on_and_off_at_each_gauge_in_turn(problem: Problem) -> None:
+    aft, fore = shown(problem, weights(problem))
+    for one, loaded, other in ((aft, "aft", "fore"), (fore, "fore", "aft")):
+        assert one[f"force_{loaded}"] == pytest.approx(WEIGHT_N / 2.0)
+        assert one[f"force_{loaded} 1"] == pytest.approx(-0.5j * WEIGHT_N, rel=1e-4)
+        assert abs(one[f"force_{loaded} 2"]) < 1e-9 * WEIGHT_N
+        assert abs(one[f"force_{other} 1"]) < 1e-9 * WEIGHT_N
+
+
+def test_a_check_weight_shows_gain_and_cross_talk(problem: Problem) -> None:
+    aft, _ = shown(problem, weights(problem), build("gain-error:aft=0.02"))
+    assert aft["force_aft 1"] == pytest.approx(-0.5j * 1.02 * WEIGHT_N, rel=1e-4)
+    aft, fore = shown(problem, weights(problem), build("cross-talk:aft=0.0,fore=0.01"))
+    assert aft["force_fore 1"] == pytest.approx(-0.5j * 0.01 * WEIGHT_N, rel=1e-4)
+    assert abs(fore["force_aft 1"]) < 1e-9 * WEIGHT_N
+
+
+def test_a_check_weight_shows_what_a_curved_gauge_makes_of_it(problem: Problem) -> None:
+    """Of (W/2)(1 - cos)^2 k W/2: 3/2, -2 cos, cos(2 ..)/2 times k W^2/4."""
+    aft, _ = shown(problem, weights(problem), build("quadratic-gauge:curvature_1_n=1e-5"))
+    square_n = 1e-5 * WEIGHT_N**2 / 4.0
+    assert aft["force_aft"] == pytest.approx(WEIGHT_N / 2.0 + 1.5 * square_n)
+    assert aft["force_aft 2"] == pytest.approx(0.5j * square_n, rel=1e-3)
+
+
+def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: Problem) -> None:
+    runs = measured_besides(problem, Measurement.INJECTION, CampaignRun(), 20.0)
+    (plain,) = shown(problem, runs)
+    assert plain["force_aft 1"] == pytest.approx(20.0, rel=1e-9)
+    (lags,) = shown(problem, runs, build("amplifier-lag:cutoff_hz=80.0"))
+    pole = 1.0 / (1.0 + 1j * INJECTED_HZ / 80.0)
+    assert lags["force_fore 1"] == pytest.approx(20.0 * pole, rel=1e-6)
+    for name in ("gain-error", "zero-offset", "coulomb-friction", "campaign-drift"):
+        (other,) = shown(problem, runs, build(name))
+        assert other == pytest.approx(plain, rel=1e-9, abs=1e-9)
+
+
+def test_a_record_at_rest_shows_the_day_that_gets_warmer_at_its_time(problem: Problem) -> None:
+    place = CampaignRun(9, 2.0 * 3600.0, 300.0, POINT)
+    (rest,) = shown(
+        problem,
+        measured_besides(problem, REST, place, 0.0),
+        build("temperature:rate_k_h=0.5,zero_n_k=0.1"),
+    )
+    assert rest["force_aft"] == pytest.approx(0.1)  # after two hours, one kelvin
+    assert set(rest) == {"force_aft", "force_fore"}
+
+
+def test_a_dead_weight_takes_up_the_play_and_stays_in_the_mean(problem: Problem) -> None:
+    run = planned(problem, POINT, 0)
+    loaded = replace(run, preload_n=60.0)
+    (bare,), (pressed,) = shown(problem, (run,)), shown(problem, (loaded,))
+    for name in ("force_aft", "force_fore"):
+        assert abs(pressed[name] - bare[name]) == pytest.approx(30.0)
+        assert pressed[f"{name} 1"] == pytest.approx(bare[f"{name} 1"])
+    play = build("joint-play:half_play_m=1e-4")
+    assert shown(problem, (loaded,), play) == [pytest.approx(pressed)]
+    assert shown(problem, (run,), play) != [pytest.approx(bare)]
+
+
+def test_the_next_run_is_made_after_the_last(problem: Problem) -> None:
+    place = next_place(problem)
+    made = problem.simulator.stack.runs
+    assert place.index == len(made)
+    assert place.since_start_s == 2.0 * made[-1].place.since_start_s  # two runs, one lapse
+    assert place.before == made[-1].set_point
+
+
+class Twin(JointPlay):
+    """What moves the struts just as play does, and has nothing that a weight could take up."""
+
+    name = "twin"
+    taken_up = False
+
+
+def test_a_dead_weight_tells_play_from_its_twin_and_no_other_run_does(rig: SimulatedRig) -> None:
+    problem = problem_of(rig, record(rig, (build("joint-play:half_play_m=2e-5"),), 51)[:3])
+    parts = [next(iter(candidates(kind, (0.5, 1.0)))) for kind in (find("joint-play"), Twin)]
+    fits = [(at(problem, (one,), one.start), 0.5) for one in parts]
+    choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), force_limit_n=500.0)
+    ask = partial(proposals, problem, fits, free=free_numbers(rig, Priors()), priors=Priors())
+    found = ask(choices)
+    for one in found:
+        assert (one.gain > 5.0) is (one.kind == OSCILLATION and one.force_n > 0.0), str(one)
+    assert f"with {found[0].force_n:g} N hung on the model" in str(found[0])
+    kinds = {(one.kind, one.force_n) for one in ask(replace(choices, special=(REST,)))}
+    assert kinds == {(OSCILLATION, 0.0), (REST, 0.0)}
