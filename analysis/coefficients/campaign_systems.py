@@ -1,7 +1,7 @@
 """A campaign's table in a system without dimensions, each entry by its own speed, and back."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -40,7 +40,7 @@ def without_dimensions(
     _check_system(found, DIMENSIONAL)
     systems = [system(entry.speed_m_s) for entry in found.entries]
     factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
-    scaled = _scaled(found, 1.0 / factors, _common_name(systems), None)
+    scaled = _scaled(found, 1.0 / factors, common_name(systems), None)
     uncertain = scaled.uncertain
     if stated.density_relative > 0.0:
         uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
@@ -62,7 +62,7 @@ def with_dimensions(found: CampaignCoefficients, system: System) -> CampaignCoef
         If the campaign is in another system.
     """
     systems = [system(entry.speed_m_s) for entry in found.entries]
-    _check_system(found, _common_name(systems))
+    _check_system(found, common_name(systems))
     factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
     units = tuple(_term(found, entry).unit for entry in found.entries)
     return _scaled(found, factors, DIMENSIONAL, units)
@@ -75,7 +75,7 @@ def _check_system(found: CampaignCoefficients, needed: str) -> None:
         )
 
 
-def _common_name(systems: list[Normalisation]) -> str:
+def common_name(systems: Sequence[Normalisation]) -> str:
     """Return the systems' name; without the speed where they are of several."""
     names = list(dict.fromkeys(one.name for one in systems))
     if len(names) == 1:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.names import Place
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.result import Coefficients, Share
 from analysis.coefficients.terms import Term
@@ -63,12 +64,14 @@ class Normalisation:
         lengths = term.lengths + term.rates
         return float(force * self.length_m**lengths / self.velocity ** (term.degree + term.rates))
 
+    def place_factor(self, place: Place) -> float:
+        """Return what the linear coefficient at a place is divided by, in either form."""
+        unit = self.mass_kg if place.inertial else self.mass_per_second
+        return float(unit * self.length_m ** (place.row + place.column))
+
     def factors(self, coefficients: Coefficients) -> FloatArray:
         """Return what each value is divided by, shape ``(n,)``."""
-        places = coefficients.places()
-        levers = np.array([place.row + place.column for place in places])
-        unit = [self.mass_kg if place.inertial else self.mass_per_second for place in places]
-        return np.asarray(np.array(unit) * self.length_m**levers)
+        return np.array([self.place_factor(place) for place in coefficients.places()])
 
     def without_dimensions(self, coefficients: Coefficients) -> Coefficients:
         """Return coefficients in this system, uncertainties and all.

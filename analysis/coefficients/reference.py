@@ -7,7 +7,8 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, ReferenceRow
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.names import PLACES, Form, name_of
+from analysis.coefficients.names import Form
+from analysis.coefficients.of_hull import named
 from analysis.uncertainty import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
@@ -85,11 +86,7 @@ def table_of_matrices(
 
     As panel methods give them; in the manoeuvring form with the opposite sign.
     """
-    values = {
-        name_of(place, plane, form): form.sign
-        * np.asarray(added_mass if place.inertial else damping)[:, place.row, place.column]
-        for place in PLACES
-    }
+    values = named(added_mass, damping, plane, form)
     return ReferenceTable(
         name, speed_m_s, "dimensional", np.asarray(frequency_hz), values, allowance_relative
     )
