@@ -130,14 +130,13 @@ def _print_coefficients(console: "Console", report: GapReport) -> None:
     if not chosen:
         console.print("\nno coefficient moves by more than its uncertainty")
         return
-    console.print("\nwhat it does to the coefficients", style="bold")
-    headings = ("coefficient", "unit", "stated", "fitted without effect", "with it")
-    table = _table(*headings[: 5 if effect else 4], text=2)
+    head = f"what it does to the coefficients: {report.convention}"
+    console.print(f"\n{head}", style="bold", soft_wrap=True)
+    headings = ("coefficient", "unit", "stated", "fitted without effect", "with it", "bias [u]")
+    shown = 6 if effect else 4
+    table = _table(*headings[:shown], text=2)
     for one in chosen:
-        cells = [f"{one.stated:.6g}", f"{one.without:.6g} ± {2 * one.u_without:.2g}"]
-        if effect:
-            cells.append(f"{one.with_effect:.6g} ± {2 * one.u_with:.2g}")
-        table.add_row(one.name, one.unit, *cells)
+        table.add_row(*one.said[:shown])
     console.print(table)
 
 

@@ -31,7 +31,7 @@ def in_system(
     """
     if system is System.DIMENSIONAL:
         return found, ()
-    by_speed = _system(system, ship, body)
+    by_speed = system_of(system, ship, body)
     if system is System.SEAKEEPING:
         return without_dimensions(found, by_speed, stated), ()
     moving = [k for k, entry in enumerate(found.entries) if entry.speed_m_s > 0.0]
@@ -68,7 +68,14 @@ def _refuse(system: System, missing: list[str]) -> NoReturn:
     )
 
 
-def _system(system: System, ship: Ship, body: Body | None) -> BySpeed:
+def system_of(system: System, ship: Ship, body: Body | None) -> BySpeed:
+    """Return what a table is divided by at each speed; ``system`` is not the dimensional one.
+
+    Raises
+    ------
+    ConfigurationError
+        If a dimension of the model is missing.
+    """
     check_dimensions(system, ship)
     volume = ship.volume_m3
     if volume is None and body is not None:

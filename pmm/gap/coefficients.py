@@ -1,6 +1,7 @@
 """What an effect does to the coefficients that a user reports."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pmm.gap.examine import Examined
+from pmm.gap.reported import HULL, Convention, Reported, reported
 from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]
@@ -15,16 +17,16 @@ FloatArray = NDArray[np.float64]
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}
 _BODY: Final = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
 UNITS: Final = {
-    "a11": "kg", "a12": "kg m", "a21": "kg m", "a22": "kg m²",
+    "a11": "kg", "a12": "kg m", "a21": "kg m", "a22": "kg m2",
     "b11": "N s/m", "b12": "N s", "b21": "N s", "b22": "N m s",
     "c11": "N/m", "c12": "N", "c21": "N", "c22": "N m",
-    "mass_kg": "kg", "inertia_kg_m2": "kg m²", "cg_x_m": "m", "cg_z_m": "m",
+    "mass_kg": "kg", "inertia_kg_m2": "kg m2", "cg_x_m": "m", "cg_z_m": "m",
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
 class CoefficientRow:
-    """One coefficient of model and water, in SI.
+    """One coefficient of model and water: added mass and damping as they are reported.
 
     Attributes
     ----------
@@ -34,6 +36,10 @@ class CoefficientRow:
         Fitted to the campaign without and with the cause; the same where the answer names none.
     u_without, u_with
         Their standard uncertainties.
+    bias_u
+        By how many of ``u_with`` it is off where the cause is not modelled.
+    speed_m_s, frequency_hz
+        Where it holds; NaN where it is the same in all runs.
     """
 
     name: str
@@ -43,37 +49,101 @@ class CoefficientRow:
     u_without: float
     with_effect: float
     u_with: float
+    bias_u: float
+    speed_m_s: float
+    frequency_hz: float
 
-
-def coefficient_rows(examined: Examined) -> Iterator[CoefficientRow]:
-    """Yield every free coefficient of model and water."""
-    found = examined.diagnosis
-    problem, cause = found.problem, found.cause
-    plain = _fitted(problem.residual, problem.nuisances.columns)
-    cured = plain
-    if cause is not None:
-        both = np.hstack((problem.nuisances.columns, cause.columns))
-        cured = _fitted(cause.linearised(problem.residual), both)
-    for at, one in enumerate(examined.free):
-        if not one.is_coefficient:
-            continue
-        here = _stated(problem.simulator.rig, one.name)
-        moved = examined.recentred.moved.get(one.name, 0.0)
-        values = [
-            number * one.deviation
-            for mean, spread in (plain, cured)
-            for number in (float(mean[at]), float(spread[at]))
+    @property
+    def said(self) -> tuple[str, str, str, str, str, str]:
+        """Name, unit, stated, without and with the effect, and bias as people read them."""
+        where = [
+            f"{value:g} {unit}"
+            for value, unit in ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
+            if not math.isnan(value)
         ]
-        unit = UNITS.get(one.name, "")
-        yield CoefficientRow(
-            one.name, unit, here - moved, here + values[0], values[1], here + values[2], values[3]
+        return (
+            f"{self.name} at {', '.join(where)}" if where else self.name,
+            self.unit,
+            f"{self.stated:.6g}",
+            f"{self.without:.6g} ± {2.0 * self.u_without:.2g}",
+            f"{self.with_effect:.6g} ± {2.0 * self.u_with:.2g}",
+            f"{self.bias_u:+.1f}",
         )
 
 
-def _fitted(residual: FloatArray, columns: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return most probable value and standard deviation, in units of the prior."""
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """By how much the free coefficients are off what the simulation begins with.
+
+    Attributes
+    ----------
+    names
+        Of the free coefficients, in the order of the arrays.
+    off, covariance
+        In their own units.
+    """
+
+    names: tuple[str, ...]
+    off: FloatArray
+    covariance: FloatArray
+
+    def of(self, weights: Mapping[str, float]) -> tuple[float, float]:
+        """Return a weighted sum of what they are off, and its standard uncertainty."""
+        row = np.array([weights.get(name, 0.0) for name in self.names])
+        return float(row @ self.off), math.sqrt(row @ self.covariance @ row)
+
+
+def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientRow, ...]]:
+    """Return every free coefficient of model and water, and how the derivatives are written."""
+    simulator = examined.diagnosis.problem.simulator
+    points = [run.set_point for run in simulator.stack.runs if run.turns]
+    convention, derivatives = reported(examined.ready.reporting, simulator.rig, points)
+    plain, cured = _fits(examined)
+    others = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
+    kept = [one for one in (*derivatives, *others) if one.weights.keys() & set(plain.names)]
+    return convention, tuple(_row(one, examined, plain, cured) for one in kept)
+
+
+def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit) -> CoefficientRow:
+    moved, rig = examined.recentred.moved, examined.diagnosis.problem.simulator.rig
+    here = one.memory + sum(part * _stated(rig, name) for name, part in one.weights.items())
+    stated = here - sum(part * moved.get(name, 0.0) for name, part in one.weights.items())
+    (off, u_without), (left, u_with) = plain.of(one.weights), cured.of(one.weights)
+    return CoefficientRow(
+        one.name,
+        one.unit,
+        stated,
+        here + off,
+        u_without,
+        here + left,
+        u_with,
+        (off - left) / u_with,
+        one.speed_m_s,
+        one.frequency_hz,
+    )
+
+
+def _fits(examined: Examined) -> Iterator[_Fit]:
+    """Yield the fit without and with the cause."""
+    problem, cause = examined.diagnosis.problem, examined.diagnosis.cause
+    columns = problem.nuisances.columns
+    yield _fitted(examined, problem.residual, columns)
+    if cause is None:
+        yield _fitted(examined, problem.residual, columns)
+    else:
+        both = np.hstack((columns, cause.columns))
+        yield _fitted(examined, cause.linearised(problem.residual), both)
+
+
+def _fitted(examined: Examined, residual: FloatArray, columns: FloatArray) -> _Fit:
+    """Return the most probable coefficients; each column is one deviation of its prior."""
     covariance = np.linalg.inv(np.eye(columns.shape[1]) + columns.T @ columns)
-    return covariance @ (columns.T @ residual), np.sqrt(np.diagonal(covariance))
+    mean = covariance @ (columns.T @ residual)
+    own = [number for number, one in enumerate(examined.free) if one.is_coefficient]
+    scale = np.array([examined.free[number].deviation for number in own])
+    names = tuple(examined.free[number].name for number in own)
+    spread = np.asarray(covariance[np.ix_(own, own)] * np.outer(scale, scale))
+    return _Fit(names, mean[own] * scale, spread)
 
 
 def _stated(rig: SimulatedRig, name: str) -> float:

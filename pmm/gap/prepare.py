@@ -14,6 +14,9 @@ from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import COEFFICIENTS, NONE
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.coefficients.settings import Settings as Reporting
+from pmm.coefficients.settings import settings_of
+from pmm.coefficients.systems import check_dimensions
 from pmm.gap.case import Case, read_case
 from pmm.gap.hold_out import held_out_runs
 from pmm.gap.load import Loaded, campaign_of, load_campaign
@@ -41,6 +44,8 @@ class Prepared:
     cut_short
         Runs of which many periods are not used, or some for want of samples, by name, with the
         reason.
+    reporting
+        How the user has coefficients reported: ``coefficients.toml`` beside the campaign file.
     """
 
     campaign: Campaign
@@ -51,6 +56,7 @@ class Prepared:
     withheld: tuple[GapRun, ...]
     settings: Settings
     cut_short: Mapping[str, str] = field(default_factory=dict)
+    reporting: Reporting = field(default_factory=Reporting)
 
 
 def prepare(
@@ -73,13 +79,13 @@ def prepare(
     Raises
     ------
     ConfigurationError
-        If the campaign, the case or a name is wrong.
+        If the campaign, the case, ``coefficients.toml`` or a name is wrong.
     DataError
         If fewer than three runs can be used, or a channel is in other units in all of them.
     """
     file = campaign_file(folder)
     _check_sensors(sensors)
-    campaign, case = campaign_of(file), read_case(file.parent)
+    campaign, case, reporting = campaign_of(file), read_case(file.parent), _reporting(file.parent)
     held_out = held_out_runs(campaign, hold_out)
     on = campaign.effects_on(more or {})
     progress("reading")
@@ -99,7 +105,14 @@ def prepare(
     for one in loaded.at_rest:
         (withheld if one.name in held_out else fitted).append(one)
     cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
-    return Prepared(campaign, case, left_out, there, tuple(fitted), tuple(withheld), settings, cut)
+    used = tuple(fitted), tuple(withheld)
+    return Prepared(campaign, case, left_out, there, *used, settings, cut, reporting)
+
+
+def _reporting(folder: Path) -> Reporting:
+    found, _ = settings_of(folder, None)
+    check_dimensions(found.system, found.ship)
+    return found
 
 
 def campaign_file(folder: Path) -> Path:

@@ -24,6 +24,7 @@ from pmm.gap.cells import Cell, StepRow, heat_cells, remains, step_row
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.examine import Examined
 from pmm.gap.plain import plain_values
+from pmm.gap.reported import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import run_notes
 from sim.effects.catalogue import catalogue
@@ -50,6 +51,8 @@ class GapReport:
         The verdict for people.
     class_probability
         Of the most probable answer together with all that these runs cannot tell from it.
+    convention
+        How the derivatives among the coefficients are written.
     remains
         What the best answer leaves, step by step.
     """
@@ -69,6 +72,7 @@ class GapReport:
     hidden: tuple[str, ...]
     controls: tuple[ControlRow, ...]
     regimes: tuple[RegimeRow, ...]
+    convention: Convention
     coefficients: tuple[CoefficientRow, ...]
     remains: tuple[StepRow, ...]
     cells: tuple[Cell, ...]
@@ -102,7 +106,7 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(sorted(found.weighed.hidden)),
         tuple(_controls(examined)),
         tuple(_regimes(examined)),
-        tuple(coefficient_rows(examined)),
+        *coefficient_rows(examined),
         tuple(remains(examined)),
         tuple(heat_cells(examined)),
         examined.description,

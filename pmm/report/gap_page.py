@@ -126,19 +126,17 @@ def _how_far(report: GapReport) -> Part | None:
 
 
 def _coefficients(report: GapReport) -> Part:
-    rows = tuple(
-        (
-            one.name,
-            one.unit,
-            f"{one.stated:.6g}",
-            f"{one.without:.6g} ± {2.0 * one.u_without:.2g}",
-            f"{one.with_effect:.6g} ± {2.0 * one.u_with:.2g}",
-        )
-        for one in report.coefficients
+    rows = tuple(one.said for one in report.coefficients)
+    headings = (
+        "coefficient", "unit", "stated", "fitted without effect", "with the best answer",
+        "bias [u]",
+    )  # fmt: skip
+    lines = (
+        f"Derivatives: {report.convention}.",
+        "Both fits start from the stated tolerances; ± is two standard uncertainties. Bias: by how "
+        "many standard uncertainties the coefficient is off where the best answer is not modelled.",
     )
-    headings = ("coefficient", "unit", "stated", "fitted without effect", "with the best answer")
-    line = "Both fits start from the stated tolerances; ± is two standard uncertainties."
-    return Part("Coefficients", (line,), (), (Table("Coefficients", headings, rows, 2),))
+    return Part("Coefficients", lines, (), (Table("Coefficients", headings, rows, 2),))
 
 
 def _remainder(report: GapReport) -> Part:

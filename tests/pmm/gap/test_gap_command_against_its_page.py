@@ -1,6 +1,7 @@
 """``docs/gap.md``: its commands run, from a raw campaign to a cured simulator."""
 
 import json
+import math
 import re
 import shlex
 import tomllib
@@ -86,6 +87,20 @@ def test_withheld_runs_are_predicted(told: dict[str, Result]) -> None:
     assert sum(one["probability"] for one in found["ranking"]) <= 1.0 + 1e-9
     assert found["ranking"][0]["probability"] <= found["class_probability"] <= 1.0 + 1e-9
     assert {one["what"]: one["stated_u"] for one in found["walk"]}["forces"] > 10.0
+
+
+def test_the_bias_of_the_damping_is_that_of_friction(told: dict[str, Result]) -> None:
+    """Two struts with friction F take the work of 8 F / (pi omega x), x being the amplitude."""
+    found = json.loads(told["json"].stdout)
+    (damping,) = [one for one in found["coefficients"] if one["name"] == "Z_w"]
+    lent = [-8.0 * TRUTH_N / (math.pi * 2.0 * math.pi * f * 0.02) for f in (0.5, 0.8)]
+    assert damping["stated"] == -190.0
+    assert damping["with_effect"] == pytest.approx(-190.0, abs=3.0 * damping["u_with"])
+    off = damping["without"] - damping["with_effect"]
+    assert lent[0] < off < 0.8 * lent[1]
+    assert damping["bias_u"] == pytest.approx(off / damping["u_with"])
+    said = re.findall(r"^Z_w +N s/m .* ([-+]\d+\.\d)$", told["diagnose"].stdout, re.MULTILINE)
+    assert float(said[0]) < -10.0
 
 
 def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:

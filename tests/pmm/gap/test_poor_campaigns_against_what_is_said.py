@@ -170,9 +170,9 @@ def test_nominal_model_far_off(rig: Path, tmp_path: Path) -> None:
     document = found(campaign)
     assert "the stated model is far off (a11 +30" in document["notes"][0]
     assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
-    (added,) = [one for one in document["coefficients"] if one["name"] == "a11"]
-    assert added["stated"] == pytest.approx(45.0)
-    assert added["with_effect"] == pytest.approx(75.0, rel=0.01)
+    (added,) = [one for one in document["coefficients"] if one["name"] == "Z_wdot"]
+    assert added["stated"] == pytest.approx(-45.0)
+    assert added["with_effect"] == pytest.approx(-75.0, rel=0.01)
 
 
 def example() -> str:

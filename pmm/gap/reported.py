@@ -1,0 +1,162 @@
+"""What ``pmm coefficients`` reports of a campaign, as sums over the simulated hull's matrices."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.coefficients.campaign_systems import common_name
+from analysis.coefficients.names import place_of
+from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
+from analysis.coefficients.of_hull import as_reported
+from hardware.description.setpoint import Medium, SetPoint
+from pmm.coefficients.settings import Settings, System
+from pmm.coefficients.systems import system_of
+from sim.rig import SimulatedRig
+
+FloatArray = NDArray[np.float64]
+
+# Added mass and damping by rows, about the midpoint between the struts.
+HULL: Final = tuple(f"{term}{row}{column}" for term in "ab" for row in "12" for column in "12")
+_UNITS: Final = np.eye(len(HULL)).reshape(len(HULL), 2, 2, 2)  # of each: added mass, damping
+
+State = tuple[float, float]
+"""The carriage's speed, m/s, and the frequency, Hz."""
+
+
+@dataclass(frozen=True)
+class Convention:
+    """How derivatives are written: as ``pmm coefficients`` does for the same campaign.
+
+    Attributes
+    ----------
+    form
+        ``"manoeuvring"`` or ``"seakeeping"``.
+    normalisation
+        ``"dimensional"``, or the system's name.
+    point_ahead_m
+        What they refer to, ahead of the midpoint between the struts.
+    """
+
+    form: str
+    plane: str
+    normalisation: str
+    point_ahead_m: float
+
+    def __str__(self) -> str:
+        """Return what the head of a table says."""
+        ahead = self.point_ahead_m
+        side = "ahead of" if ahead > 0.0 else "behind"
+        point = f"{abs(ahead):g} m {side} the midpoint" if ahead else "about the midpoint"
+        return f"{self.form} form, {point}, {self.normalisation}"
+
+
+@dataclass(frozen=True)
+class Reported:
+    """One coefficient.
+
+    Attributes
+    ----------
+    weights
+        Of the hull's numbers that it is the sum of.
+    memory
+        What the water's memory adds to that sum.
+    speed_m_s, frequency_hz
+        Where it holds; NaN where it is the same at all.
+    """
+
+    name: str
+    unit: str
+    weights: Mapping[str, float]
+    memory: float = 0.0
+    speed_m_s: float = math.nan
+    frequency_hz: float = math.nan
+
+
+def reported(
+    settings: Settings, rig: SimulatedRig, set_points: Sequence[SetPoint]
+) -> tuple[Convention, tuple[Reported, ...]]:
+    """Return the coefficients that a campaign's runs report, and how they are written.
+
+    Runs in air count only where there are no others. A system that divides by the speed leaves out
+    runs at rest; where all are, it is not used.
+
+    Parameters
+    ----------
+    set_points
+        Of the runs that oscillate, one or more.
+
+    Raises
+    ------
+    ConfigurationError
+        If a dimension of the model is missing.
+    """
+    wet = [one for one in set_points if one.medium is Medium.WATER] or set_points
+    states = sorted({(one.carriage_speed_m_s, one.frequency_hz) for one in wet})
+    systems: dict[State, Normalisation] = {}
+    if settings.system is not System.DIMENSIONAL:
+        by_speed = system_of(settings.system, settings.ship, rig.body)
+        by_gravity = settings.system is System.SEAKEEPING
+        systems = {one: by_speed(one[0]) for one in states if by_gravity or one[0] > 0.0}
+    name = common_name(tuple(systems.values())) if systems else DIMENSIONAL
+    found = {
+        state: list(_of_state(settings, rig, state, systems.get(state)))
+        for state in systems or states
+    }
+    plane = str(rig.oscillator.plane)
+    convention = Convention(str(settings.form), plane, name, settings.point_ahead_m)
+    return convention, tuple(_merged(found))
+
+
+def _of_state(
+    settings: Settings, rig: SimulatedRig, state: State, system: Normalisation | None
+) -> Iterator[Reported]:
+    """Yield each coefficient at one speed and frequency."""
+    form, plane, (speed, frequency) = settings.form, rig.oscillator.plane, state
+    added_mass, damping = _memory(rig, frequency)
+    found = as_reported(
+        np.stack((*_UNITS[:, 0], added_mass)),
+        np.stack((*_UNITS[:, 1], damping)),
+        plane,
+        form,
+        point_ahead_m=settings.point_ahead_m,
+        speed_m_s=speed,
+        frequency_hz=frequency,
+    )
+    for name, column in found.items():
+        place = place_of(name, plane, form)
+        factor = 1.0 if system is None else system.place_factor(place)
+        *parts, memory = (column / factor).tolist()
+        weights = {one: part for one, part in zip(HULL, parts, strict=True) if part}
+        unit = place.unit if system is None else "1"
+        yield Reported(name, unit, weights, memory, speed, frequency)
+
+
+def _memory(rig: SimulatedRig, frequency_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Return added mass and damping that the water's memory has at a frequency."""
+    if rig.radiation is None:
+        return np.zeros((2, 2)), np.zeros((2, 2))
+    omega = 2.0 * math.pi * frequency_hz
+    return rig.radiation.added_mass(omega), rig.radiation.damping(omega)
+
+
+def _merged(found: Mapping[State, Sequence[Reported]]) -> Iterator[Reported]:
+    """Yield each coefficient once where it is the same at all states, with what it depends on."""
+    for several in zip(*found.values(), strict=True):
+        kinds: dict[object, list[Reported]] = {}
+        for one in several:
+            kinds.setdefault((one.memory, *one.weights.items()), []).append(one)
+        for alike in kinds.values():
+            speed, frequency = (
+                _its_own(*([getattr(one, key) for one in part] for part in (alike, several)))
+                for key in ("speed_m_s", "frequency_hz")
+            )
+            yield replace(alike[0], speed_m_s=speed, frequency_hz=frequency)
+
+
+def _its_own(values: Sequence[float], every: Sequence[float]) -> float:
+    """Return what tells some states from the others; NaN where nothing does."""
+    return values[0] if len(set(values)) == 1 < len(set(every)) else math.nan
