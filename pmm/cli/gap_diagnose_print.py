@@ -130,8 +130,8 @@ def _print_coefficients(console: "Console", report: GapReport) -> None:
     if not chosen:
         console.print("\nno coefficient moves by more than its uncertainty")
         return
-    head = f"what it does to the coefficients: {report.convention}"
-    console.print(f"\n{head}", style="bold", soft_wrap=True)
+    console.print("\nwhat it does to the coefficients", style="bold")
+    console.print(str(report.convention), soft_wrap=True)
     headings = ("coefficient", "unit", "stated", "fitted without effect", "with it", "bias [u]")
     shown = 6 if effect else 4
     table = _table(*headings[:shown], text=2)
