@@ -9,25 +9,40 @@ every engine and with any number of workers. See ``docs/parallel.md``.
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from multiprocessing import get_context
+from pathlib import Path
+from platform import node
 from typing import Any, Final, TypeVar
 
 from hardware.description.errors import ConfigurationError, DataError
 
 T = TypeVar("T")
+S = TypeVar("S")
 
 MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
 _THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+IN_HAND: Final = 500  # tasks at a time: more than the workers of a cluster, few enough to hold
 _TIMEOUT: Final = "10s"  # for a scheduler to answer
 
 
 @contextmanager
-def open_executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
+def open_executor(
+    jobs: int | None = None, scheduler: str | None = None, *, module: str = __name__
+) -> Iterator[Executor]:
     """Open an executor for the time of a ``with`` block; nothing is left running after it.
 
     Parameters
@@ -37,20 +52,24 @@ def open_executor(jobs: int | None = None, scheduler: str | None = None) -> Iter
     scheduler
         Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``; its workers need this
         package, and the recordings under the same paths.
+    module
+        Where the tasks' function is, if it is no part of this package; a cluster's workers are
+        asked whether they have it.
 
     Raises
     ------
     ConfigurationError
         If both are given, the number is below 1, or the extra ``cluster`` is not installed.
     DataError
-        If no scheduler answers there, or the workers died again and again.
+        If no scheduler answers there, a worker lacks the module, the workers died again and again,
+        or the scheduler ended.
     """
     if scheduler is not None and jobs is not None:
         raise ConfigurationError("give --jobs or --scheduler, not both: a cluster has its own size")
     if jobs is not None and jobs < 1:
         raise ConfigurationError(f"--jobs {jobs}: at least one process is needed")
     if scheduler is not None:
-        with _cluster(scheduler) as executor:
+        with _cluster(scheduler, module) as executor:
             yield executor
         return
     count = cores() if jobs is None else jobs
@@ -59,6 +78,49 @@ def open_executor(jobs: int | None = None, scheduler: str | None = None) -> Iter
         yield local
     finally:
         local.shutdown(wait=True, cancel_futures=True)
+
+
+def as_done(
+    executor: Executor, work: Callable[[S], T], tasks: Iterable[S], most: int = IN_HAND
+) -> Iterator[T]:
+    """Yield the results of tasks as they come, in no order; a slow task holds up no other.
+
+    Parameters
+    ----------
+    work
+        A function of a module, called with one task at a time.
+    most
+        Tasks in hand at a time; no more results than that are held.
+    """
+    running: set[Future[T]] = set()
+    for task in tasks:
+        running.add(executor.submit(work, task))
+        # What is done at once, as in this process, is yielded before the next task is begun.
+        patience = 0.0 if len(running) < most else None
+        done, running = wait(running, patience, return_when=FIRST_COMPLETED)
+        yield from _results(done)
+    while running:
+        done, running = wait(running, return_when=FIRST_COMPLETED)
+        yield from _results(done)
+
+
+def _results(done: set[Future[T]]) -> Iterator[T]:
+    while done:
+        yield done.pop().result()
+
+
+def check_seen(folder: Path) -> None:
+    """Refuse a task whose folder is not there for the process that has it.
+
+    Raises
+    ------
+    DataError
+        With the folder and the computer that does not see it.
+    """
+    if not folder.is_dir():
+        raise DataError(
+            f"{folder}: not there on {node()}; the workers of a cluster need it under the same path"
+        )
 
 
 def cores() -> int:
@@ -175,7 +237,7 @@ def one_thread() -> None:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[Executor]:
+def _cluster(address: str, module: str) -> Iterator[Executor]:
     try:
         distributed: Any = import_module("distributed")
     except ImportError:
@@ -190,10 +252,26 @@ def _cluster(address: str) -> Iterator[Executor]:
             "start one with 'dask scheduler', or leave the option out"
         ) from None
     try:
+        _check_workers(client, address, module)
         yield client.get_executor(pure=False)
+    except CancelledError:
+        raise DataError(
+            f"--scheduler {address}: the scheduler ended, or was told to give the work up"
+        ) from None
     except distributed.KilledWorker as error:
         raise DataError(
             f"--scheduler {address}: a task's workers died again and again: {error}"
         ) from error
     finally:
         client.close()
+
+
+def _check_workers(client: Any, address: str, module: str) -> None:
+    """Refuse workers that lack a module: one that is sent such a task ends without a word."""
+    found = client.run(find_spec, module, on_error="return")
+    lacking = sorted(worker for worker, has in found.items() if not isinstance(has, ModuleSpec))
+    if lacking:
+        raise DataError(
+            f"--scheduler {address}: {', '.join(lacking)} cannot import {module}; a cluster's "
+            "workers need it in the same version"
+        )

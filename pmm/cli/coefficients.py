@@ -6,6 +6,8 @@ from typing import Any, TypeVar
 
 import click
 
+from pmm.cli.engine_options import jobs_option, scheduler_option
+
 SYSTEMS = ("dimensional", "prime", "mmg", "seakeeping")
 FORMS = ("manoeuvring", "seakeeping")
 DEFAULT_TRIALS = 20_000
@@ -64,11 +66,8 @@ def shared_options(function: F) -> F:
             "--level", type=float, callback=_probability, metavar="P",
             help="Probability of the intervals.  [0.95]",
         ),
-        click.option(
-            "--jobs", type=click.IntRange(min=1), metavar="N",
-            help="Local processes.  [one for each core; 1 where there is little to do]",
-        ),
-        click.option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
+        jobs_option("one for each core; 1 where there is little to do"),
+        scheduler_option,
     )  # fmt: skip
     for option in reversed(options):
         function = option(function)

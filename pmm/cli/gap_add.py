@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from pmm.cli.engine_options import jobs_option
 from pmm.cli.gap_options import looks
 
 
@@ -15,7 +16,7 @@ from pmm.cli.gap_options import looks
     help="Fit and add this effect.  [default: the one that is found]",
 )
 @looks
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")
+@jobs_option("1")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
 def add(**options: Any) -> None:
     """Write an effect with its fitted parameters into the campaign file.

@@ -1,8 +1,10 @@
 """``pmm gap answer``: the diagnosis of every case of a board, without its keys."""
 
-import os
+from typing import Any
 
 import click
+
+from pmm.cli.engine_options import jobs_option, scheduler_option
 
 
 @click.command()
@@ -13,22 +15,18 @@ import click
     metavar="FILE.json",
     help="Effects to take out of the catalogue, by case; only these cases are answered.",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(1),
-    default=os.cpu_count() or 1,
-    show_default="one per core",
-    help="Processes.",
-)
+@jobs_option("one for each core")
+@scheduler_option
 @click.option("--overwrite", is_flag=True, help="Answer again what has an answer already.")
-def answer(
-    folder: str, output: str | None, leave_out: str | None, workers: int, overwrite: bool
-) -> None:
+def answer(**options: Any) -> None:
     """Diagnose every case in BOARD/cases and write one answer each (docs/sealed.md).
 
     It looks at nothing but BOARD/cases. What is answered already is kept, so that a board that was
     broken off goes on. Exit status: 0 all answered, 1 some cases could not be diagnosed.
     """
+    from pmm.parallel import one_thread
+
+    one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.gap_answering import Request, run
 
-    run(Request(folder, output, leave_out, workers, overwrite))
+    run(Request(**options))

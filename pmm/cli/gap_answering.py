@@ -1,11 +1,9 @@
-"""What ``pmm gap answer`` does: a pool of processes, one case each at a time."""
+"""What ``pmm gap answer`` does: the cases go out to workers, this process writes their answers."""
 
 import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +12,7 @@ import click
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import error_line, messages
-from pmm.parallel import one_thread
+from pmm.parallel import as_done, check_seen, open_executor
 
 
 @dataclass(frozen=True)
@@ -24,8 +22,26 @@ class Request:
     folder: str
     output: str | None
     leave_out: str | None
-    workers: int
+    jobs: int | None
+    scheduler: str | None
     overwrite: bool
+
+
+@dataclass(frozen=True)
+class Task:
+    """A case's folder, absolute, and the effects that are taken out of the catalogue."""
+
+    case: Path
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What came of a case: the text of its answer, or why it could not be diagnosed."""
+
+    case: str
+    text: str = ""
+    failed: str = ""
 
 
 def run(request: Request) -> None:
@@ -43,18 +59,18 @@ def run(request: Request) -> None:
     check_folder(target, "--output")
     left_out = None if request.leave_out is None else _left_out(Path(request.leave_out))
     cases = [one for one in _cases(board) if left_out is None or one.name in left_out]
-    jobs = [
-        (case, target / f"{case.name}.json", tuple((left_out or {}).get(case.name, ())))
+    tasks = [
+        Task(case.absolute(), tuple((left_out or {}).get(case.name, ())))
         for case in cases
         if request.overwrite or not (target / f"{case.name}.json").exists()
     ]
     target.mkdir(parents=True, exist_ok=True)
     started = time.monotonic()
-    failed = [line for line in _work(jobs, request.workers) if line]
+    failed = _answered(request, tasks, target)
     took = time.monotonic() - started
-    kept = len(cases) - len(jobs)
+    kept = len(cases) - len(tasks)
     messages().print(
-        f"{len(jobs) - len(failed)} cases answered in {took:.0f} s"
+        f"{len(tasks) - len(failed)} cases answered in {took:.0f} s"
         + (f", {kept} had answers already" if kept else "")
         + f": {target}"
     )
@@ -85,37 +101,53 @@ def _left_out(path: Path) -> Mapping[str, Sequence[str]]:
     return dict(table)
 
 
-def _work(jobs: Sequence[tuple[Path, Path, tuple[str, ...]]], workers: int) -> Iterator[str]:
-    """Yield for each case an empty line, or why it could not be diagnosed."""
+def _answered(request: Request, tasks: Sequence[Task], target: Path) -> list[str]:
+    """Write each answer as it comes; return why cases have none, in their order."""
+    failed = []
+    for one in _work(request, tasks):
+        if one.failed:
+            failed.append(one.failed)
+        else:
+            _write(target / f"{one.case}.json", one.text)
+    return sorted(failed)
+
+
+def _work(request: Request, tasks: Sequence[Task]) -> Iterator[Answered]:
+    """Yield what came of each case, with progress on a terminal."""
     from rich.progress import Progress
 
     console = messages()
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("cases", total=len(jobs))
-        for line in _each(jobs, min(workers, max(len(jobs), 1))):
-            progress.advance(task)
-            yield line
+    with (
+        Progress(console=console, transient=True, disable=not console.is_terminal) as progress,
+        open_executor(request.jobs, request.scheduler) as executor,
+    ):
+        bar = progress.add_task("cases", total=len(tasks))
+        for done in as_done(executor, answer_one, tasks):
+            progress.advance(bar)
+            yield done
 
 
-def _each(jobs: Sequence[tuple[Path, Path, tuple[str, ...]]], workers: int) -> Iterator[str]:
-    if workers == 1:
-        yield from (answer_one(*job) for job in jobs)
-        return
-    with ProcessPoolExecutor(workers, get_context("spawn"), one_thread) as pool:
-        for done in as_completed([pool.submit(answer_one, *job) for job in jobs]):
-            yield done.result()
+def answer_one(task: Task) -> Answered:
+    """Diagnose one case.
 
-
-def answer_one(case: Path, target: Path, left_out: tuple[str, ...] = ()) -> str:
-    """Diagnose one case and write its answer; return an empty line, or why it could not be."""
+    Raises
+    ------
+    DataError
+        If its folder is not there for this process.
+    """
+    check_seen(task.case)
     try:
-        found = diagnosed(case, left_out)
+        found = diagnosed(task.case, task.left_out)
     except (PmmError, OSError) as error:
-        return f"{case.name}: {error}"
+        return Answered(task.case.name, failed=f"{task.case.name}: {error}")
+    return Answered(task.case.name, json.dumps(found, indent=1, allow_nan=False) + "\n")
+
+
+def _write(target: Path, text: str) -> None:
+    """Write a file that is whole whenever it is there."""
     written = target.with_suffix(".part")
-    written.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    written.write_text(text, encoding="utf-8")
     written.replace(target)
-    return ""
 
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:

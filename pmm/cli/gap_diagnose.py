@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from pmm.cli.engine_options import jobs_option, scheduler_option
 from pmm.cli.gap_options import looks
 
 
@@ -12,8 +13,8 @@ from pmm.cli.gap_options import looks
 @looks
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plan", metavar="FILE.toml", help="Write the proposed runs as a plan for pmm run.")
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes.  [default: 1]")
-@click.option("--scheduler", metavar="ADDRESS", help="A Dask scheduler in place of processes.")
+@jobs_option("1")
+@scheduler_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
 def diagnose(**options: Any) -> None:
     """Say where rig and simulation differ, which effect causes it, and how far the gap shrinks.

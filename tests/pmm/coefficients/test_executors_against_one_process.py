@@ -1,16 +1,17 @@
 """Every engine gives what one process gives, also when a worker is killed on the way."""
 
 import multiprocessing
-import warnings
 from collections.abc import Iterator
 
 import pytest
 
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.parallel import LocalProcesses, open_executor
+from pmm.parallel import LocalProcesses, as_done, open_executor
+from tests.clusters import cluster
 from tests.pmm.coefficients.work import (
     always_dies,
     drawn,
+    given_up,
     killed_once,
     refuses,
     squared,
@@ -18,6 +19,7 @@ from tests.pmm.coefficients.work import (
 )
 
 COUNT = 12
+SQUARES = [number * number for number in range(COUNT)]
 
 
 @pytest.fixture(autouse=True)
@@ -77,6 +79,37 @@ def test_what_is_left_is_not_begun_after_an_error() -> None:
         stop_early()
 
 
+def test_in_this_process_a_task_is_done_when_its_result_is_asked_for() -> None:
+    begun: list[int] = []
+    with open_executor(jobs=1) as executor:
+        results = as_done(executor, begun.append, range(3))
+        for count in range(1, 4):
+            assert next(results) is None
+            assert begun == list(range(count))
+        assert list(results) == []
+
+
+def test_no_more_tasks_than_allowed_are_in_hand() -> None:
+    asked: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for number in range(COUNT):
+            asked.append(number)
+            yield number
+
+    found = []
+    with open_executor(jobs=2) as executor:
+        for square in as_done(executor, squared, tasks(), most=3):
+            found.append(square)
+            assert len(asked) - len(found) < 3
+    assert sorted(found) == SQUARES
+
+
+def test_an_error_ends_what_comes_as_it_is_done() -> None:
+    with open_executor(jobs=2) as executor, pytest.raises(ValueError, match="number 3"):
+        list(as_done(executor, refuses, [3]))
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -91,18 +124,26 @@ def test_impossible_engines_are_refused(options, message) -> None:  # type: igno
 
 @pytest.mark.slow
 def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: ignore[no-untyped-def]
-    distributed = pytest.importorskip("distributed")
     tasks = [(str(tmp_path), k) for k in range(COUNT)]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # distributed's own, of ports and of the killed worker
-        with (
-            distributed.LocalCluster(
-                n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
-            ) as cluster,
-            open_executor(scheduler=cluster.scheduler_address) as executor,
-        ):
-            assert list(executor.map(killed_once, tasks)) == [drawn(k) for k in range(COUNT)]
+    with cluster(2) as address, open_executor(scheduler=address) as executor:
+        assert list(executor.map(killed_once, tasks)) == [drawn(k) for k in range(COUNT)]
+        assert sorted(as_done(executor, squared, range(COUNT), most=3)) == SQUARES
     assert (tmp_path / "killed").exists()
+
+
+@pytest.mark.slow
+def test_what_a_cluster_cannot_do_is_said() -> None:
+    with cluster() as address:
+        with (
+            pytest.raises(DataError, match="cannot import elsewhere"),
+            open_executor(scheduler=address, module="elsewhere"),
+        ):
+            pass
+        with (
+            pytest.raises(DataError, match="the scheduler ended"),
+            open_executor(scheduler=address) as executor,
+        ):
+            next(as_done(executor, given_up, [address]))
 
 
 @pytest.mark.slow

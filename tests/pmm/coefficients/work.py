@@ -43,3 +43,11 @@ def refuses(number: int) -> int:
 
 def threads(_: int) -> str:
     return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+def given_up(address: str) -> None:
+    """Have a cluster's scheduler forget all work, this too: as it does when it ends."""
+    from distributed import Client
+
+    with Client(address, set_as_default=False) as client:
+        client.restart(wait_for_workers=False)

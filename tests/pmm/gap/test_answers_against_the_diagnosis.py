@@ -18,7 +18,7 @@ def answered(rig: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[s
     """Return the answer to a board of this one case."""
     monkeypatch.setattr(effects, "catalogue", lambda: FEW)
     shutil.copytree(rig, folder / "board" / "cases" / "case-0001")
-    done = run("gap", "answer", folder / "board", "--workers", "1")
+    done = run("gap", "answer", folder / "board", "--jobs", "1")
     assert done.exit_code == 0, done.output
     found: dict[str, Any] = json.loads(
         (folder / "board" / "answers" / "case-0001.json").read_text()

@@ -1,6 +1,8 @@
 """``pmm gap answer``: which cases are answered, where the answers go, and how it ends."""
 
 import json
+import platform
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +31,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
 
 
 def _run(board: Path, *words: str) -> Result:
-    return CliRunner().invoke(cli, ["gap", "answer", str(board), "--workers", "1", *words])
+    return CliRunner().invoke(cli, ["gap", "answer", str(board), "--jobs", "1", *words])
 
 
 def test_what_has_an_answer_keeps_it(board: Path, asked: Asked) -> None:
@@ -61,6 +63,21 @@ def test_left_out_effects_reach_their_cases_alone(
     assert _run(board, "--leave-out", str(file), "--output", str(target)).exit_code == 0
     assert asked == [("case-0007", ("coulomb-friction",))]
     assert [path.name for path in target.iterdir()] == ["case-0007.json"]
+
+
+def test_a_case_that_its_worker_does_not_see_ends_the_board_by_name(
+    board: Path, asked: Asked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (board / "answers" / "case-0002.json").unlink()
+    monkeypatch.chdir(board.parent)
+    unseen = Path(board.name) / "cases" / "case-0002"
+    monkeypatch.setattr(gap_answering, "_cases", lambda _: [unseen])
+    shutil.rmtree(unseen)  # as if the cases were not mounted where it works
+    done = _run(Path(board.name))
+    assert done.exit_code == 1
+    # By the whole path: a worker may have begun in another folder.
+    assert f"{board / 'cases' / 'case-0002'}: not there on {platform.node()}" in done.stderr
+    assert asked == []
 
 
 def test_wrong_usage_ends_with_2(board: Path, asked: Asked, tmp_path: Path) -> None:
