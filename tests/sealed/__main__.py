@@ -6,12 +6,15 @@ import re
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 BOARD = click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
 WORKERS = click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
                        type=click.IntRange(1))  # fmt: skip
 LIMIT = click.option("--limit", "limit_s", default=300.0, show_default=True,
                      type=click.FloatRange(1.0), help="Seconds that a case may take.")  # fmt: skip
+SCHEDULER = click.option("--scheduler", metavar="ADDRESS",
+                         help="A Dask scheduler that answers in place of processes.")  # fmt: skip
 MOST = click.option("--left-out", "most", type=click.IntRange(0),
                     help="Leave-one-out on no more cases than that.")  # fmt: skip
 _OPTIONS = (
@@ -20,6 +23,16 @@ _OPTIONS = (
     click.option("--cases", default=300, show_default=True, type=click.IntRange(0)),
     click.option("--nulls", default=300, show_default=True, type=click.IntRange(0)),
 )
+
+
+def _refuse_beside(scheduler: str | None, *names: str) -> None:
+    """Refuse options that mean nothing to a cluster."""
+    source = click.get_current_context().get_parameter_source
+    for name, option in (("workers", "--workers"), ("limit_s", "--limit")):
+        if scheduler and name in names and source(name) is ParameterSource.COMMANDLINE:
+            raise click.UsageError(
+                f"give --scheduler or {option}, not both: a cluster has its own size and no limit"
+            )
 
 
 @click.group()
@@ -68,11 +81,13 @@ def run_command(key: Path, run: Path, output: Path) -> None:
 @BOARD
 @LIMIT
 @WORKERS
-def answer_command(board: Path, limit_s: float, workers: int) -> None:
+@SCHEDULER
+def answer_command(board: Path, limit_s: float, workers: int, scheduler: str | None) -> None:
     """Answer BOARD by the diagnosis; what has an answer keeps it, what fails counts as wrong."""
     from tests.sealed.steps import answered
 
-    answered(board, workers, limit_s)
+    _refuse_beside(scheduler, "workers", "limit_s")
+    answered(board, workers, limit_s, scheduler)
 
 
 @main.command("rows")
@@ -80,11 +95,15 @@ def answer_command(board: Path, limit_s: float, workers: int) -> None:
 @click.option("--only", multiple=True, help="Names of the rows; all controls and peers if none.")
 @LIMIT
 @WORKERS
-def rows_command(board: Path, only: tuple[str, ...], limit_s: float, workers: int) -> None:
+@SCHEDULER
+def rows_command(
+    board: Path, only: tuple[str, ...], limit_s: float, workers: int, scheduler: str | None
+) -> None:
     """Answer BOARD by the trivial controls and by those peers that are installed."""
     from tests.sealed.steps import others
 
-    others(board, workers, limit_s, only)
+    _refuse_beside(scheduler, "workers", "limit_s")
+    others(board, workers, limit_s, only, scheduler)
 
 
 @main.command("leave-out")
@@ -92,11 +111,15 @@ def rows_command(board: Path, only: tuple[str, ...], limit_s: float, workers: in
 @MOST
 @LIMIT
 @WORKERS
-def leave_out_command(board: Path, most: int | None, limit_s: float, workers: int) -> None:
+@SCHEDULER
+def leave_out_command(
+    board: Path, most: int | None, limit_s: float, workers: int, scheduler: str | None
+) -> None:
     """Answer BOARD by the diagnosis with each case's right effects out of the catalogue."""
     from tests.sealed.steps import left_out_answered
 
-    left_out_answered(board, workers, limit_s, most)
+    _refuse_beside(scheduler, "workers", "limit_s")
+    left_out_answered(board, workers, limit_s, most, scheduler)
 
 
 @main.command("score")
@@ -138,6 +161,7 @@ def score_command(
 @MOST
 @LIMIT
 @WORKERS
+@SCHEDULER
 def whole_command(
     seed: int | None,
     commit: str | None,
@@ -148,6 +172,7 @@ def whole_command(
     most: int | None,
     limit_s: float,
     workers: int,
+    scheduler: str | None,
 ) -> None:
     """Make a board, answer it by all, and score it; begun again, it goes on where it was.
 
@@ -155,13 +180,14 @@ def whole_command(
     """
     from tests.sealed import steps
 
+    _refuse_beside(scheduler, "limit_s")
     number = _number(seed, commit)
     if commit is not None:
         steps.refuse(number, cases, nulls, docs)
     steps.generated(output, number, cases, nulls, workers)
-    steps.answered(output, workers, limit_s)
-    steps.others(output, workers, limit_s)
-    steps.left_out_answered(output, workers, limit_s, most)
+    steps.answered(output, workers, limit_s, scheduler)
+    steps.others(output, workers, limit_s, (), scheduler)
+    steps.left_out_answered(output, workers, limit_s, most, scheduler)
     steps.scored(output, None if commit is None else docs, workers)
 
 

@@ -1,7 +1,8 @@
 """Answers to a board's cases, one process each at a time; a case that fails is answered as failed.
 
 Whoever answers is given the folder of one case and nothing else. Each answer is written at once, so
-that a board that was broken off goes on where it was.
+that a board that was broken off goes on where it was. A cluster's workers hand answers back to be
+written here: they only read.
 """
 
 import json
@@ -9,10 +10,13 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from platform import node
 from typing import Any, Final
 
+from hardware.description.errors import DataError
+from pmm.parallel import as_done, check_seen, open_executor
 from tests.sealed.pool import each
-from tests.sealed.rows import SHARING, answered_by, prepared
+from tests.sealed.rows import SHARING, answered_by, missing, prepared
 
 DIAGNOSIS: Final = "diagnosis"
 LEFT_OUT: Final = "leave-one-out"
@@ -57,6 +61,7 @@ def still_asked(
     left_out
         Effects to take out, by case; only these cases are asked. All of them if ``None``.
     """
+    board = board.absolute()  # a cluster's workers began in another folder
     names = sorted(path.name for path in (board / "cases").iterdir())
     everything = [
         Asked(board, name, tuple(rows), tuple((left_out or {}).get(name, ())))
@@ -71,16 +76,32 @@ def still_asked(
     return [one for one in open_ones if one.rows]
 
 
-def answers(asked: Sequence[Asked], workers: int, limit_s: float = LIMIT_S) -> Iterator[Given]:
+def answers(
+    asked: Sequence[Asked],
+    workers: int,
+    limit_s: float = LIMIT_S,
+    scheduler: str | None = None,
+) -> Iterator[Given]:
     """Answer, and yield what came of each case.
 
     Parameters
     ----------
     limit_s
         Seconds that the answers to one case may take together; after that it has failed.
+    scheduler
+        Address of a Dask scheduler, whose workers answer in place of processes; they know no limit.
+
+    Raises
+    ------
+    DataError
+        If no scheduler answers there, its workers die again and again, or one of them does not see
+        a case or lacks a package. No case counts as failed for that.
     """
     for place in {one.target(row).parent for one in asked for row in one.rows}:
         place.mkdir(exist_ok=True)
+    if scheduler is not None:
+        yield from _on_cluster(asked, scheduler)
+        return
     for done in each(answer_case, asked, workers, limit_s):
         if done.value is not None:
             yield Given(done.job.case, done.value)
@@ -91,9 +112,45 @@ def answers(asked: Sequence[Asked], workers: int, limit_s: float = LIMIT_S) -> I
         yield Given(done.job.case, dict.fromkeys(open_ones, done.failed))
 
 
+def _on_cluster(asked: Sequence[Asked], scheduler: str) -> Iterator[Given]:
+    with open_executor(scheduler=scheduler, module=__name__) as executor:
+        for one, said in as_done(executor, answered_there, asked):
+            for row, found in said.items():
+                _write(one.target(row), found)
+            yield Given(one.case, _failed(said))
+
+
+def answered_there(asked: Asked) -> tuple[Asked, dict[str, dict[str, Any]]]:
+    """Return a case with its answers by row, nothing written: what a cluster's worker does.
+
+    Raises
+    ------
+    DataError
+        If this computer does not see the case, or lacks what a row needs.
+    """
+    check_seen(asked.folder)
+    for row in asked.rows:
+        if needs := missing(row):
+            raise DataError(f"{row}: {needs} is not installed on {node()} (extra peers)")
+    return asked, dict(_said(asked))
+
+
 def answer_case(asked: Asked) -> dict[str, str]:
     """Write a case's answers; return for each row that failed, why."""
-    failed, shared_s = {}, None
+    said = {}
+    for row, found in _said(asked):
+        _write(asked.target(row), found)
+        said[row] = found
+    return _failed(said)
+
+
+def _failed(said: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
+    return {row: str(found["failed"]) for row, found in said.items() if "failed" in found}
+
+
+def _said(asked: Asked) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield each row with its answer as soon as there is one."""
+    shared_s = None
     for row in asked.rows:
         if row in SHARING and shared_s is None:
             shared_s = _seconds_of_preparing(asked.folder)
@@ -101,12 +158,10 @@ def answer_case(asked: Asked) -> dict[str, str]:
         try:
             found = dict(_answer(row, asked))
         except Exception as error:  # one case must not end the board, whatever it is
-            failed[row] = f"{type(error).__name__}: {error}"
-            found = _failure(asked.case, failed[row])
+            found = _failure(asked.case, f"{type(error).__name__}: {error}")
         own_s = time.process_time() - started
         found["seconds"] = round(own_s + ((shared_s or 0.0) if row in SHARING else 0.0), 3)
-        _write(asked.target(row), found)
-    return failed
+        yield row, found
 
 
 def _seconds_of_preparing(case: Path) -> float:

@@ -64,14 +64,26 @@ def generated(board: Path, seed: int, cases: int, nulls: int, workers: int) -> N
         pass
 
 
-def answered(board: Path, workers: int, limit_s: float) -> None:
-    """Answer a board by the diagnosis."""
+def answered(board: Path, workers: int, limit_s: float, scheduler: str | None = None) -> None:
+    """Answer a board by the diagnosis, on processes of this computer or on a Dask cluster.
+
+    Raises
+    ------
+    click.ClickException
+        If the cluster cannot do it; the other answering steps say so too.
+    """
     from tests.sealed.answering import DIAGNOSIS, still_asked
 
-    _answer("diagnosis", still_asked(board, (DIAGNOSIS,)), workers, limit_s)
+    _answer("diagnosis", still_asked(board, (DIAGNOSIS,)), workers, limit_s, scheduler)
 
 
-def others(board: Path, workers: int, limit_s: float, only: Sequence[str] = ()) -> None:
+def others(
+    board: Path,
+    workers: int,
+    limit_s: float,
+    only: Sequence[str] = (),
+    scheduler: str | None = None,
+) -> None:
     """Answer a board by controls and peers.
 
     Raises
@@ -91,24 +103,29 @@ def others(board: Path, workers: int, limit_s: float, only: Sequence[str] = ()) 
             click.echo(f"{row}: skipped, {needs} is not installed (extra peers)", err=True)
         else:
             rows.append(row)
-    _answer("controls and peers", still_asked(board, rows), workers, limit_s)
+    _answer("controls and peers", still_asked(board, rows), workers, limit_s, scheduler)
 
 
-def left_out_answered(board: Path, workers: int, limit_s: float, most: int | None) -> None:
+def left_out_answered(
+    board: Path, workers: int, limit_s: float, most: int | None, scheduler: str | None = None
+) -> None:
     """Answer a board by the diagnosis with each case's right effects out of the catalogue."""
     from tests.sealed.answering import LEFT_OUT, still_asked
     from tests.sealed.leaving_out import left_out
 
     asked = still_asked(board, (LEFT_OUT,), left_out(board, most))
-    _answer("effects left out", asked, workers, limit_s)
+    _answer("effects left out", asked, workers, limit_s, scheduler)
 
 
-def _answer(label: str, asked: Sequence[Asked], workers: int, limit_s: float) -> None:
+def _answer(
+    label: str, asked: Sequence[Asked], workers: int, limit_s: float, scheduler: str | None
+) -> None:
     from tests.sealed.answering import answers
 
-    for given in told(label, len(asked), answers(asked, workers, limit_s)):
-        for row, why in given.failed.items():
-            click.echo(f"{given.case}, {row}: failed, {why}", err=True)
+    with _in_words():
+        for given in told(label, len(asked), answers(asked, workers, limit_s, scheduler)):
+            for row, why in given.failed.items():
+                click.echo(f"{given.case}, {row}: failed, {why}", err=True)
 
 
 def scored(board: Path, docs: Path | None, workers: int) -> None:
