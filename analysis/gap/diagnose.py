@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +25,13 @@ from analysis.gap.verdict import (
     answer_of,
     coefficient_shift,
     equivalents,
+    passed_on,
     probabilities,
     stage_probabilities,
 )
 from analysis.gap.whence import unknown_stages
 from analysis.gap.where import Walk, walk
-from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
+from analysis.gap.withheld import Predicted, Shrinkage, foretells, predict_withheld, shrinkage
 from hardware.description.errors import DataError
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
@@ -84,6 +85,9 @@ class Diagnosis:
         Prior deviations by which each coefficient and setting moves.
     before, after
         Withheld runs predicted without and with the best hypothesis.
+    not_foretold
+        Answers that explain what they are fitted to, but do not predict withheld runs: they count
+        as "unknown".
     """
 
     problem: Problem
@@ -100,6 +104,7 @@ class Diagnosis:
     shrinkage: Shrinkage | None
     rival_shrinkage: Shrinkage | None
     proposals: tuple[Proposal, ...]
+    not_foretold: tuple[str, ...] = ()
 
     @property
     def cause(self) -> Fit | None:
@@ -146,7 +151,10 @@ def diagnose(
     walked = walk(problem)
     weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress, free)
     found = _with_coefficients(probabilities(weighed), problem, free)
-    return _concluded(problem, walked, weighed, found, settings, free, progress)
+    refuted = _not_foretelling(found, problem, weighed, settings)
+    found = passed_on(found, refuted)
+    done = _concluded(problem, walked, weighed, found, settings, free, progress)
+    return replace(done, not_foretold=refuted)
 
 
 def _problem(
@@ -178,6 +186,19 @@ def _with_coefficients(
     return Probabilities(answers)
 
 
+def _not_foretelling(
+    found: Probabilities, problem: Problem, weighed: Weighed, settings: Settings
+) -> tuple[str, ...]:
+    """Return the most probable names, down to the first that foretells regimes from the others."""
+    withheld = settings.withheld or regimes(problem.simulator.stack.runs)
+    before, names = predict_withheld(problem, None, withheld), []
+    for one in _ranked(weighed, found) if _names(found) else ():
+        if foretells(before, predict_withheld(problem, one.fit, withheld)):
+            break
+        names.append(answer_of(one.fit))
+    return tuple(names)
+
+
 def _concluded(
     problem: Problem,
     walked: Walk,
@@ -188,7 +209,8 @@ def _concluded(
     progress: Callable[[str], None],
 ) -> Diagnosis:
     fits = [one.fit for one in weighed.looked if one.fit is not None]
-    best, ranked = _best(weighed, found)
+    ranked = _ranked(weighed, found)
+    best = ranked[0] if ranked and _names(found) else None
     classes = {} if best is None else equivalents(problem, best.fit, fits)
     rival = _rival(best, ranked, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
@@ -221,16 +243,18 @@ def _explained(problem: Problem, best: Named | None) -> FloatArray:
     return problem.residual if best is None else problem.residual - best.fit.signature
 
 
-def _best(weighed: Weighed, found: Probabilities) -> tuple[Named | None, list[Named]]:
-    """Return the most probable named hypothesis, if naming one is right, and all of them in order.
+def _names(found: Probabilities) -> bool:
+    """Tell whether naming an effect is right, be it beside "unknown"."""
+    return found.best not in (NONE, COEFFICIENTS)
+
+
+def _ranked(weighed: Weighed, found: Probabilities) -> list[Named]:
+    """Return the named hypotheses, most probable first.
 
     Where a pair counts for one of its effects alone, that is what is named.
     """
-    ranked = sorted(
-        (*weighed.singles, *weighed.pairs), key=lambda one: -found.by_answer[answer_of(one.fit)]
-    )
-    named = found.best not in (NONE, COEFFICIENTS) and bool(ranked)
-    return ranked[0] if named else None, ranked
+    every = (*weighed.singles, *weighed.pairs)
+    return sorted(every, key=lambda one: -found.by_answer[answer_of(one.fit)])
 
 
 def _rival(

@@ -79,6 +79,13 @@ def probabilities(weighed: Weighed) -> Probabilities:
     return Probabilities(tempered(found))
 
 
+def passed_on(found: Probabilities, names: Sequence[str]) -> Probabilities:
+    """Return the probabilities with what some names have given to "unknown"."""
+    share = sum(found.by_answer[name] for name in names)
+    answers = {**found.by_answer, **dict.fromkeys(names, 0.0)}
+    return Probabilities({**answers, UNKNOWN: answers[UNKNOWN] + share})
+
+
 def tempered(found: Mapping[str, float]) -> dict[str, float]:
     """Return the same probability of all names together, less sure which one it is."""
     names = [name for name, share in found.items() if name not in (NONE, UNKNOWN) and share > 0.0]

@@ -87,6 +87,19 @@ def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
     return Predicted(regime, rows, rest[rows] / spread, density)
 
 
+def foretells(before: Sequence[Predicted], after: Sequence[Predicted]) -> bool:
+    """Tell whether a hypothesis predicts what was withheld; also where nothing was.
+
+    It does not where the density of what was measured is no higher than without an effect, nor
+    where more than u and more than half of the gap are left.
+    """
+    if not before:
+        return True
+    denser = sum(one.log_density for one in after) > sum(one.log_density for one in before)
+    first, left = (gap_of(np.concatenate([one.left for one in told])) for told in (before, after))
+    return denser and (left <= 1.0 or left <= 0.5 * first)
+
+
 def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatArray]:
     """Return residual and columns of a hypothesis, linear about where it was fitted."""
     residual = problem.residual

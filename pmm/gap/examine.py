@@ -21,8 +21,8 @@ from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.verdict import NONE, answer_of
-from analysis.gap.withheld import Predicted, gap_of, predict_withheld
+from analysis.gap.verdict import NONE, answer_of, passed_on
+from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld
 from pmm.campaign import Campaign
 from pmm.gap.own_effects import chosen_effects, try_own
 from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
@@ -137,6 +137,7 @@ def examine(
     progress("predicting withheld runs")
     free = free_numbers(there.rig, priors)
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
+    found = _unless_foretold(found, judgement)
     described = describe(found.problem, found.left)
     return Examined(ready, free, found, judgement, described, known)
 
@@ -163,6 +164,15 @@ def _judged(
     }
     whole = _foretold(found, joint, there, [regime], polynomial(joint, kept), chosen=True)
     return _by_run(whole, joint, ones)
+
+
+def _unless_foretold(found: Diagnosis, judged: Judged) -> Diagnosis:
+    """Say "unknown" in place of a name that foretells nothing of the runs that a user withheld."""
+    if found.best is None or not judged.chosen or foretells(judged.plain, judged.cured):
+        return found
+    name = answer_of(found.best.fit)
+    shares = passed_on(found.probabilities, [name])
+    return replace(found, probabilities=shares, not_foretold=(*found.not_foretold, name))
 
 
 def _likeliest(found: Diagnosis) -> dict[str, Fit]:

@@ -177,6 +177,11 @@ def _notes(examined: Examined) -> Iterator[str]:
     if far:
         said = ", ".join(f"{name} {moved.moved[name]:+.4g}" for name in far)
         yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
+    for name in examined.diagnosis.not_foretold:
+        yield (
+            f"{joined(name)} explains the runs that it is fitted to, but does not foretell those "
+            "that are withheld: what it stands for counts as unknown"
+        )
     yield from run_notes(examined)
     found = examined.diagnosis
     best = found.best

@@ -1,0 +1,43 @@
+"""Withheld runs that another rig made: what a name does not foretell is not what it names."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.pmm.gap.rigs import FEW, RUNS, made, run, with_friction
+
+FAST = [name for name in RUNS if "1.10" in name]
+
+
+@pytest.fixture(scope="module")
+def rubbing(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return with_friction(tmp_path_factory.mktemp("rubbing"))
+
+
+def said(campaign: Path, *options: str) -> dict[str, Any]:
+    done = run("gap", campaign, *FEW, "--json", *options)
+    assert done.exit_code == 0, done.output
+    document: dict[str, Any] = json.loads(done.stdout)
+    return document
+
+
+def test_what_the_same_rig_made_is_foretold(rubbing: Path) -> None:
+    found = said(rubbing, "--hold-out", "frequency=1.1")
+    assert found["verdict"] == "effect"
+    assert found["notes"] == []
+
+
+def test_what_a_rig_without_friction_made_is_not(rubbing: Path, tmp_path: Path) -> None:
+    """The fitting runs have friction, the withheld ones none: a name would be a wrong one."""
+    smooth = made(tmp_path)
+    mixed = shutil.copytree(rubbing, tmp_path / "mixed")
+    for name in FAST:
+        shutil.copy(smooth / f"{name}.nc", mixed)
+    found = said(mixed, "--hold-out", "frequency=1.1")
+    assert found["verdict"] == "unknown"
+    assert found["ranking"][0]["answer"] == "unknown"
+    (note,) = [one for one in found["notes"] if "does not foretell" in one]
+    assert note.startswith("coulomb-friction explains the runs that it is fitted to")
