@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
-from pmm.gap.rows import Ranked
+from pmm.gap.rows import Ranked, said_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -70,14 +70,15 @@ def _print_which(console: "Console", report: GapReport) -> None:
     for one in report.ranking:
         table.add_row(joined(one.answer), one.stage, _parameters(one), *one.said)
     console.print(table)
-    for one in report.ranking:
-        if one.alike:
-            said = ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
-            console.print(
-                f"these runs cannot tell from {joined(one.answer)}: {said}", soft_wrap=True
-            )
-        if one.measure and one is report.ranking[0]:
-            console.print(f"what would: {'; '.join(one.measure)}", soft_wrap=True)
+    if report.effects:
+        headings = ("effect in any answer", "stage", "cannot be told from", "probability", "class")
+        table = _table(*headings, text=3)
+        for effect in report.effects:
+            table.add_row(effect.name, effect.stage, *said_of(effect))
+        console.print(table)
+    measures = report.ranking[0].measure
+    if measures:
+        console.print(f"what would tell: {'; '.join(measures)}", soft_wrap=True)
     if report.hidden:
         console.print(
             f"{len(report.hidden)} effects cannot be seen in these runs: "

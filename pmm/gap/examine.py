@@ -16,6 +16,7 @@ from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
 from analysis.gap.gaussian import Nuisances
+from analysis.gap.marginal import Marginal, marginals
 from analysis.gap.noise import pooled
 from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
@@ -78,13 +79,20 @@ class Judged:
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """Everything about a campaign."""
+    """Everything about a campaign.
+
+    Attributes
+    ----------
+    effects
+        Those that are not out of the question, whatever else is there too.
+    """
 
     ready: Prepared
     free: tuple[Free, ...]
     diagnosis: Diagnosis
     judged: Judged
     description: Description | None
+    effects: tuple[Marginal, ...]
     catalogue: Mapping[str, type[Effect]]
 
     @property
@@ -139,7 +147,7 @@ def examine(
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
     found = _unless_foretold(found, judgement)
     described = describe(found.problem, found.left)
-    return Examined(ready, free, found, judgement, described, known)
+    return Examined(ready, free, found, judgement, described, marginals(found), known)
 
 
 def _judged(

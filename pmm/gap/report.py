@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from analysis.gap.description import Description
 from analysis.gap.diagnose import SHIFTED
+from analysis.gap.marginal import Marginal
 from analysis.gap.propose import Proposal
 from analysis.gap.twins import coefficient_error, separating_measurements
 from analysis.gap.verdict import (
@@ -53,6 +54,8 @@ class GapReport:
         Of the most probable answer together with all that these runs cannot tell from it.
     convention
         How the derivatives among the coefficients are written.
+    effects
+        Those that are not out of the question, whatever else is there too.
     remains
         What the best answer leaves, step by step.
     """
@@ -69,6 +72,7 @@ class GapReport:
     contrasts: tuple[StepRow, ...]
     stages: dict[str, float]
     ranking: tuple[Ranked, ...]
+    effects: tuple[Marginal, ...]
     hidden: tuple[str, ...]
     controls: tuple[ControlRow, ...]
     regimes: tuple[RegimeRow, ...]
@@ -103,6 +107,7 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(step_row(one) for one in found.walk.contrasts),
         dict(sorted(found.stages.items(), key=lambda one: -one[1])),
         tuple(_ranking(examined)),
+        examined.effects,
         tuple(sorted(found.weighed.hidden)),
         tuple(_controls(examined)),
         tuple(_regimes(examined)),

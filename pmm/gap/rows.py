@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from analysis.gap.marginal import Marginal
+
 
 @dataclass(frozen=True)
 class Ranked:
@@ -33,6 +35,14 @@ class Ranked:
         """Probability and withheld gap as people read them."""
         left = "-" if math.isnan(self.withheld_u) else f"{self.withheld_u:.2f}"
         return f"{self.probability:.4f}", left
+
+
+def said_of(one: Marginal) -> tuple[str, str, str]:
+    """Say what an effect cannot be told from, its probability, and that of its class."""
+    if math.isnan(one.class_probability):
+        return "its absence", f"{one.probability:.4f}", "-"
+    alike = ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
+    return alike, f"{one.probability:.4f}", f"{one.class_probability:.4f}"
 
 
 @dataclass(frozen=True)

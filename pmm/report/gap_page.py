@@ -6,7 +6,7 @@ from typing import Final
 
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
-from pmm.gap.rows import Ranked
+from pmm.gap.rows import Ranked, said_of
 from pmm.report import gap_figures as figures
 from pmm.report.parts import Drawing, Head, Part, Table, drawn, write_parts
 
@@ -82,15 +82,11 @@ def _which(report: GapReport) -> Part:
             joined(one.answer),
             one.stage,
             _parameters(one),
-            ", ".join(one.alike),
             *one.said,
         )
         for one in report.ranking
     )
-    headings = (
-        "answer", "stage", "parameters (95 %)", "cannot be told from", "probability",
-        "withheld gap [u]",
-    )  # fmt: skip
+    headings = ("answer", "stage", "parameters (95 %)", "probability", "withheld gap [u]")
     first = report.ranking[0].measure if report.ranking else []
     said = [f"What would tell the class apart: {one}." for one in first]
     if report.hidden:
@@ -100,7 +96,17 @@ def _which(report: GapReport) -> Part:
         "ranking",
         "Answers by probability: named effects, pairs, something unknown, no gap.",
     )
-    return Part("Which", tuple(said), (drawing,), (Table("Ranking", headings, rows, 4),))
+    tables = (Table("Ranking", headings, rows, 3), _effects(report))
+    return Part("Which", tuple(said), (drawing,), tables if report.effects else tables[:1])
+
+
+def _effects(report: GapReport) -> Table:
+    rows = tuple((one.name, one.stage, *said_of(one)) for one in report.effects)
+    headings = (
+        "effect in any answer", "stage", "cannot be told from", "probability",
+        "probability of its class",
+    )  # fmt: skip
+    return Table("Effects", headings, rows, 3)
 
 
 def _parameters(one: Ranked) -> str:

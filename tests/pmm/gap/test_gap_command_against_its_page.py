@@ -53,14 +53,15 @@ def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Resul
         found = {
             "simulate": run(*simulate),
             "diagnose": run(*diagnose),
-            "json": run(*diagnose[:2], *held_out[2:], "--json"),
+            "json": run(*diagnose[:2], *held_out[2:], "--json", "--page", "held-out.html"),
             "add": run(*add),
             "again": run(*again),
             "twice": run(*add, "--effect", FEW[0]),
         }
         page, file = Path("gap.html").read_text(), Path("rig/campaign.toml").read_text()
-        kept = Path("rig/campaign.toml.1").read_text()
-    return found | {"page": page, "file": file, "kept": kept}  # type: ignore[dict-item]
+        kept, held = Path("rig/campaign.toml.1").read_text(), Path("held-out.html").read_text()
+    texts = {"page": page, "held out": held, "file": file, "kept": kept}
+    return found | texts  # type: ignore[return-value]
 
 
 def test_all_of_them_succeed(told: dict[str, Result]) -> None:
@@ -101,6 +102,37 @@ def test_the_bias_of_the_damping_is_that_of_friction(told: dict[str, Result]) ->
     assert damping["bias_u"] == pytest.approx(off / damping["u_with"])
     said = re.findall(r"^Z_w +N s/m .* ([-+]\d+\.\d)$", told["diagnose"].stdout, re.MULTILINE)
     assert float(said[0]) < -10.0
+
+
+def table_of(page: str, name: str) -> list[list[str]]:
+    """Return the rows of one of a page's tables."""
+    (body,) = re.findall(rf'aria-label="{name}">.*?<tbody>(.*?)</tbody>', page, flags=re.DOTALL)
+    rows = re.findall(r"<tr>(.*?)</tr>", body)
+    return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows]
+
+
+def test_the_page_has_the_documents_numbers(told: dict[str, Result]) -> None:
+    found, page = json.loads(told["json"].stdout), str(told["held out"])
+    (effect,) = found["effects"]  # the other is out of the question
+    assert effect["size_sigma"] > 100.0
+    assert effect["probability"] <= effect["class_probability"]
+    shares = [f"{effect[key]:.4f}" for key in ("probability", "class_probability")]
+    assert table_of(page, "Effects") == [[effect["name"], effect["stage"], "", *shares]]
+    ranked = [(one["answer"], f"{one['probability']:.4f}") for one in found["ranking"]]
+    assert [(row[0], row[3]) for row in table_of(page, "Ranking")] == ranked
+    steps = [(one["what"], f"{one['gap_u']:.2f}") for one in found["walk"]]
+    assert [(row[0], row[4]) for row in table_of(page, "Walk")][: len(steps)] == steps
+
+
+def test_every_key_of_the_document_is_on_the_page(told: dict[str, Result]) -> None:
+    (section,) = re.findall(r"^## What `--json` prints\n(.*?)^## ", PAGE, re.DOTALL | re.MULTILINE)
+    rows = re.findall(r"^\| (`.*?) \| (.*) \|$", section, flags=re.MULTILINE)
+    keys = [key for names, _ in rows for key in re.findall(r"`(\w+)`", names)]
+    found = json.loads(told["json"].stdout)
+    assert sorted(keys) == sorted(found)
+    said = {key: meaning for names, meaning in rows for key in re.findall(r"`(\w+)`", names)}
+    for key in ("ranking", "effects", "cells", "next_runs"):
+        assert found[key][0].keys() <= {*re.findall(r"`(\w+)`", said[key])}, key
 
 
 def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:
