@@ -3,14 +3,18 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.where import BESIDE, CHAIN, Gap, gap_of, left_by_step, step_of
+from analysis.gap.components import TRENDS, Component, Part
+from analysis.gap.where import CHAIN, Gap, gap_of, left_by_step, step_of
 from pmm.gap.examine import Examined
 
 FloatArray = NDArray[np.float64]
+
+HARMONIC: Final = "harmonic"
 
 
 @dataclass(frozen=True)
@@ -41,10 +45,19 @@ class StepRow:
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell of the heat map: E/u of a harmonic of a channel in a run."""
+    """One cell of the heat map: E/u of a harmonic, or of what has none, in a run.
+
+    Attributes
+    ----------
+    what
+        ``"harmonic"``, or what beside the harmonics: ``"trend"``, ``"cycle scatter"``, ``"line"``.
+    order
+        Of the harmonic; 0 is the mean, and what has none.
+    """
 
     stage: str
     channel: str
+    what: str
     order: int
     run: str
     before: float
@@ -68,18 +81,24 @@ def remains(examined: Examined) -> Iterator[StepRow]:
 
 
 def heat_cells(examined: Examined) -> Iterator[Cell]:
-    """Yield both parts of a harmonic as one number, and what has no parts by itself."""
+    """Yield both parts of a harmonic as one number, and so all trends or bands of a channel."""
     problem = examined.diagnosis.problem
     stack = problem.simulator.stack
-    sizes: dict[tuple[str, str, int, str], list[int]] = {}
+    sizes: dict[tuple[str, str, str, int, str], list[int]] = {}
     for at, (one, run) in enumerate(zip(stack.components, stack.run, strict=True)):
-        if step_of(one) != BESIDE:
-            key = (step_of(one), one.channel, one.order, stack.runs[run].name)
-            sizes.setdefault(key, []).append(at)
+        key = (step_of(one), one.channel, *_kind(one), stack.runs[run].name)
+        sizes.setdefault(key, []).append(at)
     first, second = (
         left_by_step(problem, problem.residual),
         left_by_step(problem, examined.diagnosis.left),
     )
-    for (stage, channel, order, run), rows in sizes.items():
+    for key, rows in sizes.items():
         old, new = (float(np.sqrt(np.mean(left[rows] ** 2))) for left in (first, second))
-        yield Cell(stage, channel, order, run, old, new)
+        yield Cell(*key, old, new)
+
+
+def _kind(one: Component) -> tuple[str, int]:
+    """Return what a component is one number of, and its harmonic."""
+    if one.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE):
+        return HARMONIC, one.order
+    return (str(Part.TREND) if one.part in TRENDS else str(one.part)), 0

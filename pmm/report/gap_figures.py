@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.description import ForceMap
 from analysis.gap.where import CHAIN
-from pmm.gap.cells import Cell
+from pmm.gap.cells import HARMONIC, Cell
 from pmm.gap.report import GapReport, joined
 from pmm.report.heat import (
     AFTER,
@@ -32,21 +32,26 @@ FloatArray = NDArray[np.float64]
 
 def heat_map(report: GapReport) -> "Figure":
     """Draw E/u of each channel's harmonics over the runs, before and after the best answer."""
-    rows = sorted({(one.stage, one.channel, one.order) for one in report.cells}, key=_downstream)
+    rows = sorted(dict.fromkeys(_row(one) for one in report.cells), key=_downstream)
     runs = list(dict.fromkeys(one.run for one in report.cells))
-    breaks = [at for at in range(1, len(rows)) if rows[at][1] != rows[at - 1][1]]
+    breaks = [at for at in range(1, len(rows)) if rows[at][:2] != rows[at - 1][:2]]
     maps = [_matrix(report.cells, rows, runs, after=after) for after in (False, True)]
     grid = Grid([_row_name(one) for one in rows], runs, breaks)
-    return before_and_after(grid, maps, "E/u, root mean square of both parts")
+    return before_and_after(grid, maps, "E/u, root mean square of all parts")
 
 
-def _downstream(row: tuple[str, str, int]) -> tuple[int, str, int]:
-    return CHAIN.index(row[0]), row[1], row[2]
+def _downstream(row: tuple[str, str, str, int]) -> tuple[int, str, bool, int]:
+    stage, channel, what, order = row
+    return CHAIN.index(stage), channel, what != HARMONIC, order
+
+
+def _row(one: Cell) -> tuple[str, str, str, int]:
+    return one.stage, one.channel, one.what, one.order
 
 
 def _matrix(
     cells: Sequence[Cell],
-    rows: Sequence[tuple[str, str, int]],
+    rows: Sequence[tuple[str, str, str, int]],
     runs: Sequence[str],
     *,
     after: bool,
@@ -55,14 +60,14 @@ def _matrix(
     down = {key: at for at, key in enumerate(rows)}
     across = {name: at for at, name in enumerate(runs)}
     for one in cells:
-        place = down[one.stage, one.channel, one.order], across[one.run]
+        place = down[_row(one)], across[one.run]
         found[place] = one.after if after else one.before
     return found
 
 
-def _row_name(row: tuple[str, str, int]) -> str:
-    stage, channel, order = row
-    return f"{plain(channel)}  n = {order}" if channel else stage
+def _row_name(row: tuple[str, str, str, int]) -> str:
+    _, channel, what, order = row
+    return f"{plain(channel)}  {f'n = {order}' if what == HARMONIC else what}".lstrip()
 
 
 def walk_figure(report: GapReport) -> "Figure":

@@ -20,7 +20,8 @@ _NOTE: Final = (
     "is taken off first: 1 is noise alone."
 )
 _HEAT: Final = (
-    "E/u over stage, channel, harmonic and run, before and after the best answer. Light is noise."
+    "E/u over stage, channel, harmonic and run, before and after the best answer; below, what the "
+    "forces show beside the harmonics. Light is noise."
 )
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from analysis.gap.where import CHAIN
 from pmm.cli import cli
 from pmm.gap.report import JSON_SCHEMA
 from sim.effects.catalogue import catalogue
@@ -122,6 +123,22 @@ def test_the_page_has_the_documents_numbers(told: dict[str, Result]) -> None:
     assert [(row[0], row[3]) for row in table_of(page, "Ranking")] == ranked
     steps = [(one["what"], f"{one['gap_u']:.2f}") for one in found["walk"]]
     assert [(row[0], row[4]) for row in table_of(page, "Walk")][: len(steps)] == steps
+
+
+def test_cells_and_the_numbers_in_them_sum_to_the_steps(told: dict[str, Result]) -> None:
+    found = json.loads(told["json"].stdout)
+    parts = {"trend": 5, "cycle scatter": 2, "between the harmonics": 2, "line": 2}
+    own = [one for one in (*found["walk"], *found["remains"]) if one["what"] in CHAIN]
+    for one in own:  # the others are of the same numbers, with measured inputs
+        cells = [cell for cell in found["cells"] if cell["stage"] == one["what"]]
+        weights = [parts.get(cell["what"], 2 if cell["order"] else 1) for cell in cells]
+        assert sum(weights) == one["count"]
+        when = "before" if one in found["walk"] else "after"
+        whole = sum(n * cell[when] ** 2 for n, cell in zip(weights, cells, strict=True))
+        assert whole == pytest.approx(one["count"] * one["gap_u"] ** 2), one["what"]
+    assert {cell["stage"] for cell in found["cells"]} == {one["what"] for one in own}
+    labels = {(cell["channel"], cell["what"]) for cell in found["cells"]}
+    assert {(name, what) for name in ("force_aft", "force_fore") for what in parts} <= labels
 
 
 def test_every_key_of_the_document_is_on_the_page(told: dict[str, Result]) -> None:
