@@ -51,16 +51,25 @@ class Jobs(NamingGroup):
             ctx.fail(f"{args[0]}: no such folder or campaign file; {hint}")
         return super().resolve_command(ctx, args)
 
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List what a campaign in place of a job takes, then the jobs."""
+        diagnose = self.get_command(ctx, "diagnose")
+        if diagnose is not None:
+            options = [one for one in diagnose.get_params(ctx) if isinstance(one, click.Option)]
+            own = [one.get_help_record(ctx) for one in options]
+            with formatter.section("Options with a campaign"):
+                formatter.write_dl([one for one in own if one is not None])
+        self.format_commands(ctx, formatter)
 
-@click.group(cls=Jobs)
+
+@click.group(cls=Jobs, options_metavar="", subcommand_metavar="CAMPAIGN|COMMAND [OPTIONS]")
 def gap() -> None:
     """Find out why rig and simulation differ, and check how well that is done.
 
-    A campaign in place of a job is diagnosed: "pmm gap CAMPAIGN" is "pmm gap diagnose CAMPAIGN",
-    whose options "pmm gap diagnose --help" lists.
+    "pmm gap CAMPAIGN" diagnoses a campaign, as "pmm gap diagnose CAMPAIGN" does.
 
     \b
-    pmm gap my-campaign --page gap.html
+    pmm gap my-campaign --hold-out frequency=1.1 --page gap.html
     pmm gap pendulum roll.toml --page gap.html
     pmm gap answer board
     pmm gap check board --page board.html

@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 
 from analysis.gap.where import CHAIN
 from pmm.cli import cli
+from pmm.cli.gap import Jobs
 from pmm.gap.report import JSON_SCHEMA
 from sim.effects.catalogue import catalogue
 
@@ -178,6 +179,18 @@ def test_the_page_stands_alone(told: dict[str, Result]) -> None:
     assert not re.findall(r'(?:src|href)="(?!#)', page)
     assert "<script" not in page
     assert "mathdefault" not in page
+
+
+def test_the_help_lists_what_a_campaign_takes_and_the_jobs() -> None:
+    told, own = run("gap", "--help").stdout, run("gap", "diagnose", "--help").stdout
+    _, options = own.split("Options:\n")
+    assert f"Options with a campaign:\n{options}" in told
+    assert set(re.findall(r"`(--[\w-]+)", PAGE.partition("## A worked example")[0])) <= set(
+        re.findall(r"--[\w-]+", options)
+    )
+    assert re.findall(r"^  ([\w-]+) ", told.partition("Commands:")[2], re.MULTILINE) == list(
+        Jobs.names
+    )
 
 
 def test_misspelt_names_get_the_nearest() -> None:
