@@ -77,7 +77,7 @@ def walk_figure(report: GapReport) -> "Figure":
     after = {one.what: one.gap_u for one in report.remains}
     with drawing():
         count = len(report.walk)
-        figure = Figure(figsize=(10.5, 1.4 + 0.42 * count), layout="constrained")
+        figure = Figure(figsize=(10.5, 1.6 + 0.42 * count), layout="constrained")
         axes = figure.add_subplot()
         for at, one in enumerate(report.walk):
             axes.plot(max(one.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
@@ -93,7 +93,7 @@ def walk_figure(report: GapReport) -> "Figure":
         axes.set_xlabel("E/u after the free coefficients, root mean square")
         axes.plot([], [], "o", color=BEFORE, label="without an effect")
         axes.plot([], [], "s", color=AFTER, label="with the best answer")
-        axes.legend(loc="lower right")
+        figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 
