@@ -33,8 +33,8 @@ SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
 _DRAWS = 400
 _FORM_KNOWN = 1.0  # standard deviation of the logarithm of by how much a form is off
-_ELSE = 0.25  # standard deviation of what a wrong effect makes go away, about what it did so far
-_LESS = 0.4  # and by how much less that is at other set-points, at mean
+_ELSE = 0.2  # standard deviation of what a wrong effect makes go away, about what it did so far
+_LESS = 0.32  # and by how much less that is at other set-points, at mean
 _SURE = 0.85  # of the names above 0.9, 86 % were right on a sealed board
 _SEED = 20260
 
