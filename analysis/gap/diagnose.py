@@ -40,6 +40,7 @@ from sim.rig import SimulatedRig
 FloatArray = NDArray[np.float64]
 
 SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
+_NAMED = 0.01  # probability below which it does not matter whether a name foretells
 _DOUBTED = 0.05  # least share of a rival when the next run is chosen: odds are overconfident
 
 
@@ -193,7 +194,9 @@ def _not_foretelling(
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before, names = predict_withheld(problem, None, withheld), []
     for one in _ranked(weighed, found) if _names(found) else ():
-        if foretells(before, predict_withheld(problem, one.fit, withheld)):
+        if found.by_answer[answer_of(one.fit)] < _NAMED or foretells(
+            before, predict_withheld(problem, one.fit, withheld)
+        ):
             break
         names.append(answer_of(one.fit))
     return tuple(names)

@@ -76,6 +76,11 @@ class Judged:
     by_answer: Mapping[str, float]
     chosen: bool
 
+    @property
+    def is_foretold(self) -> bool:
+        """Whether the best answer foretells the runs that a user withheld; or nothing was asked."""
+        return not (self.chosen and self.cured) or foretells(self.plain, self.cured)
+
 
 @dataclass(frozen=True, eq=False)
 class Examined:
@@ -175,8 +180,11 @@ def _judged(
 
 
 def _unless_foretold(found: Diagnosis, judged: Judged) -> Diagnosis:
-    """Say "unknown" in place of a name that foretells nothing of the runs that a user withheld."""
-    if found.best is None or not judged.chosen or foretells(judged.plain, judged.cured):
+    """Say "unknown" in place of a name that foretells too little of the runs that a user withheld.
+
+    A single run does not count: it may itself be off.
+    """
+    if found.best is None or len(judged.plain) < 2 or judged.is_foretold:
         return found
     name = answer_of(found.best.fit)
     shares = passed_on(found.probabilities, [name])

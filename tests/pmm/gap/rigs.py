@@ -1,7 +1,7 @@
 """Small campaigns of a simulated rig with friction, for the gap commands to look at."""
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import xarray as xr
@@ -21,24 +21,24 @@ def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in arguments])
 
 
-def short() -> str:
+def short(names: Sequence[str] = RUNS) -> str:
     """Return the example's campaign with a few of its runs, of a few periods each."""
     head, *runs = EXAMPLE.read_text().split("[[runs]]")
-    kept = [one for one in runs if any(f'"{name}"' in one for name in RUNS)]
+    kept = [one for one in runs if any(f'"{name}"' in one for name in names)]
     return "[[runs]]".join([head, *kept]).replace("periods = 10", "periods = 6")
 
 
-def made(folder: Path, *options: str | Path) -> Path:
+def made(folder: Path, *options: str | Path, names: Sequence[str] = RUNS) -> Path:
     """Simulate it into a folder."""
-    (folder / "short.toml").write_text(short())
+    (folder / "short.toml").write_text(short(names))
     done = run("simulate", folder / "short.toml", "--output", folder / "rig", *options)
     assert done.exit_code == 0, done.output
     return folder / "rig"
 
 
-def with_friction(folder: Path) -> Path:
+def with_friction(folder: Path, names: Sequence[str] = RUNS) -> Path:
     """Simulate it with friction below the dynamometers."""
-    return made(folder, "--effect", f"coulomb-friction:friction_n={FRICTION_N}")
+    return made(folder, "--effect", f"coulomb-friction:friction_n={FRICTION_N}", names=names)
 
 
 def changed(rig: Path, folder: Path, name: str, change: Callable[[xr.Dataset], xr.Dataset]) -> Path:

@@ -62,6 +62,27 @@ def test_a_gain_or_zero_off_in_one_run(
     assert notes(campaign, option, name) == []
 
 
+@pytest.mark.parametrize("change", [with_gain, with_zero])
+def test_a_gain_or_zero_off_in_one_run_beside_friction_in_all(
+    tmp_path: Path, change: Callable[[xr.Dataset], xr.Dataset]
+) -> None:
+    def kept(record: xr.Dataset) -> xr.Dataset:
+        off = change(record)
+        off["force_aft"].attrs = record["force_aft"].attrs
+        return off
+
+    campaign = changed(with_friction(tmp_path), tmp_path, ODD, kept)
+    (odd,) = [one for one in notes(campaign) if one.startswith("run ")]
+    assert odd.startswith(
+        f"run {ODD} alone is off: without it coulomb-friction explains the others"
+    )
+    option, name = odd.split()[-2:]
+    document = json.loads(run("gap", campaign, *FEW, "--json", option, name).stdout)
+    assert document["ranking"][0]["answer"] == "coulomb-friction"
+    (note,) = document["notes"]
+    assert note.startswith(f"run {ODD} is not foretold: ")
+
+
 def test_nothing_is_said_of_runs_as_they_should_be(clean: Path) -> None:
     assert notes(clean) == []
 

@@ -9,12 +9,13 @@ import pytest
 
 from tests.pmm.gap.rigs import FEW, RUNS, made, run, with_friction
 
-FAST = [name for name in RUNS if "1.10" in name]
+FAST = ("heave-1.10-20", "pitch-1.10-20")
+NAMES = tuple(dict.fromkeys((*RUNS, *FAST)))
 
 
 @pytest.fixture(scope="module")
 def rubbing(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return with_friction(tmp_path_factory.mktemp("rubbing"))
+    return with_friction(tmp_path_factory.mktemp("rubbing"), NAMES)
 
 
 def said(campaign: Path, *options: str) -> dict[str, Any]:
@@ -30,9 +31,18 @@ def test_what_the_same_rig_made_is_foretold(rubbing: Path) -> None:
     assert found["notes"] == []
 
 
+def test_a_single_run_that_is_not_foretold_may_itself_be_off(rubbing: Path, tmp_path: Path) -> None:
+    smooth = made(tmp_path, names=NAMES)
+    mixed = shutil.copytree(rubbing, tmp_path / "mixed")
+    shutil.copy(smooth / f"{FAST[0]}.nc", mixed)
+    found = said(mixed, "--hold-out", FAST[0])
+    assert found["verdict"] == "effect"
+    assert f"run {FAST[0]} is not foretold: coulomb-friction leaves" in found["notes"][0]
+
+
 def test_what_a_rig_without_friction_made_is_not(rubbing: Path, tmp_path: Path) -> None:
     """The fitting runs have friction, the withheld ones none: a name would be a wrong one."""
-    smooth = made(tmp_path)
+    smooth = made(tmp_path, names=NAMES)
     mixed = shutil.copytree(rubbing, tmp_path / "mixed")
     for name in FAST:
         shutil.copy(smooth / f"{name}.nc", mixed)
