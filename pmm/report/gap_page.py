@@ -11,8 +11,9 @@ from pmm.report import gap_figures as figures
 from pmm.report.parts import Drawing, Head, Part, Table, drawn, write_parts
 
 _WALK: Final = (
-    "The walk along the chain: a gap lies where it first appears. The forces are shown with the "
-    "simulated motion and, where the struts have sensors, with the measured motion in its place."
+    "The walk along the chain: a gap lies where it first appears. Motion and forces are shown with "
+    "the simulated input and, where the shaft or the struts have sensors, with the measured one in "
+    "its place."
 )
 _NOTE: Final = (
     "Measured minus simulated, E, against its standard uncertainty u. What the free coefficients "
