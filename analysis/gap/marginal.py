@@ -8,7 +8,15 @@ from typing import Final
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import misfit, posterior
-from analysis.gap.verdict import ALIKE, COEFFICIENTS, NONE, UNKNOWN, answer_of, equivalents
+from analysis.gap.verdict import (
+    ALIKE,
+    COEFFICIENTS,
+    NONE,
+    UNKNOWN,
+    answer_of,
+    beside_rest,
+    equivalents,
+)
 from hardware.description.errors import PmmError
 
 LEAST: Final = 0.01  # probability that is worth a class
@@ -90,12 +98,9 @@ def _marginal(found: Diagnosis, name: str, fit: Fit) -> Marginal:
 
 def _size(problem: Problem, fit: Fit, number: int) -> float:
     """Return what the rest of a fit and the free numbers leave of one effect's signature."""
-    rest = tuple(one for at, one in enumerate(fit.effects) if at != number)
     try:
-        change = problem.simulator.predict(rest) - problem.simulator.nominal
+        own, beside = beside_rest(problem, fit, number)
     except PmmError:
         return math.inf
-    own = fit.signature - problem.whitened(change)
-    beside = fit.columns[:, fit.whose != number]
     left = own - beside @ posterior(own, beside, problem.nuisances).mean
     return math.sqrt(max(misfit(left, problem.nuisances), 0.0))

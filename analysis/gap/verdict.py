@@ -157,7 +157,7 @@ def equivalents(
     found: dict[str, tuple[tuple[str, float], ...]] = {}
     for number, name in enumerate(fit.names):
         try:
-            own, beside = _alone(problem, fit, number)
+            own, beside = beside_rest(problem, fit, number)
         except PmmError:
             found[name] = ()
             continue
@@ -193,8 +193,14 @@ def coefficient_twins(
     return found
 
 
-def _alone(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return what one effect of a fit adds to the rest of it, and the columns of the rest."""
+def beside_rest(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return what one effect of a fit adds to the rest of it, and the columns of the rest.
+
+    Raises
+    ------
+    PmmError
+        If the rest cannot be simulated by itself.
+    """
     rest = tuple(one for at, one in enumerate(fit.effects) if at != number)
     columns = fit.columns[:, fit.whose != number]
     if not rest:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError
 from pmm.campaign import CAMPAIGN_FILE
 from pmm.cli.coefficients import DEFAULT_TRIALS
-from pmm.cli.folders import check_folder
+from pmm.cli.folders import check_file, check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.coefficients.provenance import provenance
 from pmm.coefficients.references import beside, check_systems, read_references
@@ -178,23 +178,6 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     for name, option in (("csv_file", "--csv"), ("netcdf", "--netcdf")):
         if options[name] is not None:
             check_file(Path(options[name]), option, overwrite=options["overwrite"])
-
-
-def check_file(path: Path, option: str, *, overwrite: bool) -> None:
-    """Refuse a file that would be lost or cannot be written, before any work is done.
-
-    Raises
-    ------
-    ConfigurationError
-        If its folder cannot be written to.
-    DataError
-        If it is there and may not be replaced.
-    """
-    check_folder(path.parent, option)
-    if path.is_dir():
-        raise DataError(f"{option} {path}: a folder; name a file")
-    if path.exists() and not overwrite:
-        raise DataError(f"{option} {path}: there already; choose another name, or --overwrite")
 
 
 def _written(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, DataError
 
 
 def check_folder(folder: Path, option: str) -> None:
@@ -28,16 +28,25 @@ def check_folder(folder: Path, option: str) -> None:
         raise ConfigurationError(f"{option} {folder}: no permission to write in {place}")
 
 
-def check_writable(path: Path, option: str) -> None:
-    """Refuse a file that cannot be written, as writing it would; nothing is made or changed yet.
+def check_file(path: Path, option: str, *, overwrite: bool = True) -> None:
+    """Refuse a file that would be lost or cannot be written; nothing is made or changed yet.
+
+    Parameters
+    ----------
+    overwrite
+        Whether one that is there may be replaced.
 
     Raises
     ------
     ConfigurationError
-        If its folder cannot be made or written to.
-    OSError
-        If it is a folder, or is there and may not be written to.
+        If its folder cannot be made or written to, or it is there and cannot be written to.
+    DataError
+        If it is a folder, or is there and may not be replaced.
     """
     check_folder(path.parent, option)
-    if path.is_dir() or path.is_file():  # a pipe would take this for its end
-        path.open("ab").close()
+    if path.is_dir():
+        raise DataError(f"{option} {path}: a folder; name a file")
+    if path.exists() and not overwrite:
+        raise DataError(f"{option} {path}: there already; choose another name, or --overwrite")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise ConfigurationError(f"{option} {path}: cannot be written to")

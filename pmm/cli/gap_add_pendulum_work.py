@@ -7,7 +7,7 @@ from typing import Any, cast
 from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.settle import Settled
 from hardware.description.errors import DataError
-from pmm.cli.gap_adding import add_and_say, check_writable
+from pmm.cli.gap_adding import add_and_say, check_appendable
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
@@ -40,7 +40,7 @@ def run(request: Request) -> None:
     """
     path = Path(request.file)
     there = [one.name for one in read_case(path).effects]
-    check_writable(path)
+    check_appendable(path)
     refuse_twice(path, there, request.causes)
     after = _settled(request, path)
     refuse_twice(path, there, after.best.names)

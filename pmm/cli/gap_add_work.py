@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE
-from pmm.cli.gap_adding import add_and_say, check_writable
+from pmm.cli.gap_adding import add_and_say, check_appendable
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
@@ -44,7 +44,7 @@ def run(request: Request) -> None:
     path = folder / CAMPAIGN_FILE if folder.is_dir() else folder
     if not path.exists():
         raise ConfigurationError(f"{path}: no such folder or campaign file")
-    check_writable(path)
+    check_appendable(path)
     if request.effect is not None:
         _refuse_twice(path, (request.effect,))
     chosen = _effects(_examined(request, path), request)

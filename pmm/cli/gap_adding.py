@@ -13,7 +13,7 @@ from pmm.cli.screen import output
 from pmm.gap.appending import Added, append_effects
 
 
-def check_writable(path: Path) -> None:
+def check_appendable(path: Path) -> None:
     """Refuse a file that cannot be written to, before anything is fitted.
 
     Raises

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pmm.cli.folders import check_writable
+from pmm.cli.folders import check_file
 from pmm.cli.hints import pasted
 from pmm.cli.screen import busy, messages, output
 from pmm.gap.scoring.board import read_board
@@ -29,7 +29,7 @@ def run(
         If the board cannot be read, or is not whole.
     """
     if page is not None:
-        check_writable(Path(page), "--page")
+        check_file(Path(page), "--page")
     with busy(f"scoring {folder}"):
         board = read_board(Path(folder))
         found = score(board, carry_out)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from pmm.cli.folders import check_writable
+from pmm.cli.folders import check_file
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
@@ -40,9 +40,9 @@ def run(request: Request) -> None:
         If too few runs can be used.
     """
     if request.page is not None:
-        check_writable(Path(request.page), "--page")
+        check_file(Path(request.page), "--page")
     if request.plan is not None:
-        check_writable(Path(request.plan), "--plan")
+        check_file(Path(request.plan), "--plan")
     found = examined(request)
     report = gap_report(found)
     if request.as_json:

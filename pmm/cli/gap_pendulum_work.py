@@ -10,7 +10,7 @@ import click
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.said import said
-from pmm.cli.folders import check_writable
+from pmm.cli.folders import check_file, check_folder
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
@@ -48,7 +48,9 @@ def run(request: Request) -> None:
     """Diagnose a file's records and print what was found."""
     path = Path(request.file)
     if request.page is not None:
-        check_writable(Path(request.page), "--page")
+        check_file(Path(request.page), "--page")
+    if request.plot is not None:
+        check_folder(Path(request.plot), "--plot")
     with progress() as told:
         examined = examine_pendulum(path, request.options, told)
     found = examined.diagnosis

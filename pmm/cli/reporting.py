@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from pmm.campaign import CAMPAIGN_FILE
-from pmm.cli.coefficients_running import analysed, check_file, finish
+from pmm.cli.coefficients_running import analysed, finish
+from pmm.cli.folders import check_file
 from pmm.cli.hints import program
 from pmm.cli.screen import busy, output
 

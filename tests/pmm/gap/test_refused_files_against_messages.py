@@ -1,4 +1,4 @@
-"""Files that cannot be written are refused before minutes of work, as writing them would be."""
+"""Files that cannot be written are refused before minutes of work."""
 
 import os
 from pathlib import Path
@@ -21,7 +21,7 @@ ASKED: dict[str, tuple[str | Path, ...]] = {
 def test_a_folder_in_place_of_a_file(asked: tuple[str | Path, ...], tmp_path: Path) -> None:
     done = run(*asked, tmp_path)
     assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr == f"error: {tmp_path}: Is a directory\n"
+    assert done.stderr == f"error: {asked[-1]} {tmp_path}: a folder; name a file\n"
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
@@ -30,8 +30,8 @@ def test_a_file_that_may_not_be_written(asked: tuple[str | Path, ...], tmp_path:
     kept = tmp_path / "kept"
     kept.touch(mode=0o400)
     done = run(*asked, kept)
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr == f"error: {kept}: Permission denied\n"
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr == f"error: {asked[-1]} {kept}: cannot be written to\n"
 
 
 @pytest.mark.parametrize("asked", ASKED.values(), ids=ASKED)
