@@ -10,7 +10,7 @@ differenced.
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,21 @@ from numpy.typing import NDArray
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
-from analysis.gap.forward import Simulator, read_steady
+from analysis.gap.forward import Simulator, read_steady, turned
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.observe import STRUTS
 from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.setpoint import SetPoint
 from sim import signals
+from sim.chain import Chain
 from sim.drive import shaft_over
 from sim.effects.applied import switch_on
 from sim.period import Period
 from sim.periodic import steady_state
+from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.acquisition import Digitiser
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -34,6 +40,7 @@ Spectra = dict[str, ComplexArray]
 
 _ORDERS: Final = 8
 _POINTS: Final = 64
+_ROUNDS: Final = 3  # until the phase reference is that of what is fed
 _MOTIONS: Final = (
     (signals.DISPLACEMENT_AFT, signals.VELOCITY_AFT, signals.ACCELERATION_AFT),
     (signals.DISPLACEMENT_FORE, signals.VELOCITY_FORE, signals.ACCELERATION_FORE),
@@ -56,60 +63,144 @@ class Feed:
     signals: Callable[[Period, Mapping[str, ComplexArray]], Spectra]
 
 
-def fed(problem: Problem, feed: Feed, rows: NDArray[np.bool_]) -> FloatArray | None:
-    """Return what is left with measured channels fed to the chain, in u, shape ``(observations,)``.
+@dataclass(frozen=True, eq=False)
+class Fed:
+    """What is left behind a measured input.
 
-    Their own noise, carried through the chain, widens u. The free numbers are fitted to what is
+    Attributes
+    ----------
+    rows
+        What is compared: of the runs in which all channels were recorded.
+    left
+        With the measured input, in u, shape ``(observations,)``; 0 for what is not compared. The
+        input's own noise, carried through the chain, widens u.
+    unfed
+        The same with the simulated input, against the same u.
+    """
+
+    rows: NDArray[np.bool_]
+    left: FloatArray
+    unfed: FloatArray
+
+
+def fed(problem: Problem, feed: Feed, rows: NDArray[np.bool_]) -> Fed | None:
+    """Return what is left with measured channels fed to the chain; ``None`` where none were.
+
+    Of the free numbers the frequency is as it was measured; the others are fitted to what is
     compared alone.
 
     Parameters
     ----------
     rows
-        What is compared, behind the channels; all else is 0.
-
-    Returns
-    -------
-    ndarray or None
-        ``None`` where a channel is not recorded.
+        What is to be compared, behind the channels.
     """
     simulator = problem.simulator
-    if not {*feed.channels} <= {one.channel for one in simulator.stack.components}:
+    stack = simulator.stack
+    runs = [_run_fed(simulator, run, feed) for run in stack.runs]
+    seen = np.array([one is not None for one in runs])[stack.run]
+    compared = rows & seen
+    if not compared.any():
         return None
-    pairs = [_run_fed(simulator, run, feed) for run in simulator.stack.runs]
-    found, wider = (np.concatenate(parts) for parts in zip(*pairs, strict=True))
-    sigma = simulator.stack.uncertainty
-    shrink = sigma / np.hypot(sigma, wider)
-    residual: FloatArray = problem.whitened(simulator.stack.values - found) * shrink
-    part = Nuisances((problem.nuisances.columns * shrink[:, None])[rows])
-    left: FloatArray = np.zeros_like(residual)
-    left[rows] = residual[rows] - part.columns @ part.fitted(residual[rows])
-    return left
+    found, wider = np.where(seen, simulator.nominal, 0.0), np.zeros(len(rows))
+    for number, one in enumerate(runs):
+        if one is not None:
+            found[stack.run == number], wider[stack.run == number] = one
+    shrink = stack.uncertainty / np.hypot(stack.uncertainty, wider)
+    timed = seen & np.array([one.part is Part.FREQUENCY for one in stack.components])
+    part = Nuisances(problem.nuisances.columns * shrink[:, None])
+    with_it = problem.whitened(stack.values - found) * shrink
+    return Fed(
+        compared,
+        _left(part, with_it, compared, timed),
+        _left(part, problem.residual * shrink, compared, timed),
+    )
 
 
-def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray, FloatArray]:
+def _left(
+    nuisances: Nuisances,
+    residual: FloatArray,
+    rows: NDArray[np.bool_],
+    timed: NDArray[np.bool_],
+) -> FloatArray:
+    """Return what the free numbers leave of a difference, each run's frequency as measured."""
+    fitted = nuisances.among(rows | timed).fitted(residual[rows | timed])
+    return np.where(rows, residual - nuisances.columns @ fitted, 0.0)
+
+
+def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray, FloatArray] | None:
     """Return a run with the measured channels, and what their noise makes of it."""
     rig, set_point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
     if not run.turns:  # where its struts stand is measured in any case
         still = steady_at_rest(rig, set_point, run)
         return still, np.zeros_like(still)
-    # What is fed is there already: nothing acts back on it, whatever turns the shaft.
-    rig = replace(rig, drive=replace(rig.drive, motor=None, gear=None))
-    chain = rig.chain(set_point)
-    period = Period(_measured_hz(run, set_point.frequency_hz), _ORDERS, _POINTS)
-    turn = np.exp(-period.s * steady_state(chain, period).reference_s)
-    seen = {name: _spectrum(run, name, period.orders) for name in feed.channels}
-
-    def read(channels: Mapping[str, ComplexArray]) -> FloatArray:
-        given = feed.signals(period, {name: own * turn for name, own in channels.items()})
-        state = steady_state(chain, period, given)
-        layout = run.observed.layout
-        return read_steady(state, layout, run.set_point, simulator.reference_channel)
-
-    base = read(seen)
-    noises = {name: _noise(run, name, period.orders) for name in feed.channels}
-    moved = [read({**seen, name: seen[name] + one}) - base for name, one in noises.items()]
+    if not {*feed.channels} <= {one.channel for one in run.observed.components}:
+        return None
+    chain = _Chain.of(rig, set_point, run, simulator.reference_channel)
+    seen = {name: _spectrum(run, name, _ORDERS) for name in feed.channels}
+    base, turn = chain.read(feed, seen, chain.unfed)
+    noises = {name: _noise(run, name, _ORDERS) for name in feed.channels}
+    moved = [
+        chain.read(feed, {**seen, name: seen[name] + one}, turn)[0] - base
+        for name, one in noises.items()
+    ]
     squares = np.sum([_whole(run, change) ** 2 for change in moved], axis=0)
     return base, np.sqrt(squares)
+
+
+@dataclass(frozen=True, eq=False)
+class _Chain:
+    """The chain of one run at the frequency that was measured."""
+
+    chain: Chain
+    period: Period
+    rig: SimulatedRig
+    run: GapRun
+    reference_channel: str | None
+
+    @classmethod
+    def of(
+        cls, rig: SimulatedRig, set_point: SetPoint, run: GapRun, reference_channel: str | None
+    ) -> "_Chain":
+        # What is fed is there already: nothing acts back on it, whatever turns the shaft.
+        rig = replace(rig, drive=replace(rig.drive, motor=None, gear=None, speed_error=0.0))
+        point = replace(set_point, frequency_hz=_measured_hz(run, set_point.frequency_hz))
+        period = Period(point.frequency_hz, _ORDERS, _POINTS)
+        return cls(rig.chain(point), period, rig, run, reference_channel)
+
+    @property
+    def unfed(self) -> ComplexArray:
+        """How the phase reference turns each order, by the simulated input."""
+        return turned(steady_state(self.chain, self.period), self.reference_channel)
+
+    def read(
+        self, feed: Feed, seen: Mapping[str, ComplexArray], turn: ComplexArray
+    ) -> tuple[FloatArray, ComplexArray]:
+        """Return the components with the measured channels, and how the reference then turns.
+
+        Parameters
+        ----------
+        seen
+            Recorded harmonics by channel, counted from the phase reference.
+        turn
+            About how the reference turns each order: where it is depends on what is fed.
+        """
+        for _ in range(_ROUNDS):
+            recorded = {name: own * np.conj(turn) for name, own in seen.items()}
+            physical = {name: self._physical(name, own) for name, own in recorded.items()}
+            state = steady_state(self.chain, self.period, feed.signals(self.period, physical))
+            turn = turned(state, self.reference_channel)
+        layout = self.run.observed.layout
+        values = read_steady(state, layout, self.run.set_point, self.reference_channel)
+        return values, turn
+
+    def _physical(self, name: str, recorded: ComplexArray) -> ComplexArray:
+        """Return what a channel measures, by the calibration that it is believed to have."""
+        how: Digitiser | None = getattr(self.rig.acquisition, name)
+        if how is None:
+            return recorded
+        found = recorded / how.response(self.period.s)
+        found[0] -= how.offset
+        return found
 
 
 def _measured_hz(run: GapRun, set_hz: float) -> float:

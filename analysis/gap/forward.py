@@ -265,12 +265,13 @@ def read_steady(
     """
     ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
     spectra = np.stack([state.spectra[f"recorded_{name}"] for name in layout.channels])
-    found = (spectra * _turn(state, reference_channel))[layout.row, layout.order]
+    found = (spectra * turned(state, reference_channel))[layout.row, layout.order]
     values: FloatArray = layout.real * found.real + layout.imaginary * found.imag
     return values + ratio * layout.frequency
 
 
-def _turn(state: SteadyState, reference_channel: str | None) -> NDArray[np.complex128]:
+def turned(state: SteadyState, reference_channel: str | None) -> NDArray[np.complex128]:
+    """Return by what each order is turned for time to count from the phase reference."""
     if reference_channel is None:
         return np.exp(state.period.s * state.reference_s)
     first = state.spectra[f"recorded_{reference_channel}"][1]

@@ -8,7 +8,7 @@ the forces, with the measured motion fed to the model, comes from behind.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -41,6 +41,8 @@ class Gap:
         The largest one, with its run, in words.
     stated
         As ``rms``, of the simulation as it is stated, with no number free; NaN where nobody asked.
+    tells
+        False where u is so wide that the gap would not show with the simulated input either.
     """
 
     what: str
@@ -48,6 +50,7 @@ class Gap:
     count: int
     worst: str
     stated: float = math.nan
+    tells: bool = True
 
     @property
     def beyond(self) -> bool:
@@ -90,10 +93,12 @@ class Walk:
     @property
     def comes_with_the_shaft(self) -> bool:
         """Whether the shaft is off, and what follows it is as it should be with it as measured."""
-        beyond = {one.what: one.beyond for one in self.steps}
-        behind, by_shaft = (MOTION, MOTION_FED) if MOTION in beyond else (FORCE, FORCE_BY_SHAFT)
-        off = beyond.get(SHAFT, False) and beyond.get(behind, False)
-        return off and not beyond.get(by_shaft, True)
+        steps = {one.what: one for one in self.steps}
+        behind, by_shaft = (MOTION, MOTION_FED) if MOTION in steps else (FORCE, FORCE_BY_SHAFT)
+        if not {SHAFT, behind, by_shaft} <= steps.keys():
+            return False
+        off = steps[SHAFT].beyond and steps[behind].beyond
+        return off and steps[by_shaft].tells and not steps[by_shaft].beyond
 
 
 CARRIAGE: Final = "carriage"
@@ -122,17 +127,20 @@ def walk(problem: Problem) -> Walk:
     for what in CHAIN:
         rows = _of_step(stack.components, what)
         if rows.any():
-            steps.append(gap_of(stack, left, what, rows, whole))
-            steps += _with_measured(problem, what, rows)
+            plain = gap_of(stack, left, what, rows, whole)
+            steps += [plain, *_with_measured(problem, plain, what, rows)]
     return Walk(tuple(steps), tuple(_contrasts(problem, left)))
 
 
-def _with_measured(problem: Problem, what: str, rows: NDArray[np.bool_]) -> list[Gap]:
+def _with_measured(problem: Problem, plain: Gap, what: str, rows: NDArray[np.bool_]) -> list[Gap]:
     """Return a step's gap with the last input that was measured fed; none where there is none."""
+    stack = problem.simulator.stack
     for step, feed, name in _FED:
-        left = fed(problem, feed, rows) if step == what else None
-        if left is not None:
-            return [gap_of(problem.simulator.stack, left, name, rows)]
+        found = fed(problem, feed, rows) if step == what else None
+        if found is not None:
+            told = gap_of(stack, found.left, name, found.rows)
+            seen = gap_of(stack, found.unfed, name, found.rows).beyond or not plain.beyond
+            return [replace(told, tells=seen or told.beyond)]
     return []
 
 

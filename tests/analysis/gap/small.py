@@ -57,10 +57,13 @@ def one_run(
     return GapRun(f"r{number}", point, place, seen.observation, periods, 64.0, seen.lead_s)
 
 
-def problem_of(rig: SimulatedRig, runs: Sequence[GapRun]) -> Problem:
+def problem_of(
+    rig: SimulatedRig, runs: Sequence[GapRun], reference_channel: str | None = None
+) -> Problem:
     """Return the problem that a diagnosis holds its hypotheses against."""
     priors = Priors()
     free = free_numbers(rig, priors)
-    simulator = Simulator(rig, Stack.of(pooled(runs, rig)))
+    stack = Stack.of(pooled(runs, rig))
+    simulator = Simulator(rig, stack, reference_channel=reference_channel)
     nuisances = Nuisances(columns(simulator, free, priors))
     return Problem(simulator, nuisances, tuple(one.name for one in free))
