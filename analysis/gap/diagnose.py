@@ -13,6 +13,7 @@ from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.hypotheses import Named, Odds, Weighed, weigh
+from analysis.gap.leading import leading
 from analysis.gap.noise import pooled
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, Proposal, proposals
@@ -41,7 +42,6 @@ FloatArray = NDArray[np.float64]
 
 SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
 _NAMED = 0.01  # probability below which it does not matter whether a name foretells
-_DOUBTED = 0.05  # least share of a rival when the next run is chosen: odds are overconfident
 
 
 @dataclass(frozen=True)
@@ -152,10 +152,8 @@ def diagnose(
     walked = walk(problem)
     weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress, free)
     found = _with_coefficients(probabilities(weighed), problem, free)
-    refuted = _not_foretelling(found, problem, weighed, settings)
-    found = passed_on(found, refuted)
     done = _concluded(problem, walked, weighed, found, settings, free, progress)
-    return replace(done, not_foretold=refuted)
+    return refuted(done, _not_foretelling(done, settings), settings.catalogue)
 
 
 def _problem(
@@ -187,16 +185,30 @@ def _with_coefficients(
     return Probabilities(answers)
 
 
-def _not_foretelling(
-    found: Probabilities, problem: Problem, weighed: Weighed, settings: Settings
-) -> tuple[str, ...]:
+def refuted(
+    done: Diagnosis, names: Sequence[str], catalogue: Mapping[str, type[Effect]]
+) -> Diagnosis:
+    """Return a diagnosis in which answers that foretell too little count as "unknown"."""
+    if not names:
+        return done
+    found = passed_on(done.probabilities, names)
+    unknown = unknown_stages(done.problem, done.walk, done.weighed, catalogue)
+    return replace(
+        done,
+        probabilities=found,
+        stages=stage_probabilities(found, catalogue, unknown),
+        not_foretold=(*done.not_foretold, *names),
+    )
+
+
+def _not_foretelling(done: Diagnosis, settings: Settings) -> tuple[str, ...]:
     """Return the most probable names, down to the first that foretells regimes from the others."""
-    withheld = settings.withheld or regimes(problem.simulator.stack.runs)
-    before, names = predict_withheld(problem, None, withheld), []
-    for one in _ranked(weighed, found) if _names(found) else ():
-        if found.by_answer[answer_of(one.fit)] < _NAMED or foretells(
-            before, predict_withheld(problem, one.fit, withheld)
-        ):
+    shares, names = done.probabilities.by_answer, []
+    withheld = settings.withheld or regimes(done.problem.simulator.stack.runs)
+    for one in _ranked(done.weighed, done.probabilities) if done.best is not None else ():
+        known = done.after if one is done.best else None
+        after = known or predict_withheld(done.problem, one.fit, withheld)
+        if shares[answer_of(one.fit)] < _NAMED or foretells(done.before, after):
             break
         names.append(answer_of(one.fit))
     return tuple(names)
@@ -272,13 +284,6 @@ def _rival(
     return next((one for one in ranked if not set(one.fit.names) & alike), None)
 
 
-def _different(weighed: Weighed, shares: Mapping[str, float]) -> list[Fit]:
-    """Return the most probable hypothesis and those that share no effect with it."""
-    fits = [one.fit for one in (*weighed.singles, *weighed.pairs)]
-    ranked = sorted(fits, key=lambda one: -shares[answer_of(one)])
-    return [one for one in ranked if one is ranked[0] or not {*one.names} & {*ranked[0].names}]
-
-
 def _next(
     problem: Problem,
     weighed: Weighed,
@@ -288,9 +293,5 @@ def _next(
 ) -> tuple[Proposal, ...]:
     if settings.choices is None:
         return ()
-    shares = found.by_answer
-    leading: list[tuple[Fit | None, float]] = [
-        (one, max(shares[answer_of(one)], _DOUBTED)) for one in _different(weighed, shares)[:4]
-    ]
-    leading.append((None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), _DOUBTED)))
-    return proposals(problem, leading, settings.choices, free, settings.priors)
+    ones = leading(weighed, found)
+    return proposals(problem, ones, settings.choices, free, settings.priors)

@@ -19,6 +19,7 @@ from analysis.gap.regimes import Regime
 
 FloatArray = NDArray[np.float64]
 
+_FEWEST = 2  # regimes that can refute a name: one may itself be off
 _DRAWS = 400
 _SEED = 4711
 
@@ -88,15 +89,20 @@ def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
 
 
 def foretells(before: Sequence[Predicted], after: Sequence[Predicted]) -> bool:
-    """Tell whether a hypothesis predicts at least half of what was withheld.
+    """Tell whether a hypothesis predicts at least half of the withheld regimes that it speaks of.
 
-    That is to leave less than u, or less than half of the gap. More than no effect predicts is not
-    asked: what is a setting beyond its tolerance (a zero, a speed) the free numbers predict as well
-    once the other runs have moved them there.
+    That is to leave less than u, or less than half of the gap. It speaks of those whose prediction
+    it changes by u or more; of fewer than two, nothing is held against it. More than no effect
+    predicts is not asked: what is a setting beyond its tolerance (a zero, a speed) the free numbers
+    predict as well once the other runs have moved them there.
     """
-    pairs = [(gap_of(one.left), gap_of(two.left)) for one, two in zip(before, after, strict=True)]
+    pairs = [
+        (gap_of(one.left), gap_of(two.left))
+        for one, two in zip(before, after, strict=True)
+        if np.mean((one.left - two.left) ** 2) > 1.0
+    ]
     told = sum(left <= max(1.0, 0.5 * first) for first, left in pairs)
-    return 2 * told >= len(pairs)
+    return len(pairs) < _FEWEST or 2 * told >= len(pairs)
 
 
 def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatArray]:

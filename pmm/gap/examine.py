@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
-from analysis.gap.diagnose import Diagnosis, diagnose
+from analysis.gap.diagnose import Diagnosis, diagnose, refuted
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
@@ -22,7 +22,7 @@ from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.verdict import NONE, answer_of, passed_on
+from analysis.gap.verdict import NONE, answer_of
 from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld
 from pmm.campaign import Campaign
 from pmm.gap.own_effects import chosen_effects, try_own
@@ -150,7 +150,8 @@ def examine(
     progress("predicting withheld runs")
     free = free_numbers(there.rig, priors)
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
-    found = _unless_foretold(found, judgement)
+    if found.cause is not None and not judgement.is_foretold:
+        found = refuted(found, [answer_of(found.cause)], known)
     described = describe(found.problem, found.left)
     return Examined(ready, free, found, judgement, described, marginals(found), known)
 
@@ -177,18 +178,6 @@ def _judged(
     }
     whole = _foretold(found, joint, there, [regime], polynomial(joint, kept), chosen=True)
     return _by_run(whole, joint, ones)
-
-
-def _unless_foretold(found: Diagnosis, judged: Judged) -> Diagnosis:
-    """Say "unknown" in place of a name that foretells too little of the runs that a user withheld.
-
-    A single run does not count: it may itself be off.
-    """
-    if found.best is None or len(judged.plain) < 2 or judged.is_foretold:
-        return found
-    name = answer_of(found.best.fit)
-    shares = passed_on(found.probabilities, [name])
-    return replace(found, probabilities=shares, not_foretold=(*found.not_foretold, name))
 
 
 def _likeliest(found: Diagnosis) -> dict[str, Fit]:

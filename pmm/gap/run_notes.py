@@ -38,8 +38,10 @@ def _odd(examined: Examined) -> Iterator[str]:
 def _not_foretold(examined: Examined) -> Iterator[str]:
     """Yield the only run that was withheld, where the cause that is named leaves much of it."""
     judged, cause = examined.judged, examined.diagnosis.cause
-    if cause is not None and len(judged.cured) == 1 and not judged.is_foretold:
-        left = gap_of(judged.cured[0].left)
+    if cause is None or len(judged.cured) != 1 or not judged.chosen:
+        return
+    before, left = (gap_of(one.left) for one in (judged.plain[0], judged.cured[0]))
+    if left > max(1.0, 0.5 * before):
         yield (
             f"{judged.cured[0].regime} is not foretold: {' and '.join(cause.names)} leaves "
             f"{left:.3g} u of it; it may itself be off, or the cause be another one: withhold more "
