@@ -29,6 +29,8 @@ from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]
 
+Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
+
 _ORDERS: Final = 8
 _POINTS: Final = 64
 _SEED: Final = 20091
@@ -59,6 +61,8 @@ class Simulator:
     reference_channel: str | None = None
     frequency_ratio: float = 1.0
     solved: Solved = field(default_factory=Solved, repr=False)
+    # Runs that were simulated in time, by name, what does not repeat, and draw; of this rig alone.
+    _records: Records = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def nominal(self) -> FloatArray:
@@ -68,6 +72,12 @@ class Simulator:
     def with_rig(self, rig: SimulatedRig) -> "Simulator":
         """Return the simulator of another rig."""
         return replace(self, rig=rig)
+
+    def among(self, numbers: NDArray[np.intp]) -> "Simulator":
+        """Return the simulator of some of the runs, with what is simulated of them already."""
+        found = replace(self, stack=Stack.of([self.stack.runs[at] for at in numbers]))
+        found._records.update(self._records)
+        return found
 
     def predict(self, effects: Sequence[Effect]) -> FloatArray:
         """Return every component of every run, shape ``(observations,)``.
@@ -110,15 +120,10 @@ class Simulator:
         on = (*self.on, *effects)
         return np.concatenate([self._steady(run, on) for run in self.stack.runs])
 
-    @cached_property
-    def _records(self) -> dict[tuple[int, tuple[Effect, ...], int], FloatArray]:
-        """Runs that were simulated in time, by number, by what does not repeat, and by draw."""
-        return {}
-
     def _record(self, number: int, moving: tuple[Effect, ...] = (), draw: int = 0) -> FloatArray:
-        key = (number, moving, draw)
+        run, seed = self.stack.runs[number], _SEED + _APART * draw
+        key = (run.name, moving, draw)
         if key not in self._records:
-            run, seed = self.stack.runs[number], _SEED + _APART * draw
             self._records[key] = self._in_time(run, (*self.on, *moving), seed)
         return self._records[key]
 

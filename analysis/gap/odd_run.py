@@ -44,8 +44,8 @@ def odd_run(problem: Problem, fits: Sequence[Fit] = ()) -> OddRun | None:
     """Return the only run without which the others show no gap, or leave none to an effect.
 
     ``None`` where there is no gap, or more runs are like that, or it shows by less than 10 u, or no
-    other was made in the same medium at the same carriage speed: an effect that shows in one kind
-    of run is no bad run.
+    other was made in the same medium at the same carriage speed, at rest or not as it is: an effect
+    that shows in one kind of run is no bad run.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def _alone(problem: Problem) -> OddRun | None:
     stack = problem.simulator.stack
     found = [
         number
-        for number in _turning(stack)
+        for number in range(len(stack.runs))
         if not _shows(_among(problem, stack.run != number), problem.residual[stack.run != number])
     ]
     return _odd(problem, found[0], problem.residual, ()) if len(found) == 1 else None
@@ -70,7 +70,7 @@ def _alone(problem: Problem) -> OddRun | None:
 def _beside(problem: Problem, fits: Sequence[Fit]) -> OddRun | None:
     """Return the run without which one effect explains all others, if it is the only one."""
     stack, found = problem.simulator.stack, []
-    for number in _turning(stack):
+    for number in range(len(stack.runs)):
         fit = _explaining(problem, stack.run != number, fits)
         if fit is not None:
             found.append((number, fit))
@@ -104,17 +104,11 @@ def _refined(problem: Problem, fit: Fit) -> Fit | None:
     return None if _shows(problem, problem.residual - fit.signature) else fit
 
 
-def _turning(stack: Stack) -> list[int]:
-    return [number for number, run in enumerate(stack.runs) if run.turns]
-
-
 def _among(problem: Problem, rows: Rows) -> Problem:
     """Return the problem of some runs."""
-    simulator = problem.simulator
-    stack = Stack.of([simulator.stack.runs[at_] for at_ in np.unique(simulator.stack.run[rows])])
     return replace(
         problem,
-        simulator=replace(simulator, stack=stack),
+        simulator=problem.simulator.among(np.unique(problem.simulator.stack.run[rows])),
         nuisances=problem.nuisances.among(rows),
     )
 
@@ -140,9 +134,10 @@ def _has_like(run: GapRun, stack: Stack) -> bool:
     """Tell whether another run was made in the same medium at the same carriage speed."""
     return any(
         one is not run
+        and one.turns is run.turns
         and one.set_point.medium is run.set_point.medium
         and one.set_point.carriage_speed_m_s == run.set_point.carriage_speed_m_s
-        for one in stack.turning
+        for one in stack.runs
     )
 
 

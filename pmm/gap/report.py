@@ -27,7 +27,7 @@ from pmm.gap.examine import Examined
 from pmm.gap.plain import plain_values
 from pmm.gap.reported import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
-from pmm.gap.run_notes import run_notes
+from pmm.gap.run_notes import odd_note, run_notes
 from sim.effects.catalogue import catalogue
 
 if TYPE_CHECKING:
@@ -187,6 +187,9 @@ def _notes(examined: Examined) -> Iterator[str]:
             f"{joined(name)} explains the runs that it is fitted to, but does not foretell those "
             "that are withheld: what it stands for counts as unknown"
         )
+    odd = odd_note(examined)
+    if odd is not None:
+        yield odd
     yield from run_notes(examined)
     found = examined.diagnosis
     best = found.best
@@ -203,7 +206,7 @@ def _notes(examined: Examined) -> Iterator[str]:
                 f"would do the same in these runs as {joined(answer_of(found.cause))}"
                 + (f"; to tell them apart: {'; '.join(how)}" if how else "")
             )
-    if best is not None and found.cause is not None and best.remainder > 0.2:
+    if odd is None and best is not None and found.cause is not None and best.remainder > 0.2:
         yield (
             f"{joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
             "unexplained: its form is not quite that of the catalogue"

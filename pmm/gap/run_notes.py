@@ -9,30 +9,30 @@ from pmm.gap.examine import Examined
 
 
 def run_notes(examined: Examined) -> Iterator[str]:
-    """Yield notes about single runs."""
-    yield from _odd(examined)
+    """Yield notes about single runs, but the odd one."""
     yield from _not_foretold(examined)
     for name, said in examined.ready.cut_short.items():
         yield f"run {name}: {said}"
 
 
-def _odd(examined: Examined) -> Iterator[str]:
-    """Yield the run that alone is off, unless the cause that is named explains it too.
+def odd_note(examined: Examined) -> str | None:
+    """Return what is said of the run that alone is off, unless the cause explains it too.
 
     An effect may show beyond noise in the one run that drives it hardest.
     """
     if not any(one.beyond for one in remains(examined)):
-        return
+        return None
     looked = examined.diagnosis.weighed.looked
     fits = [one.fit for one in looked if one.fit is not None]
     found = odd_run(examined.diagnosis.problem, fits)
-    if found is not None:
-        named = " and ".join(found.beside)
-        rest = f"{named} explains the others" if named else "the others show no gap beyond u"
-        yield (
-            f"run {found.name} alone is off: without it {rest} (it leaves "
-            f"{found.rms:.3g} u); a bad run? withhold it with --hold-out {found.name}"
-        )
+    if found is None:
+        return None
+    named = " and ".join(found.beside)
+    rest = f"{named} explains the others" if named else "the others show no gap beyond u"
+    return (
+        f"run {found.name} alone is off: without it {rest} (it leaves {found.rms:.3g} u); a bad "
+        f"run? withhold it with --hold-out {found.name}"
+    )
 
 
 def _not_foretold(examined: Examined) -> Iterator[str]:

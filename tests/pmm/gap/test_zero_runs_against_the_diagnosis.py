@@ -108,6 +108,19 @@ def test_they_are_withheld_and_predicted(
     assert len(told) == (len(names) == 1)
 
 
+def test_one_that_is_off_is_named_and_takes_no_name_away(tmp_path: Path) -> None:
+    """Friction does not show at rest: what a zero record has besides says nothing of it."""
+    (tmp_path / "zeros.toml").write_text(with_zeros())
+    effect = ("--effect", "coulomb-friction:friction_n=0.3")
+    done = run("simulate", tmp_path / "zeros.toml", "--output", tmp_path / "rig", *effect)
+    assert done.exit_code == 0, done.output
+    off = changed(tmp_path / "rig", tmp_path, "zero-5", loaded_with_a_newton)
+    document = found(off, "--effects", "coulomb-friction")
+    assert document["ranking"][0]["answer"] == "coulomb-friction"
+    (note,) = document["notes"]
+    assert note.startswith("run zero-5 alone is off: without it coulomb-friction explains")
+
+
 def test_a_record_at_rest_that_nobody_compares_cannot_be_withheld(
     rig: Path, tmp_path: Path
 ) -> None:
