@@ -85,8 +85,13 @@ def test_runs_are_withheld_as_ever(rig: Path) -> None:
     assert [one["regime"] for one in document["regimes"]] == ["run heave-1.10-20"]
 
 
+def loaded(record: xr.Dataset, force_n: float) -> xr.Dataset:
+    more = record["force_aft"].values + force_n
+    return record.assign(force_aft=record["force_aft"].copy(data=more))
+
+
 def loaded_with_a_newton(record: xr.Dataset) -> xr.Dataset:
-    return record.assign(force_aft=record["force_aft"].copy(data=record["force_aft"].values + 1.0))
+    return loaded(record, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -114,7 +119,7 @@ def test_one_that_is_off_is_named_and_takes_no_name_away(tmp_path: Path) -> None
     effect = ("--effect", "coulomb-friction:friction_n=0.3")
     done = run("simulate", tmp_path / "zeros.toml", "--output", tmp_path / "rig", *effect)
     assert done.exit_code == 0, done.output
-    off = changed(tmp_path / "rig", tmp_path, "zero-5", loaded_with_a_newton)
+    off = changed(tmp_path / "rig", tmp_path, "zero-5", lambda one: loaded(one, 0.3))
     document = found(off, "--effects", "coulomb-friction")
     assert document["ranking"][0]["answer"] == "coulomb-friction"
     (note,) = document["notes"]
