@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from pmm.gap.coefficients import headings
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
 from pmm.gap.rows import Ranked, said_of
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 _SHOWN_REGIMES = 12
-_MOVED = 1.0  # standard uncertainties: a coefficient that moves less is not worth a row
 
 
 def print_report(console: "Console", report: GapReport) -> None:
@@ -121,23 +121,17 @@ def _number(value: float) -> str:
 
 
 def _print_coefficients(console: "Console", report: GapReport) -> None:
-    effect = report.verdict in ("effect", "unknown")
-    chosen = [
-        one
-        for one in report.coefficients
-        if abs(one.with_effect - one.without) > _MOVED * one.u_with
-        or abs(one.with_effect - one.stated) > 2.0 * _MOVED * one.u_with
-    ]
+    chosen = [one for one in report.coefficients if one.moved]
     if not chosen:
         console.print("\nno coefficient moves by more than its uncertainty")
         return
-    console.print("\nwhat it does to the coefficients", style="bold")
+    named = any(one.compared for one in chosen)
+    title = "what it does to the coefficients" if named else "coefficients"
+    console.print(f"\n{title}", style="bold")
     console.print(str(report.convention), soft_wrap=True)
-    headings = ("coefficient", "unit", "stated", "fitted without effect", "with it", "bias [u]")
-    shown = 6 if effect else 4
-    table = _table(*headings[:shown], text=2)
+    table = _table(*headings(chosen), text=2)
     for one in chosen:
-        table.add_row(*one.said[:shown])
+        table.add_row(*one.said)
     console.print(table)
 
 

@@ -1,7 +1,7 @@
 """What an effect does to the coefficients that a user reports."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -32,12 +32,12 @@ class CoefficientRow:
     ----------
     stated
         What the campaign says.
-    without, with_effect
-        Fitted to the campaign without and with the cause; the same where the answer names none.
-    u_without, u_with
-        Their standard uncertainties.
+    without, u_without
+        Fitted to the campaign without an effect, and its standard uncertainty.
+    with_effect, u_with
+        Fitted with the effect that is named; NaN where none is, as nothing is known of a bias then.
     bias_u
-        By how many of ``u_with`` it is off where the cause is not modelled.
+        By how many of ``u_with`` it is off where that effect is not modelled; NaN likewise.
     speed_m_s, frequency_hz
         Where it holds; NaN where it is the same in all runs.
     """
@@ -54,21 +54,42 @@ class CoefficientRow:
     frequency_hz: float
 
     @property
-    def said(self) -> tuple[str, str, str, str, str, str]:
-        """Name, unit, stated, without and with the effect, and bias as people read them."""
+    def compared(self) -> bool:
+        """Whether it was fitted with an effect too."""
+        return not math.isnan(self.with_effect)
+
+    @property
+    def moved(self) -> bool:
+        """Whether it is off what is stated, or an effect moves it, by more than its uncertainty."""
+        if not self.compared:
+            return abs(self.without - self.stated) > 2.0 * self.u_without
+        biased = abs(self.with_effect - self.without) > self.u_with
+        return biased or abs(self.with_effect - self.stated) > 2.0 * self.u_with
+
+    @property
+    def said(self) -> tuple[str, ...]:
+        """What stands below :func:`headings`."""
         where = [
             f"{value:g} {unit}"
             for value, unit in ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
             if not math.isnan(value)
         ]
-        return (
+        found = (
             f"{self.name} at {', '.join(where)}" if where else self.name,
             self.unit,
             f"{self.stated:.6g}",
             f"{self.without:.6g} ± {2.0 * self.u_without:.2g}",
-            f"{self.with_effect:.6g} ± {2.0 * self.u_with:.2g}",
-            f"{self.bias_u:+.1f}",
         )
+        if not self.compared:
+            return found
+        return *found, f"{self.with_effect:.6g} ± {2.0 * self.u_with:.2g}", f"{self.bias_u:+z.1f}"
+
+
+def headings(rows: Sequence[CoefficientRow]) -> tuple[str, ...]:
+    """Return what stands above the rows of a table: name and unit first, then numbers."""
+    if any(one.compared for one in rows):
+        return "coefficient", "unit", "stated", "fitted without effect", "with it", "bias [u]"
+    return "coefficient", "unit", "stated", "fitted"
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,22 +114,31 @@ class _Fit:
         return float(row @ self.off), math.sqrt(row @ self.covariance @ row)
 
 
-def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientRow, ...]]:
-    """Return every free coefficient of model and water, and how the derivatives are written."""
+def coefficient_rows(
+    examined: Examined, *, named: bool
+) -> tuple[Convention, tuple[CoefficientRow, ...]]:
+    """Return every free coefficient of model and water, and how the derivatives are written.
+
+    Parameters
+    ----------
+    named
+        Whether the answer names an effect, for the rows to say what it does to them.
+    """
     simulator = examined.diagnosis.problem.simulator
     points = [run.set_point for run in simulator.stack.runs if run.turns]
     convention, derivatives = reported(examined.ready.reporting, simulator.rig, points)
-    plain, cured = _fits(examined)
+    plain, cured = _fits(examined, named)
     others = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
     kept = [one for one in (*derivatives, *others) if one.weights.keys() & set(plain.names)]
     return convention, tuple(_row(one, examined, plain, cured) for one in kept)
 
 
-def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit) -> CoefficientRow:
+def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> CoefficientRow:
     moved, rig = examined.recentred.moved, examined.diagnosis.problem.simulator.rig
     here = one.memory + sum(part * _stated(rig, name) for name, part in one.weights.items())
     stated = here - sum(part * moved.get(name, 0.0) for name, part in one.weights.items())
-    (off, u_without), (left, u_with) = plain.of(one.weights), cured.of(one.weights)
+    off, u_without = plain.of(one.weights)
+    left, u_with = (math.nan, math.nan) if cured is None else cured.of(one.weights)
     return CoefficientRow(
         one.name,
         one.unit,
@@ -123,16 +153,15 @@ def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit) -> Coeffic
     )
 
 
-def _fits(examined: Examined) -> Iterator[_Fit]:
-    """Yield the fit without and with the cause."""
+def _fits(examined: Examined, named: bool) -> tuple[_Fit, _Fit | None]:
+    """Return the fit without and with the effect that is named; ``None`` where none is."""
     problem, cause = examined.diagnosis.problem, examined.diagnosis.cause
     columns = problem.nuisances.columns
-    yield _fitted(examined, problem.residual, columns)
-    if cause is None:
-        yield _fitted(examined, problem.residual, columns)
-    else:
-        both = np.hstack((columns, cause.columns))
-        yield _fitted(examined, cause.linearised(problem.residual), both)
+    plain = _fitted(examined, problem.residual, columns)
+    if cause is None or not named:
+        return plain, None
+    both = np.hstack((columns, cause.columns))
+    return plain, _fitted(examined, cause.linearised(problem.residual), both)
 
 
 def _fitted(examined: Examined, residual: FloatArray, columns: FloatArray) -> _Fit:

@@ -111,7 +111,7 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(sorted(found.weighed.hidden)),
         tuple(_controls(examined)),
         tuple(_regimes(examined)),
-        *coefficient_rows(examined),
+        *coefficient_rows(examined, named=verdict == "effect"),
         tuple(remains(examined)),
         tuple(heat_cells(examined)),
         examined.description,

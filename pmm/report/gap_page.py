@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Final
 
+from pmm.gap.coefficients import headings
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
 from pmm.gap.rows import Ranked, said_of
@@ -135,16 +136,17 @@ def _how_far(report: GapReport) -> Part | None:
 
 def _coefficients(report: GapReport) -> Part:
     rows = tuple(one.said for one in report.coefficients)
-    headings = (
-        "coefficient", "unit", "stated", "fitted without effect", "with the best answer",
-        "bias [u]",
-    )  # fmt: skip
-    lines = (
+    lines = [
         f"Derivatives: {report.convention}.",
-        "Both fits start from the stated tolerances; ± is two standard uncertainties. Bias: by how "
-        "many standard uncertainties the coefficient is off where the best answer is not modelled.",
-    )
-    return Part("Coefficients", lines, (), (Table("Coefficients", headings, rows, 2),))
+        "Fits start from the stated tolerances; ± is two standard uncertainties.",
+    ]
+    if report.verdict == "effect":
+        lines.append(
+            "Bias: by how many standard uncertainties the coefficient is off where the best answer "
+            "is not modelled."
+        )
+    table = Table("Coefficients", headings(report.coefficients), rows, 2)
+    return Part("Coefficients", tuple(lines), (), (table,))
 
 
 def _remainder(report: GapReport) -> Part:

@@ -115,12 +115,13 @@ def test_names_units_form_point_and_system_are_the_commands(told: Told, settings
 
 
 @pytest.mark.parametrize("settings", SETTINGS)
-def test_both_find_the_same_where_nothing_is_missing(told: Told, settings: str) -> None:
+def test_both_find_the_same_and_no_bias_where_nothing_is_missing(told: Told, settings: str) -> None:
+    assert told[settings]["gap"]["verdict"] == "none"
     for entry, row in at_each(told[settings]):
         u = math.hypot(row["u_without"], entry["standard_uncertainty"])
         assert abs(row["without"] - entry["value"]) < 2.0 * u, (entry, row)
         assert abs(row["stated"] - entry["value"]) < 3.0 * u, (entry, row)
-        assert abs(row["bias_u"]) < 3.0
+        assert row["with_effect"] is row["u_with"] is row["bias_u"] is None
 
 
 def test_stated_derivatives_are_those_that_the_simulator_was_given(told: Told) -> None:

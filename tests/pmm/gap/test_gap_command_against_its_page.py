@@ -57,12 +57,13 @@ def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Resul
             "diagnose": run(*diagnose),
             "json": run(*diagnose[:2], *held_out[2:], "--json", "--page", "held-out.html"),
             "add": run(*add),
-            "again": run(*again),
+            "again": run(*again, "--page", "again.html"),
             "twice": run(*add, "--effect", FEW[0]),
         }
         page, file = Path("gap.html").read_text(), Path("rig/campaign.toml").read_text()
         kept, held = Path("rig/campaign.toml.1").read_text(), Path("held-out.html").read_text()
-    texts = {"page": page, "held out": held, "file": file, "kept": kept}
+        cured = Path("again.html").read_text()
+    texts = {"page": page, "held out": held, "cured": cured, "file": file, "kept": kept}
     return found | texts  # type: ignore[return-value]
 
 
@@ -164,6 +165,15 @@ def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Resu
 
 def test_the_cured_simulator_has_no_gap(told: dict[str, Result]) -> None:
     assert told["again"].stdout.startswith("gap: no gap beyond u")
+
+
+def test_a_bias_is_told_only_of_an_effect_that_is_named(told: dict[str, Result]) -> None:
+    assert {len(row) for row in table_of(str(told["page"]), "Coefficients")} == {6}
+    assert {len(row) for row in table_of(str(told["cured"]), "Coefficients")} == {4}
+    assert "bias" in told["diagnose"].stdout
+    assert "bias" in str(told["page"]).lower()
+    assert "bias" not in told["again"].stdout
+    assert "bias" not in str(told["cured"]).lower()
 
 
 def test_an_effect_is_not_added_twice(told: dict[str, Result]) -> None:
