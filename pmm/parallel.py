@@ -36,7 +36,7 @@ S = TypeVar("S")
 MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
 _THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 IN_HAND: Final = 500  # tasks at a time: more than the workers of a cluster, few enough to hold
-_TIMEOUT: Final = "10s"  # for a scheduler to answer
+_TIMEOUT: Final = "10s"  # for a scheduler to answer, and for its first worker
 
 
 @contextmanager
@@ -61,8 +61,8 @@ def open_executor(
     ConfigurationError
         If both are given, the number is below 1, or the extra ``cluster`` is not installed.
     DataError
-        If no scheduler answers there, a worker lacks the module, the workers died again and again,
-        or the scheduler ended.
+        If no scheduler answers there or it has no workers, a worker lacks the module, the workers
+        died again and again, or the scheduler ended.
     """
     if scheduler is not None and jobs is not None:
         raise ConfigurationError("give --jobs or --scheduler, not both: a cluster has its own size")
@@ -252,6 +252,7 @@ def _cluster(address: str, module: str) -> Iterator[Executor]:
             "start one with 'dask scheduler', or leave the option out"
         ) from None
     try:
+        _wait_for_a_worker(client, address)
         _check_workers(client, address, module)
         yield client.get_executor(pure=False)
     except CancelledError:
@@ -264,6 +265,17 @@ def _cluster(address: str, module: str) -> Iterator[Executor]:
         ) from error
     finally:
         client.close()
+
+
+def _wait_for_a_worker(client: Any, address: str) -> None:
+    """Refuse a scheduler without workers: it keeps tasks for as long as none comes."""
+    try:
+        client.wait_for_workers(1, timeout=_TIMEOUT)
+    except TimeoutError:
+        raise DataError(
+            f"--scheduler {address}: no workers there within {_TIMEOUT}; start one with "
+            f"'dask worker {address}'"
+        ) from None
 
 
 def _check_workers(client: Any, address: str, module: str) -> None:

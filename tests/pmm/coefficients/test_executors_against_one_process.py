@@ -147,6 +147,17 @@ def test_what_a_cluster_cannot_do_is_said() -> None:
 
 
 @pytest.mark.slow
+def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    with (
+        cluster(0) as address,
+        pytest.raises(DataError, match=rf"no workers there within 1s.*'dask worker {address}'"),
+        open_executor(scheduler=address),
+    ):
+        pass
+
+
+@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
