@@ -12,7 +12,7 @@ import click
 from hardware.description.errors import ConfigurationError
 from pmm.campaign import CAMPAIGN_FILE
 from pmm.cli.coefficients import DEFAULT_TRIALS
-from pmm.cli.folders import check_file, check_folder
+from pmm.cli.folders import check_files, check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.coefficients.provenance import provenance
 from pmm.coefficients.references import beside, check_systems, read_references
@@ -175,9 +175,8 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     for name, option in (("plot", "--plot"), ("simman", "--simman")):
         if options[name] is not None:
             check_folder(Path(options[name]), option)
-    for name, option in (("csv_file", "--csv"), ("netcdf", "--netcdf")):
-        if options[name] is not None:
-            check_file(Path(options[name]), option, overwrite=options["overwrite"])
+    files = {"--csv": options["csv_file"], "--netcdf": options["netcdf"]}
+    check_files(files, overwrite=options["overwrite"])
 
 
 def _written(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Folders and files to write to, looked at before any work is done."""
 
 import os
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError, DataError
@@ -39,14 +40,49 @@ def check_file(path: Path, option: str, *, overwrite: bool = True) -> None:
     Raises
     ------
     ConfigurationError
-        If its folder cannot be made or written to, or it is there and cannot be written to.
+        If it is a folder, its folder cannot be made or written to, or it is there and cannot be
+        written to.
     DataError
-        If it is a folder, or is there and may not be replaced.
+        If it is there and may not be replaced.
     """
     check_folder(path.parent, option)
     if path.is_dir():
-        raise DataError(f"{option} {path}: a folder; name a file")
+        raise ConfigurationError(f"{option} {path}: a folder; name a file")
     if path.exists() and not overwrite:
         raise DataError(f"{option} {path}: there already; choose another name, or --overwrite")
     if path.exists() and not os.access(path, os.W_OK):
         raise ConfigurationError(f"{option} {path}: cannot be written to")
+
+
+def check_files(
+    asked: Mapping[str, str | None],
+    read: Iterable[tuple[str, Path]] = (),
+    *,
+    overwrite: bool = True,
+) -> None:
+    """Refuse files to be written, as :func:`check_file`, or two that are one.
+
+    Parameters
+    ----------
+    asked
+        What each option names; ``None`` where it is not given.
+    read
+        Files that the command reads and must not lose, each with what named it.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`check_file`; or an option names a file that is read, or that another one names.
+    """
+    readers = {path.resolve(): name for name, path in read}
+    writers: dict[Path, str] = {}
+    for option, name in asked.items():
+        if name is None:
+            continue
+        path, here = Path(name), f"{option} {name}"
+        check_file(path, option, overwrite=overwrite)
+        if (found := path.resolve()) in readers:
+            raise ConfigurationError(f"{here}: {readers[found]} is read from it; name another file")
+        if found in writers:
+            raise ConfigurationError(f"{writers[found]} and {here}: the same file; name two")
+        writers[found] = here

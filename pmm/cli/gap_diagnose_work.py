@@ -8,11 +8,13 @@ from pathlib import Path
 
 import click
 
-from pmm.cli.folders import check_file
+from pmm.cli.folders import check_files
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
+from pmm.gap.case import CASE_FILE
 from pmm.gap.examine import Examined, examine
+from pmm.gap.prepare import campaign_file
 from pmm.gap.report import PROPOSED, gap_report
 from pmm.parallel import open_executor
 
@@ -39,10 +41,7 @@ def run(request: Request) -> None:
     DataError
         If too few runs can be used.
     """
-    if request.page is not None:
-        check_file(Path(request.page), "--page")
-    if request.plan is not None:
-        check_file(Path(request.plan), "--plan")
+    _check_files(request)
     found = examined(request)
     report = gap_report(found)
     if request.as_json:
@@ -62,6 +61,12 @@ def run(request: Request) -> None:
         messages().print(f"page: {request.page}")
     if request.plan is not None:
         _write_plan(found, Path(request.plan))
+
+
+def _check_files(request: Request) -> None:
+    file = campaign_file(Path(request.campaign))
+    read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *request.read]
+    check_files({"--page": request.page, "--plan": request.plan}, read)
 
 
 def _write_plan(found: Examined, path: Path) -> None:

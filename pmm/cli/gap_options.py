@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -24,6 +25,11 @@ class Chosen:
     def files(self) -> tuple[str, ...]:
         """Files with effects of the user's own."""
         return files_among(self.effects)
+
+    @property
+    def read(self) -> list[tuple[str, Path]]:
+        """Those files, each with the option that names it."""
+        return [("--effects", Path(one)) for one in self.files]
 
     def check_alone(self, jobs: int | None, scheduler: str | None = None) -> None:
         """Refuse to share work that only this process can do.

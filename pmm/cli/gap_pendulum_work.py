@@ -10,7 +10,7 @@ import click
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.said import said
-from pmm.cli.folders import check_file, check_folder
+from pmm.cli.folders import check_files, check_folder
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
@@ -47,8 +47,7 @@ class Request(Chosen):
 def run(request: Request) -> None:
     """Diagnose a file's records and print what was found."""
     path = Path(request.file)
-    if request.page is not None:
-        check_file(Path(request.page), "--page")
+    check_files({"--page": request.page}, [("FILE.toml", path), *request.read])
     if request.plot is not None:
         check_folder(Path(request.plot), "--plot")
     with progress() as told:
