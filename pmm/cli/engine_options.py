@@ -17,7 +17,7 @@ def jobs_option(default: str) -> Callable[[F], F]:
         The default in words, for the help.
     """
     return click.option(
-        "--jobs", type=click.IntRange(1), metavar="N", help=f"Processes.  [default: {default}]"
+        "--jobs", type=click.IntRange(1), metavar="N", show_default=default, help="Processes."
     )
 
 

@@ -1,13 +1,12 @@
 """The tables of ``pmm gap CAMPAIGN``."""
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pmm.gap.coefficients import headings
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
-from pmm.gap.rows import Ranked, said_of
+from pmm.gap.rows import said_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -68,7 +67,7 @@ def _print_which(console: "Console", report: GapReport) -> None:
     console.print("\nwhich", style="bold")
     table = _table("answer", "stage", "parameters (95 %)", "probability", "withheld [u]", text=3)
     for one in report.ranking:
-        table.add_row(joined(one.answer), one.stage, _parameters(one), *one.said)
+        table.add_row(joined(one.answer), one.stage, "\n".join(one.parameters), *one.said)
     console.print(table)
     if report.effects:
         headings = ("effect in any answer", "stage", "cannot be told from", "probability", "class")
@@ -85,19 +84,6 @@ def _print_which(console: "Console", report: GapReport) -> None:
             f"{', '.join(report.hidden)}",
             style="dim",
         )
-
-
-def _parameters(one: Ranked) -> str:
-    return "\n".join(
-        f"{name} = {value['value']:.4g} ({value['low']:.4g} to {value['high']:.4g})"
-        for effect in one.effects
-        for name, value in _of(effect).items()
-    )
-
-
-def _of(effect: Mapping[str, Any]) -> Mapping[str, Mapping[str, float]]:
-    found: Mapping[str, Mapping[str, float]] = effect["parameters"]
-    return found
 
 
 def _print_how_far(console: "Console", report: GapReport) -> None:

@@ -16,10 +16,10 @@ def described(report: GapReport) -> Sequence[str]:
         "its form, not its cause: harmonics "
         + ", ".join(f"{n} ({100.0 * share:.0f} %)" for n, share in orders),
         "a curve over one quantity carries "
-        + ", ".join(f"{100.0 * share:.0f} % ({name})" for name, share in one.follows.items()),
+        + ", ".join(f"{100.0 * share:z.0f} % ({name})" for name, share in one.follows.items()),
     ]
     laws = [("frequency", one.frequency_power), ("amplitude", one.amplitude_power)]
-    powers = [f"{name}^{power:.1f}" for name, power in laws if math.isfinite(power)]
+    powers = [f"{name}^{power:z.1f}" for name, power in laws if math.isfinite(power)]
     if powers:
         lines.append(f"it grows as {', '.join(powers)}")
     if math.isfinite(one.air_over_water):

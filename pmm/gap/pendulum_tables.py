@@ -116,4 +116,4 @@ def next_rows(found: Diagnosis) -> Rows:
 
 def percent(share: float) -> str:
     """Return a share as people read it."""
-    return f"{100.0 * share:.1f} %"
+    return f"{100.0 * share:z.1f} %"

@@ -1,6 +1,7 @@
 """Rows of the gap report that are no step, cell or coefficient."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +37,21 @@ class Ranked:
         left = "-" if math.isnan(self.withheld_u) else f"{self.withheld_u:.2f}"
         return f"{self.probability:.4f}", left
 
+    @property
+    def parameters(self) -> list[str]:
+        """Each parameter with its interval as people read them."""
+        return [
+            f"{name} = {_with_interval(value)}"
+            for effect in self.effects
+            for name, value in effect["parameters"].items()
+        ]
+
+
+def _with_interval(one: Mapping[str, float]) -> str:
+    if one["low"] == one["high"]:  # not fitted
+        return f"{one['value']:.4g}"
+    return f"{one['value']:.4g} ({one['low']:.4g} to {one['high']:.4g})"
+
 
 def said_of(one: Marginal) -> tuple[str, str, str]:
     """Say what an effect cannot be told from, its probability, and that of its class."""
@@ -66,8 +82,8 @@ class ControlRow:
     def said(self) -> tuple[str, str, str, str]:
         """Gap before and after, by how much it shrinks, and the interval of that."""
         known = self.before_u > 0.0
-        shrinks = f"{100.0 * self.share:.0f} %" if known else "-"
-        interval = f"{100.0 * self.low:.0f} to {100.0 * self.high:.0f} %"
+        shrinks = f"{100.0 * self.share:z.0f} %" if known else "-"
+        interval = f"{100.0 * self.low:z.0f} to {100.0 * self.high:z.0f} %"
         certain = known and math.isfinite(self.low)
         return f"{self.before_u:.2f}", f"{self.after_u:.2f}", shrinks, interval if certain else "-"
 

@@ -7,7 +7,7 @@ from typing import Final
 from pmm.gap.coefficients import headings
 from pmm.gap.describing import described
 from pmm.gap.report import GapReport, joined
-from pmm.gap.rows import Ranked, said_of
+from pmm.gap.rows import said_of
 from pmm.report import gap_figures as figures
 from pmm.report.parts import Drawing, Head, Part, Table, drawn, write_parts
 
@@ -84,7 +84,7 @@ def _which(report: GapReport) -> Part:
         (
             joined(one.answer),
             one.stage,
-            _parameters(one),
+            "; ".join(one.parameters),
             *one.said,
         )
         for one in report.ranking
@@ -110,14 +110,6 @@ def _effects(report: GapReport) -> Table:
         "probability of its class",
     )  # fmt: skip
     return Table("Effects", headings, rows, 3)
-
-
-def _parameters(one: Ranked) -> str:
-    return "; ".join(
-        f"{name} = {value['value']:.4g} ({value['low']:.4g} to {value['high']:.4g})"
-        for effect in one.effects
-        for name, value in effect["parameters"].items()
-    )
 
 
 def _how_far(report: GapReport) -> Part | None:

@@ -1,0 +1,41 @@
+"""Numbers of the gap report as people read them: no minus before nothing, no interval of a fact."""
+
+import math
+
+import pytest
+
+from pmm.gap.pendulum_tables import percent
+from pmm.gap.rows import ControlRow, Ranked
+from tests.pmm.gap.rigs import run
+
+
+def shrinks(share: float, low: float, high: float, before: float = 10.0) -> tuple[str, ...]:
+    return ControlRow("any", before, before * (1.0 - share), share, low, high).said[2:]
+
+
+def test_a_share_that_rounds_to_nothing_has_no_sign() -> None:
+    assert shrinks(-0.003, -0.004, 0.002) == ("0 %", "0 to 0 %")
+    assert shrinks(-0.02, -0.09, 0.15) == ("-2 %", "-9 to 15 %")
+    assert percent(-0.0004) == "0.0 %"
+
+
+def test_what_is_not_known_is_a_dash() -> None:
+    assert shrinks(0.5, math.nan, math.nan) == ("50 %", "-")
+    assert shrinks(0.0, 0.0, 0.0, before=0.0) == ("-", "-")
+
+
+def test_a_parameter_that_is_held_has_no_interval() -> None:
+    parameters = {
+        "force_n": {"value": 0.30126, "low": 0.3, "high": 0.3025},
+        "since_zero_s": {"value": 1800.0, "low": 1800.0, "high": 1800.0},
+    }
+    one = Ranked("any", 0.9, 0.0, "structure", [{"name": "any", "parameters": parameters}], {}, [])
+    assert one.parameters == ["force_n = 0.3013 (0.3 to 0.3025)", "since_zero_s = 1800"]
+
+
+@pytest.mark.parametrize("command", ["diagnose", "add", "answer"])
+def test_default_and_range_of_an_option_stand_in_one_bracket(command: str) -> None:
+    said = " ".join(run("gap", command, "--help").stdout.split())
+    (jobs,) = [one for one in said.split(" --") if one.startswith("jobs ")]
+    assert jobs.count("[") == 1
+    assert "; x>=1]" in jobs
