@@ -51,8 +51,7 @@ def _print_where(console: "Console", report: GapReport) -> None:
     console.print(f"\nwhere: {said}", style="bold")
     table = _table("along the chain", "verdict", "stated", "rms", "numbers", "largest", text=2)
     for one in report.walk:
-        verdict = "gap" if one.beyond else "no gap"
-        table.add_row(one.what, verdict, *one.said, one.worst)
+        table.add_row(one.what, one.verdict, *one.said, one.worst)
     console.print(table)
     if report.verdict not in ("none", "coefficients"):
         shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]

@@ -27,6 +27,8 @@ class StepRow:
         Root mean square of E/u after the free numbers have taken what they may.
     stated_u
         That of the simulation as it is stated; NaN where it is not told.
+    tells
+        False where the input that was fed is so uncertain that the gap would not show anyway.
     """
 
     what: str
@@ -35,6 +37,14 @@ class StepRow:
     beyond: bool
     worst: str
     stated_u: float
+    tells: bool = True
+
+    @property
+    def verdict(self) -> str:
+        """Whether there is a gap, in words."""
+        if self.beyond:
+            return "gap"
+        return "no gap" if self.tells else "cannot tell"
 
     @property
     def said(self) -> tuple[str, str, str]:
@@ -66,7 +76,7 @@ class Cell:
 
 def step_row(one: Gap) -> StepRow:
     """Return a part of the difference as a row."""
-    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated)
+    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated, one.tells)
 
 
 def remains(examined: Examined) -> Iterator[StepRow]:

@@ -64,8 +64,7 @@ def _where(report: GapReport) -> Part:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     named = report.verdict in ("effect", "unknown")
     steps = tuple(
-        (one.what, "gap" if one.beyond else "no gap", one.worst, *one.said)
-        for one in (*report.walk, *report.contrasts)
+        (one.what, one.verdict, one.worst, *one.said) for one in (*report.walk, *report.contrasts)
     )
     headings = ("step, or kind of run", "verdict", "largest", "E/u as stated", "E/u", "numbers")
     return Part(
@@ -142,10 +141,7 @@ def _coefficients(report: GapReport) -> Part:
 
 
 def _remainder(report: GapReport) -> Part:
-    rows = tuple(
-        (one.what, "gap" if one.beyond else "no gap", one.worst, f"{one.gap_u:.2f}")
-        for one in report.remains
-    )
+    rows = tuple((one.what, one.verdict, one.worst, f"{one.gap_u:.2f}") for one in report.remains)
     table = Table("Remainder", ("step", "verdict", "largest", "E/u"), rows, 3)
     lines = tuple(f"{line[0].upper()}{line[1:]}." for line in described(report))
     form = report.description
