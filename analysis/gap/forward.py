@@ -19,6 +19,7 @@ from analysis.gap.components import Component, GapRun, Layout, Observation, Part
 from analysis.gap.observe import FORCES, observe
 from analysis.gap.prefix import Solved
 from hardware.description.setpoint import SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.acting import Acting
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
@@ -172,12 +173,19 @@ class Simulator:
 def _preloaded(
     effects: Sequence[Effect], rig: SimulatedRig, run: GapRun
 ) -> tuple[Sequence[Effect], SimulatedRig]:
-    """Return the rig with a run's dead weight on the model, and the effects that it leaves."""
+    """Return the rig with a run's dead weight on the model, and the effects that it leaves.
+
+    The weight hangs at the midpoint between the struts, and its mass moves with the model: the
+    moments of the model's own mass and inertia about that point stay as they are.
+    """
     if not run.preload_n:
         return effects, rig
     weight = Acting(Spring(preload_n=run.preload_n))
     left = [one for one in effects if not one.taken_up]
-    return left, replace(rig, forces=(*rig.forces, weight))
+    body, mass_kg = rig.body, rig.body.mass_kg + run.preload_n / STANDARD_GRAVITY_M_S2
+    share = body.mass_kg / mass_kg
+    heavier = replace(body, mass_kg=mass_kg, cg_x_m=share * body.cg_x_m, cg_z_m=share * body.cg_z_m)
+    return left, replace(rig, body=heavier, forces=(*rig.forces, weight))
 
 
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:

@@ -18,23 +18,27 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import GapRun, Part, Stack
+from analysis.gap.components import GapRun
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import forecast, further, next_place, planned
+from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.measurements import BESIDES, INJECTED_HZ, measured_besides
-from analysis.gap.observe import FORCES
 from analysis.gap.priors import Priors
 from analysis.gap.regimes import describe
+from analysis.gap.worth import ENOUGH, apart, gained
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Measurement
+from sim.period import Period
+from sim.signals import FORCE_AFT, FORCE_FORE
 
 FloatArray = NDArray[np.float64]
 
-ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
 NO_GAP: Final = "no gap"
 OSCILLATION: Final = "oscillation"
 _PRELOADED: Final = 6  # of the best oscillations, each once more with a dead weight
@@ -45,9 +49,10 @@ _SAID: Final[Mapping[str, str]] = {
     Measurement.INJECTION: f"a sine of {{:g}} N at {INJECTED_HZ:g} Hz into all force amplifiers in "
     "place of the bridges",
 }
-_HARMONIC: Final = (Part.IN_PHASE, Part.QUADRATURE)
 _FREQUENCIES: Final = 3
 _RADII: Final = 2
+_ORDERS: Final = 8  # of a steady state, and points of its period
+_POINTS: Final = 64
 
 Leading = Sequence[tuple[Fit | None, float]]
 """The leading answers with their probabilities; ``None`` for no gap."""
@@ -126,7 +131,7 @@ def proposals(
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and Measurement.PRELOAD in choices.special:
         bare = [one for one, _ in found[:_PRELOADED]]
-        found += weighed(tuple(_preloaded(problem, bare, choices)))
+        found += weighed(tuple(_preloaded(problem.simulator, bare, choices)))
     found += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
     return tuple(
@@ -142,22 +147,46 @@ def _least(one: "tuple[_Choice, float]") -> float:
 def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
     for number, point in enumerate(set_points(choices)):
         run = planned(problem, point, number, place)
-        if _largest_force_n(problem, [run]) < choices.force_limit_n:
+        if _largest_force_n(problem.simulator, [run]) < choices.force_limit_n:
             yield _Choice(OSCILLATION, point, 0.0, (run,))
 
 
-def _preloaded(problem: Problem, turning: Sequence[_Choice], choices: Choices) -> Iterator[_Choice]:
-    """Yield oscillations with a weight on the model that no force of theirs lifts."""
+def _preloaded(
+    simulator: Simulator, turning: Sequence[_Choice], choices: Choices
+) -> Iterator[_Choice]:
+    """Yield oscillations with a weight on the model that keeps both struts pressed one way.
+
+    Each strut carries half of it, and half of what its mass takes to be moved along.
+    """
     for one in turning:
-        largest_n = _largest_force_n(problem, one.runs)
-        weight_n = _readable(2.0 * _ABOVE * largest_n)  # both struts carry it
-        if largest_n + 0.5 * weight_n < choices.force_limit_n:
+        largest_n = _largest_force_n(simulator, one.runs)
+        swing = max(_swing(run.set_point) for run in one.runs)
+        weight_n = _pressing_n(largest_n, swing)
+        if weight_n > 0.0 and largest_n + 0.5 * weight_n * (1.0 + swing) < choices.force_limit_n:
             runs = tuple(replace(run, preload_n=weight_n) for run in one.runs)
             yield replace(one, force_n=weight_n, runs=runs)
 
 
+def _swing(point: SetPoint) -> float:
+    """Return the struts' largest acceleration over that of gravity."""
+    omega_rad_s = 2.0 * math.pi * point.frequency_hz
+    return omega_rad_s**2 * point.eccentricity_m / STANDARD_GRAVITY_M_S2
+
+
+def _pressing_n(largest_n: float, swing: float) -> float:
+    """Return the weight W of which W/2 less its own inertia is more than the struts' force.
+
+    Infinite where the weight itself would be thrown off, or its cord go slack.
+    """
+    if swing >= 1.0:
+        return math.inf
+    least_n = 2.0 * _ABOVE * largest_n / (1.0 - swing)
+    weight_n = _readable(least_n)
+    return weight_n if weight_n >= least_n else _readable(1.05 * least_n)
+
+
 def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
-    force_n = _readable(_largest_force_n(problem, problem.simulator.stack.turning))
+    force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
     for kind in BESIDES:
         if kind in choices.special:
             size_n = 0.0 if kind is Measurement.REST else force_n
@@ -186,7 +215,7 @@ def _weighed(
     for number, one in enumerate(some):
         rows = whose[there.simulator.stack.run] == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in told])
-        odds = _apart(means, [forecasted.whole[rows] for forecasted in told])
+        odds = apart(means, [forecasted.whole[rows] for forecasted in told])
         yield one, gained(shares, odds + _by_themselves(one.kind, leading))
 
 
@@ -199,78 +228,40 @@ def _by_themselves(kind: str, leading: Leading) -> FloatArray:
     return np.array([[ENOUGH * (one != other) for other in told] for one in told])
 
 
-def gained(shares: Sequence[float], odds: FloatArray) -> float:
-    """Return the log odds that the right answer gains over all others, over which it may be.
-
-    Parameters
-    ----------
-    shares
-        How probable each answer is, shape ``(answers,)``; they need not sum to 1.
-    odds
-        Expected log odds between each two of the answers after a run, ``(answers, answers)``.
-    """
-    if len(shares) < 2:
-        return 0.0
-    others = np.asarray(shares) * (1.0 - np.eye(len(shares)))
-    left = np.sum(others * np.exp(-np.minimum(odds, ENOUGH)), axis=1)
-    return float(np.average(np.log(others.sum(axis=1) / left), weights=shares))
-
-
-def _apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
-    """Return the expected log odds between each two answers after a run, by symmetric divergence.
-
-    Parameters
-    ----------
-    means
-        What each answer predicts, shape ``(observations, answers)``.
-    roots
-        The root of its covariance without the noise, shape ``(observations, any)``.
-    """
-    squares = np.zeros((means.shape[1], means.shape[1]))
-    for number, whole in enumerate(roots):
-        root = whole[:, whole.any(axis=0)]  # frequency and noise are each run's own
-        away = means - means[:, number, None]
-        towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
-        squares[number] = np.sum(away * (away - root @ towards), axis=0)
-    return 0.25 * (squares + squares.T)
-
-
 def set_points(choices: Choices) -> Iterator[SetPoint]:
     """Yield what a rig can do, in steps; in numbers of three digits, as people set them."""
-    low, high = choices.frequency_hz.low, choices.frequency_hz.high
-    frequencies = np.geomspace(max(low, high / 8.0), high, _FREQUENCIES)
-    least, most = choices.eccentricity_m.low, choices.eccentricity_m.high
-    radii = np.geomspace(max(least, most / 5.0), most, _RADII)
+    frequencies = _steps(choices.frequency_hz, _FREQUENCIES, 8.0)
+    radii = _steps(choices.eccentricity_m, _RADII, 5.0)
     for frequency, radius, phase, speed, medium in product(
         frequencies, radii, choices.strut_phase_rad, choices.carriage_speed_m_s, choices.media
     ):
         if medium is Medium.WATER or not speed:
-            yield SetPoint(
-                _settable(frequency, choices.frequency_hz),
-                _settable(radius, choices.eccentricity_m),
-                phase,
-                speed,
-                medium,
-            )
+            yield SetPoint(frequency, radius, phase, speed, medium)
+
+
+def _steps(span: Range, count: int, ratio: float) -> tuple[float, ...]:
+    """Return equal ratios down from the largest, each once: a rig may have one frequency only."""
+    values = np.geomspace(max(span.low, span.high / ratio), span.high, count)
+    return tuple(dict.fromkeys(_settable(float(one), span) for one in values))
 
 
 def _settable(value: float, span: Range) -> float:
     return min(max(float(f"{value:.3g}"), span.low), span.high)
 
 
-def _largest_force_n(problem: Problem, runs: Sequence[GapRun]) -> float:
-    """Return the largest first harmonic of a strut's force, as the rig is believed to be.
+def _largest_force_n(simulator: Simulator, runs: Sequence[GapRun]) -> float:
+    """Return the largest first harmonic of either strut's force, as the rig is believed to be.
 
-    Infinite where it cannot be simulated.
+    Both struts count, whichever of them is recorded. Infinite where it cannot be simulated.
     """
-    simulator = replace(problem.simulator, stack=Stack.of(runs))
     try:
-        values = simulator.steady(())
+        return max((_force_n(simulator, run) for run in runs), default=0.0)
     except PmmError:
         return math.inf
-    forces = [
-        abs(float(value))
-        for one, value in zip(simulator.stack.components, values, strict=True)
-        if one.channel in FORCES and one.order == 1 and one.part in _HARMONIC
-    ]
-    return math.sqrt(2.0) * max(forces, default=0.0)
+
+
+def _force_n(simulator: Simulator, run: GapRun) -> float:
+    rig, point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
+    period = Period(point.frequency_hz, _ORDERS, _POINTS)
+    spectra = simulator.solved.steady_state(rig.chain(point), period).spectra
+    return max(abs(complex(spectra[one.name][1])) for one in (FORCE_AFT, FORCE_FORE))

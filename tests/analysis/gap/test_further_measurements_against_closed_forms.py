@@ -1,5 +1,6 @@
 """What further measurements show of an effect, against what its closed form says."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -7,15 +8,16 @@ from functools import partial
 import pytest
 
 from analysis.gap.candidate import candidates
-from analysis.gap.components import GapRun, Part, Stack
+from analysis.gap.components import GapRun, Observation, Part, Stack
 from analysis.gap.fit import Problem, at
 from analysis.gap.forecast import next_place, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.measurements import INJECTED_HZ, measured_besides
 from analysis.gap.priors import Priors
-from analysis.gap.propose import OSCILLATION, Choices, proposals
+from analysis.gap.propose import OSCILLATION, Choices, Proposal, proposals
 from hardware.description.oscillator import Range
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import build, find
 from sim.effects.effect import Effect, Measurement
@@ -99,13 +101,19 @@ def test_a_record_at_rest_shows_the_day_that_gets_warmer_at_its_time(problem: Pr
     assert set(rest) == {"force_aft", "force_fore"}
 
 
-def test_a_dead_weight_takes_up_the_play_and_stays_in_the_mean(problem: Problem) -> None:
+def swing(point: SetPoint) -> float:
+    """Return ``w^2 e / g``, by which share of its weight a mass pulls where it is moved."""
+    return float((2.0 * math.pi * point.frequency_hz) ** 2 * point.eccentricity_m / G_M_S2)
+
+
+def test_a_dead_weight_takes_up_the_play_and_is_moved_with_the_model(problem: Problem) -> None:
     run = planned(problem, POINT, 0)
     loaded = replace(run, preload_n=60.0)
     (bare,), (pressed,) = shown(problem, (run,)), shown(problem, (loaded,))
     for name in ("force_aft", "force_fore"):
         assert abs(pressed[name] - bare[name]) == pytest.approx(30.0)
-        assert pressed[f"{name} 1"] == pytest.approx(bare[f"{name} 1"])
+        moved_n = pressed[f"{name} 1"] - bare[f"{name} 1"]
+        assert moved_n == pytest.approx(-30.0 * swing(POINT), rel=1e-4)
     play = build("joint-play:half_play_m=1e-4")
     assert shown(problem, (loaded,), play) == [pytest.approx(pressed)]
     assert shown(problem, (run,), play) != [pytest.approx(bare)]
@@ -117,6 +125,72 @@ def test_the_next_run_is_made_after_the_last(problem: Problem) -> None:
     assert place.index == len(made)
     assert place.since_start_s == 2.0 * made[-1].place.since_start_s  # two runs, one lapse
     assert place.before == made[-1].set_point
+
+
+def pressed(problem: Problem, choices: Choices) -> list[Proposal]:
+    """Return what is proposed with a dead weight, where play or no gap may be."""
+    play = next(iter(candidates(find("joint-play"), (0.5, 1.0))))
+    leading = ((at(problem, (play,), play.start), 0.5), (None, 0.5))
+    free = free_numbers(problem.simulator.rig, Priors())
+    found = proposals(problem, leading, choices, free, Priors())
+    return [one for one in found if one.set_point is not None and one.force_n]
+
+
+def largest_n(problem: Problem, point: SetPoint) -> float:
+    """Return the first harmonic of the strut that is loaded more."""
+    (one,) = shown(problem, (planned(problem, point, 0),))
+    return max(abs(one["force_aft 1"]), abs(one["force_fore 1"]))
+
+
+def test_a_dead_weight_presses_both_struts_beside_its_own_inertia(problem: Problem) -> None:
+    choices = Choices(Range(1.0, 3.0), Range(0.01, 0.04), (0.0,), media=(Medium.AIR,))
+    found = pressed(problem, choices)
+    assert len(found) == 5  # of six: at 3 Hz and 40 mm any weight is thrown off
+    for one in found:
+        assert one.set_point is not None
+        force_n, share = largest_n(problem, one.set_point), swing(one.set_point)
+        least_n = 2.0 * 1.25 * force_n / (1.0 - share)
+        assert least_n <= one.force_n <= 1.1 * least_n, str(one)
+        limit_n = force_n + one.force_n / 2.0 * (1.0 + share)
+        (same,) = pressed(problem, only(choices, one.set_point, 1.001 * limit_n))
+        assert same.force_n == one.force_n
+        assert not pressed(problem, only(choices, one.set_point, 0.999 * limit_n))
+
+
+def only(choices: Choices, point: SetPoint, limit_n: float) -> Choices:
+    """Return one set-point as all that can be run, below a strut's limit."""
+    frequency = Range(point.frequency_hz, point.frequency_hz)
+    radius = Range(point.eccentricity_m, point.eccentricity_m)
+    preload = (Measurement.PRELOAD,)
+    return replace(
+        choices,
+        frequency_hz=frequency,
+        eccentricity_m=radius,
+        special=preload,
+        force_limit_n=limit_n,
+    )
+
+
+def test_the_strut_that_is_not_recorded_has_its_limit_too(
+    rig: SimulatedRig, clean: tuple[GapRun, ...], problem: Problem
+) -> None:
+    """The centre of gravity is aft, so that the aft strut carries more."""
+    one = problem_of(rig, [without_aft(run) for run in clean[:2]])
+    point = SetPoint(0.8, 0.02, medium=Medium.AIR)
+    most_n = largest_n(problem, point)
+    alone = Choices(Range(0.8, 0.8), Range(0.02, 0.02), (0.0,), media=(Medium.AIR,), special=())
+    for share, can in ((0.999, False), (1.001, True)):
+        limited = replace(alone, force_limit_n=share * most_n)
+        leading = ((None, 0.5), (None, 0.5))
+        found = proposals(one, leading, limited, free_numbers(rig, Priors()), Priors())
+        assert bool(found) is can
+
+
+def without_aft(run: GapRun) -> GapRun:
+    seen = run.observed
+    kept = [at for at, one in enumerate(seen.components) if one.channel != "force_aft"]
+    parts = tuple(seen.components[at] for at in kept)
+    return replace(run, observed=Observation(parts, seen.values[kept], seen.uncertainty[kept]))
 
 
 class Twin(JointPlay):

@@ -8,8 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from analysis.gap.propose import ENOUGH, Choices, gained, set_points
+from analysis.gap.propose import Choices, set_points
+from analysis.gap.worth import ENOUGH, gained
 from hardware.description.oscillator import Range
+from hardware.description.setpoint import Medium, SetPoint
 
 FloatArray = NDArray[np.float64]
 Pairs = dict[tuple[int, int], float]
@@ -61,3 +63,8 @@ def test_what_is_proposed_can_be_set_on_a_dial() -> None:
     found = list(set_points(Choices(Range(0.25, 1.9996), Range(0.013, 0.06))))
     assert {one.frequency_hz for one in found} == {0.25, 0.707, 1.9996}  # no step past a limit
     assert {one.eccentricity_m for one in found} == {0.013, 0.06}
+
+
+def test_what_a_rig_can_set_in_one_way_only_is_proposed_once() -> None:
+    one = Choices(Range(0.8, 0.8), Range(0.02, 0.02), strut_phase_rad=(0.0,))
+    assert list(set_points(one)) == [SetPoint(0.8, 0.02, medium=medium) for medium in Medium]
