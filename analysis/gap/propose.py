@@ -26,7 +26,7 @@ from analysis.gap.free import Free
 from analysis.gap.measurements import BESIDES, INJECTED_HZ, measured_besides
 from analysis.gap.priors import Priors
 from analysis.gap.regimes import describe
-from analysis.gap.worth import ENOUGH, apart, gained
+from analysis.gap.worth import ENOUGH, Worth, apart
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
@@ -127,7 +127,7 @@ def proposals(
     """Return runs in the order of what they are worth."""
     place = next_place(problem)
     weighed = partial(_weighed, problem, leading, free=free, priors=priors)
-    found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_least)
+    found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and Measurement.PRELOAD in choices.special:
         bare = [one for one, _ in found[:_PRELOADED]]
@@ -135,13 +135,16 @@ def proposals(
     found += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
     return tuple(
-        Proposal(one.kind, one.set_point, one.force_n, worth, answers)
-        for one, worth in sorted(found, key=_least)
+        Proposal(one.kind, one.set_point, one.force_n, worth.gain, answers)
+        for one, worth in sorted(found, key=_order)
     )
 
 
-def _least(one: "tuple[_Choice, float]") -> float:
-    return -one[1]
+def _order(weighed: tuple[_Choice, Worth]) -> tuple[float, ...]:
+    """Sort by worth, and where that is the same by how gently the model is moved."""
+    one, worth = weighed
+    point = one.set_point
+    return *worth.order, 0.0 if point is None else point.eccentricity_m * point.frequency_hz
 
 
 def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
@@ -203,7 +206,7 @@ def _weighed(
     some: Sequence[_Choice],
     free: Sequence[Free],
     priors: Priors,
-) -> Iterator[tuple[_Choice, float]]:
+) -> Iterator[tuple[_Choice, Worth]]:
     """Yield each choice with what it is worth."""
     runs = [run for one in some for run in one.runs]
     if not runs:
@@ -216,7 +219,8 @@ def _weighed(
         rows = whose[there.simulator.stack.run] == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in told])
         odds = apart(means, [forecasted.whole[rows] for forecasted in told])
-        yield one, gained(shares, odds + _by_themselves(one.kind, leading))
+        odds = odds + _by_themselves(one.kind, leading)
+        yield one, Worth.of(shares, odds)
 
 
 def _by_themselves(kind: str, leading: Leading) -> FloatArray:

@@ -1,6 +1,7 @@
 """What a further run is worth: the log odds that the right answer gains over all others."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -9,9 +10,36 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
+_NEVER: Final = 1e-300  # least share, for its logarithm
 
 
-def gained(shares: Sequence[float], odds: FloatArray) -> float:
+@dataclass(frozen=True)
+class Worth:
+    """What a run gains.
+
+    Attributes
+    ----------
+    gain
+        Expected log odds that the right answer gains over all others, at most ``ENOUGH``.
+    uncapped
+        The same where more than enough counts.
+    """
+
+    gain: float
+    uncapped: float
+
+    @classmethod
+    def of(cls, shares: Sequence[float], odds: FloatArray) -> "Worth":
+        """Return the worth of a run; see :func:`gained`."""
+        return cls(gained(shares, odds), gained(shares, odds, np.inf))
+
+    @property
+    def order(self) -> tuple[float, float]:
+        """To sort by, best first: as it is said, and what is said alike by how clearly it tells."""
+        return -round(self.gain, 1), -round(self.uncapped, 1)
+
+
+def gained(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) -> float:
     """Return the log odds that the right answer gains over all others, over which it may be.
 
     Parameters
@@ -20,12 +48,17 @@ def gained(shares: Sequence[float], odds: FloatArray) -> float:
         How probable each answer is, shape ``(answers,)``; they need not sum to 1.
     odds
         Expected log odds between each two of the answers after a run, ``(answers, answers)``.
+    enough
+        Log odds between two answers beyond which more is worth no more.
     """
     if len(shares) < 2:
         return 0.0
-    others = np.asarray(shares) * (1.0 - np.eye(len(shares)))
-    left = np.sum(others * np.exp(-np.minimum(odds, ENOUGH)), axis=1)
-    return float(np.average(np.log(others.sum(axis=1) / left), weights=shares))
+    others = np.tile(np.log(np.maximum(shares, _NEVER)), (len(shares), 1))
+    np.fill_diagonal(others, -np.inf)
+    left = others - np.minimum(odds, enough)
+    # As logarithms: of what is thrown far, no number would be left.
+    gain = np.logaddexp.reduce(others, axis=1) - np.logaddexp.reduce(left, axis=1)
+    return float(np.average(gain, weights=shares))
 
 
 def apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:

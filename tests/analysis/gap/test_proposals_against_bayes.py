@@ -8,10 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from analysis.gap.propose import Choices, set_points
-from analysis.gap.worth import ENOUGH, gained
+from analysis.gap.components import GapRun
+from analysis.gap.free import free_numbers
+from analysis.gap.priors import Priors
+from analysis.gap.propose import Choices, proposals, set_points
+from analysis.gap.worth import ENOUGH, Worth, gained
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of
 
 FloatArray = NDArray[np.float64]
 Pairs = dict[tuple[int, int], float]
@@ -38,6 +43,30 @@ def test_a_rival_that_a_run_does_not_touch_is_left_standing() -> None:
     third = math.log((0.5 + 0.2) / (0.5 + 0.2 * math.exp(-15.0)))
     expected = 0.5 * first + 0.2 * second + 0.3 * third
     assert gained([0.5, 0.2, 0.3], table(3, apart)) == pytest.approx(expected)
+
+
+def test_what_is_worth_more_than_enough_goes_by_how_much_more() -> None:
+    even = [0.5, 0.5]
+    worth = {odds: Worth.of(even, table(2, {(0, 1): odds})) for odds in (19.0, 30.0, 5000.0)}
+    assert [one.gain for one in worth.values()] == pytest.approx([19.0, ENOUGH, ENOUGH])
+    assert worth[5000.0].uncapped == pytest.approx(5000.0)
+    assert sorted(worth, key=lambda odds: worth[odds].order) == [5000.0, 30.0, 19.0]
+
+
+def test_of_runs_that_are_worth_the_same_the_gentlest_comes_first(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    problem = problem_of(rig, clean[:2])
+    leading = ((None, 0.5), (None, 0.5))  # nothing tells what is the same apart
+    choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), special=())
+    found = proposals(problem, leading, choices, free_numbers(rig, Priors()), Priors())
+    speeds = [
+        one.set_point.eccentricity_m * one.set_point.frequency_hz
+        for one in found
+        if one.set_point is not None
+    ]
+    assert {one.gain for one in found} == {0.0}
+    assert speeds == sorted(speeds)
 
 
 def test_a_run_that_tells_all_apart_is_worth_more_than_one_that_throws_one_far() -> None:
