@@ -1,11 +1,13 @@
 """Measurements besides oscillations, as runs that have not been made.
 
-At rest; check weights that are put on each strut's dynamometer in turn and taken off again; a sine
-into all force amplifiers in place of the bridges. What a simulated rig shows in them is compared as
-in any run. Their noise is that of the means of the run whose frequency is nearest to 1 Hz.
+At rest; a check weight that is put on one strut's dynamometer and taken off again; a sine into all
+force amplifiers in place of the bridges. What a simulated rig shows in them is compared as in any
+run. Their noise is that of the means of the run whose frequency is nearest to 1 Hz, for as long as
+the record takes.
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
@@ -22,24 +24,31 @@ from sim.standing import Applied, check_weight, injection
 
 FloatArray = NDArray[np.float64]
 
-BESIDES: Final = (Measurement.REST, Measurement.CHECK_WEIGHT, Measurement.INJECTION)
+BESIDES: Final = (
+    (Measurement.REST, ""),
+    (Measurement.CHECK_WEIGHT, "aft"),
+    (Measurement.CHECK_WEIGHT, "fore"),
+    (Measurement.INJECTION, ""),
+)
 REST_S: Final = 60.0
 INJECTED_HZ: Final = 1.0
 _ORDERS: Final = (1, 2)  # of what is done to the rig: its size, and what a curved gauge makes of it
-# How well that is known, of itself: weights of class M1 with their arm; a generator's sine.
+# How well that is known, of itself: weights of class M1 with their arm; a generator's sine. That
+# one is off alike at both amplifiers, but is taken as off at each by itself: what all observations
+# share are the rig's numbers, and this is none of them.
 _KNOWN: Final = {Measurement.CHECK_WEIGHT: 1e-4, Measurement.INJECTION: 1e-3}
 _STANDS: Final = SetPoint(INJECTED_HZ, 0.0)
 
 
 def measured_besides(
-    problem: Problem, kind: Measurement, place: CampaignRun, force_n: float
-) -> tuple[GapRun, ...]:
-    """Return the records of one measurement; none where no gauge was recorded.
+    problem: Problem, kind: Measurement, place: CampaignRun, force_n: float = 0.0, strut: str = ""
+) -> GapRun | None:
+    """Return the record of one measurement; ``None`` where no gauge of it was recorded.
 
     Parameters
     ----------
-    kind
-        One of :data:`BESIDES`.
+    kind, strut
+        One of :data:`BESIDES`: what is measured, and whose dynamometer a check weight is put on.
     place
         When it is made.
     force_n
@@ -47,19 +56,20 @@ def measured_besides(
     """
     near = min(problem.simulator.stack.turning, key=_far)
     parts = tuple(_parts(kind, {one.channel for one in near.observed.components}))
-    if not parts:
-        return ()
+    loaded = [one.channel for one in parts if one.channel.endswith(strut)]
+    if not loaded:
+        return None
+    applied = _applied(kind, force_n, strut)
     noise = np.array([near.observed.uncertainty[_mean(near, one.channel)] for one in parts])
-    known = _KNOWN.get(kind, 0.0) * force_n * np.array([one.order == 1 for one in parts])
-    seen = Observation(parts, np.zeros(len(parts)), np.hypot(noise, known))
-    still = replace(
-        near, set_point=_STANDS, place=place, observed=seen, periods=round(REST_S * INJECTED_HZ),
-        lead_s=0.0, stands_at_m=(0.0, 0.0),
-    )  # fmt: skip
-    return tuple(
-        replace(still, name=f"{kind} {number}", applied=one)
-        for number, one in enumerate(_applied(kind, force_n))
+    longer = REST_S * near.set_point.frequency_hz / near.periods
+    known = _KNOWN.get(kind, 0.0) * np.array(
+        [_size_n(applied, one) if one.channel in loaded else 0.0 for one in parts]
     )
+    seen = Observation(parts, np.zeros(len(parts)), np.hypot(noise / math.sqrt(longer), known))
+    return replace(
+        near, name=f"{kind} {strut}".strip(), set_point=_STANDS, place=place, observed=seen,
+        periods=round(REST_S * INJECTED_HZ), lead_s=0.0, stands_at_m=(0.0, 0.0), applied=applied,
+    )  # fmt: skip
 
 
 def _far(run: GapRun) -> float:
@@ -79,9 +89,15 @@ def _parts(kind: Measurement, recorded: set[str]) -> Iterator[Component]:
                 yield Component(name, Part.QUADRATURE, order)
 
 
-def _applied(kind: Measurement, force_n: float) -> Sequence[Applied | None]:
+def _applied(kind: Measurement, force_n: float, strut: str) -> Applied | None:
     if kind is Measurement.CHECK_WEIGHT:
-        return check_weight(force_n), check_weight(force_n, fore=True)
-    if kind is Measurement.INJECTION:
-        return (injection(force_n, INJECTED_HZ),)
-    return (None,)
+        return check_weight(force_n, fore=strut == "fore")
+    return injection(force_n, INJECTED_HZ) if kind is Measurement.INJECTION else None
+
+
+def _size_n(applied: Applied | None, one: Component) -> float:
+    """Return the size of what is done to a gauge: its mean, and its first harmonic."""
+    if applied is None:
+        return 0.0
+    _, *sizes = applied.forces_n[0]  # the same at each gauge that it is done to
+    return abs(sizes[one.order]) if one.order < len(sizes) else 0.0

@@ -45,7 +45,7 @@ _PRELOADED: Final = 6  # of the best oscillations, each once more with a dead we
 _ABOVE: Final = 1.25  # of a dead weight over the force that would lift it
 _SAID: Final[Mapping[str, str]] = {
     Measurement.REST: "a record at rest",
-    Measurement.CHECK_WEIGHT: "a check weight of {:g} N on each dynamometer in turn",
+    Measurement.CHECK_WEIGHT: "a check weight of {:g} N on the {} dynamometer",
     Measurement.INJECTION: f"a sine of {{:g}} N at {INJECTED_HZ:g} Hz into all force amplifiers in "
     "place of the bridges",
 }
@@ -92,6 +92,8 @@ class Proposal:
         Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``.
     between
         Those answers, by name, ``"no gap"`` among them.
+    strut
+        ``"aft"`` or ``"fore"``, whose dynamometer a check weight is put on.
     """
 
     kind: str
@@ -99,22 +101,24 @@ class Proposal:
     force_n: float
     gain: float
     between: tuple[str, ...] = ()
+    strut: str = ""
 
     def __str__(self) -> str:
         if self.set_point is not None:
             weight = f", with {self.force_n:g} N hung on the model" if self.force_n else ""
             return describe(self.set_point) + weight
-        return _SAID[self.kind].format(self.force_n)
+        return _SAID[self.kind].format(self.force_n, self.strut)
 
 
 @dataclass(frozen=True, eq=False)
 class _Choice:
-    """Something to do next, and the records that it makes."""
+    """Something to do next, and the record that it makes."""
 
     kind: str
     set_point: SetPoint | None
     force_n: float
-    runs: tuple[GapRun, ...]
+    run: GapRun
+    strut: str = ""
 
 
 def proposals(
@@ -135,7 +139,7 @@ def proposals(
     found += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
     return tuple(
-        Proposal(one.kind, one.set_point, one.force_n, worth.gain, answers)
+        Proposal(one.kind, one.set_point, one.force_n, worth.gain, answers, one.strut)
         for one, worth in sorted(found, key=_order)
     )
 
@@ -151,7 +155,7 @@ def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Ite
     for number, point in enumerate(set_points(choices)):
         run = planned(problem, point, number, place)
         if _largest_force_n(problem.simulator, [run]) < choices.force_limit_n:
-            yield _Choice(OSCILLATION, point, 0.0, (run,))
+            yield _Choice(OSCILLATION, point, 0.0, run)
 
 
 def _preloaded(
@@ -162,12 +166,11 @@ def _preloaded(
     Each strut carries half of it, and half of what its mass takes to be moved along.
     """
     for one in turning:
-        largest_n = _largest_force_n(simulator, one.runs)
-        swing = max(_swing(run.set_point) for run in one.runs)
+        largest_n = _largest_force_n(simulator, [one.run])
+        swing = _swing(one.run.set_point)
         weight_n = _pressing_n(largest_n, swing)
         if weight_n > 0.0 and largest_n + 0.5 * weight_n * (1.0 + swing) < choices.force_limit_n:
-            runs = tuple(replace(run, preload_n=weight_n) for run in one.runs)
-            yield replace(one, force_n=weight_n, runs=runs)
+            yield replace(one, force_n=weight_n, run=replace(one.run, preload_n=weight_n))
 
 
 def _swing(point: SetPoint) -> float:
@@ -190,10 +193,12 @@ def _pressing_n(largest_n: float, swing: float) -> float:
 
 def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
     force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
-    for kind in BESIDES:
+    for kind, strut in BESIDES:
         if kind in choices.special:
             size_n = 0.0 if kind is Measurement.REST else force_n
-            yield _Choice(kind, None, size_n, measured_besides(problem, kind, place, size_n))
+            run = measured_besides(problem, kind, place, size_n, strut)
+            if run is not None:
+                yield _Choice(kind, None, size_n, run, strut)
 
 
 def _readable(force_n: float) -> float:
@@ -208,15 +213,13 @@ def _weighed(
     priors: Priors,
 ) -> Iterator[tuple[_Choice, Worth]]:
     """Yield each choice with what it is worth."""
-    runs = [run for one in some for run in one.runs]
-    if not runs:
+    if not some:
         return
-    there = further(problem, runs, free, priors)
+    there = further(problem, [one.run for one in some], free, priors)
     told = [forecast(problem, there, fit) for fit, _ in leading]
     shares = [share for _, share in leading]
-    whose = np.repeat(np.arange(len(some)), [len(one.runs) for one in some])
     for number, one in enumerate(some):
-        rows = whose[there.simulator.stack.run] == number
+        rows = there.simulator.stack.run == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in told])
         odds = apart(means, [forecasted.whole[rows] for forecasted in told])
         odds = odds + _by_themselves(one.kind, leading)

@@ -123,7 +123,7 @@ def next_run(one: Proposal) -> dict[str, Any]:
 
 def _besides(one: Proposal) -> dict[str, Any]:
     if one.kind == Measurement.CHECK_WEIGHT:
-        return {"weight_n": one.force_n, "strut": "aft"}
+        return {"weight_n": one.force_n, "strut": one.strut}
     if one.kind == Measurement.INJECTION:
         return {"frequency_hz": INJECTED_HZ, "force_n": one.force_n}
     return {}

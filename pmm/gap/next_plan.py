@@ -59,5 +59,10 @@ def _special(one: Proposal, name: str) -> dict[str, Any]:
         return {"kind": str(RunKind.ZERO), "name": name, "duration_s": REST_S}
     if one.kind == Measurement.CHECK_WEIGHT:
         loads_n = [0.0, 0.5 * one.force_n, one.force_n]
-        return {"kind": str(RunKind.CHECK_WEIGHT), "name": name, "loads_n": loads_n}
+        return {
+            "kind": str(RunKind.CHECK_WEIGHT),
+            "name": name,
+            "channels": [f"force_{one.strut}"],
+            "loads_n": loads_n,
+        }
     return {}

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 
 from analysis.gap.candidate import candidates
-from analysis.gap.components import GapRun, Observation, Part, Stack
+from analysis.gap.components import Component, GapRun, Observation, Part, Stack
 from analysis.gap.fit import Problem, at
 from analysis.gap.forecast import next_place, planned
 from analysis.gap.free import free_numbers
@@ -50,10 +51,18 @@ def shown(problem: Problem, runs: Sequence[GapRun], *effects: Effect) -> list[di
 
 
 def weights(problem: Problem) -> tuple[GapRun, ...]:
-    return measured_besides(problem, Measurement.CHECK_WEIGHT, CampaignRun(), WEIGHT_N)
+    return tuple(
+        made(problem, Measurement.CHECK_WEIGHT, WEIGHT_N, strut) for strut in ("aft", "fore")
+    )
 
 
-def test_a_check_weight_goes_on_and_off_at_each_gauge_in_turn(problem: Problem) -> None:
+def made(problem: Problem, kind: Measurement, force_n: float = 0.0, strut: str = "") -> GapRun:
+    found = measured_besides(problem, kind, CampaignRun(), force_n, strut)
+    assert found is not None
+    return found
+
+
+def test_a_check_weight_goes_on_and_off_at_its_gauge(problem: Problem) -> None:
     aft, fore = shown(problem, weights(problem))
     for one, loaded, other in ((aft, "aft", "fore"), (fore, "fore", "aft")):
         assert one[f"force_{loaded}"] == pytest.approx(WEIGHT_N / 2.0)
@@ -79,7 +88,7 @@ def test_a_check_weight_shows_what_a_curved_gauge_makes_of_it(problem: Problem) 
 
 
 def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: Problem) -> None:
-    runs = measured_besides(problem, Measurement.INJECTION, CampaignRun(), 20.0)
+    runs = (made(problem, Measurement.INJECTION, 20.0),)
     (plain,) = shown(problem, runs)
     assert plain["force_aft 1"] == pytest.approx(20.0, rel=1e-9)
     (lags,) = shown(problem, runs, build("amplifier-lag:cutoff_hz=80.0"))
@@ -92,11 +101,8 @@ def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: 
 
 def test_a_record_at_rest_shows_the_day_that_gets_warmer_at_its_time(problem: Problem) -> None:
     place = CampaignRun(9, 2.0 * 3600.0, 300.0, POINT)
-    (rest,) = shown(
-        problem,
-        measured_besides(problem, REST, place, 0.0),
-        build("temperature:rate_k_h=0.5,zero_n_k=0.1"),
-    )
+    run = replace(made(problem, REST), place=place)
+    (rest,) = shown(problem, (run,), build("temperature:rate_k_h=0.5,zero_n_k=0.1"))
     assert rest["force_aft"] == pytest.approx(0.1)  # after two hours, one kelvin
     assert set(rest) == {"force_aft", "force_fore"}
 
@@ -104,6 +110,52 @@ def test_a_record_at_rest_shows_the_day_that_gets_warmer_at_its_time(problem: Pr
 def swing(point: SetPoint) -> float:
     """Return ``w^2 e / g``, by which share of its weight a mass pulls where it is moved."""
     return float((2.0 * math.pi * point.frequency_hz) ** 2 * point.eccentricity_m / G_M_S2)
+
+
+def test_a_record_is_as_sure_as_it_is_long_and_its_weight_is_known(problem: Problem) -> None:
+    """White noise: one over the root of the length; the weight is off on the gauge it is on."""
+    near = next(one for one in problem.simulator.stack.runs if one.set_point.frequency_hz == 1.0)
+    lasts_s = near.periods / 1.0
+    mean_n = {
+        name: near.observed.uncertainty[near.observed.components.index(Component(name, Part.MEAN))]
+        * math.sqrt(lasts_s / 60.0)
+        for name in ("force_aft", "force_fore")
+    }
+    rest, (aft, fore) = made(problem, REST), weights(problem)
+    for name, noise_n in mean_n.items():
+        assert sure(rest, name, Part.MEAN) == pytest.approx(noise_n)
+        for run, loaded in ((aft, "force_aft"), (fore, "force_fore")):
+            off_n = 1e-4 * WEIGHT_N / 2.0 if name == loaded else 0.0
+            known_n = pytest.approx(math.hypot(noise_n, off_n))
+            assert sure(run, name, Part.MEAN) == known_n
+            assert sure(run, name, Part.QUADRATURE, 1) == known_n
+            assert sure(run, name, Part.QUADRATURE, 2) == pytest.approx(noise_n)
+
+
+def sure(run: GapRun, channel: str, part: Part, order: int = 0) -> float:
+    at = run.observed.components.index(Component(channel, part, order))
+    return float(run.observed.uncertainty[at])
+
+
+def test_no_weight_is_put_on_a_gauge_that_is_not_read(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    one = problem_of(rig, [without_aft(run) for run in clean[:2]])
+    weight = (Measurement.CHECK_WEIGHT, CampaignRun(), WEIGHT_N)
+    assert measured_besides(one, *weight, "aft") is None
+    assert measured_besides(one, *weight, "fore") is not None
+
+
+def test_a_weight_is_proposed_on_the_strut_whose_gauge_it_tells_of(problem: Problem) -> None:
+    effect = build("gain-error:aft=0.0,fore=0.05")
+    part = next(one for one in candidates(type(effect), (0.5, 1.0)))
+    units = np.array([axis.unit(getattr(effect, axis.parameter.name)) for axis in part.axes])
+    leading = ((at(problem, (part,), units), 0.5), (None, 0.5))
+    choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=())
+    free = free_numbers(problem.simulator.rig, Priors())
+    first, *_ = proposals(problem, leading, choices, free, Priors())
+    assert (first.kind, first.strut) == (Measurement.CHECK_WEIGHT, "fore")
+    assert str(first) == f"a check weight of {first.force_n:g} N on the fore dynamometer"
 
 
 def test_a_dead_weight_takes_up_the_play_and_is_moved_with_the_model(problem: Problem) -> None:

@@ -25,7 +25,10 @@ POINTS = (
 @pytest.fixture
 def plan(tmp_path: Path) -> Path:
     ran = [Proposal("oscillation", one, 0.0, 5.0) for one in POINTS]
-    special = [Proposal(kind, None, 50.0, 3.0) for kind in ("rest", "check-weight", "injection")]
+    special = [
+        Proposal(kind, None, 50.0, 3.0, strut=strut)
+        for kind, strut in (("rest", ""), ("check-weight", "fore"), ("injection", ""))
+    ]
     copy(EXAMPLES / "vertical" / "rig.toml", tmp_path)
     copy(EXAMPLES / "vertical" / "simulated.toml", tmp_path)
     path = tmp_path / "plan.toml"
@@ -39,8 +42,9 @@ def test_every_run_is_as_it_was_proposed(plan: Path) -> None:
     assert [one.set_point for one in turning] == [*POINTS]
     assert [one.kind for one in turning] == [RunKind.OSCILLATION] * 2 + [RunKind.DRY]
     assert {one.kind for one in runs} >= {RunKind.ZERO, RunKind.CHECK_WEIGHT}
-    loads_n = {one.load.force_n for one in runs if one.load is not None}
-    assert loads_n == {0.0, 25.0, 50.0}
+    loads = [one.load for one in runs if one.load is not None]
+    assert {one.force_n for one in loads} == {0.0, 25.0, 50.0}
+    assert {one.channel for one in loads} == {"force_fore"}
 
 
 def test_what_no_plan_can_do_is_said(plan: Path) -> None:
