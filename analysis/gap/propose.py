@@ -105,9 +105,14 @@ class Proposal:
 
     def __str__(self) -> str:
         if self.set_point is not None:
-            weight = f", with {self.force_n:g} N hung on the model" if self.force_n else ""
+            weight = f", with {dead_weight(self.force_n)}" if self.force_n else ""
             return describe(self.set_point) + weight
         return _SAID[self.kind].format(self.force_n, self.strut)
+
+
+def dead_weight(force_n: float) -> str:
+    """Say what takes up play, whichever plane the model moves in."""
+    return f"a dead weight of {force_n:g} N on the model (on a cord where it moves sideways)"
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from analysis.gap.measurements import REST_S
-from analysis.gap.propose import Proposal
+from analysis.gap.propose import Proposal, dead_weight
 from hardware.description.setpoint import Medium
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.toml_text import toml_table, toml_value
@@ -50,7 +50,7 @@ def _entry(one: Proposal, name: str) -> dict[str, Any]:
         "amplitudes_m": point.eccentricity_m,
         "strut_phases_rad": point.strut_phase_rad,
         "speeds_m_s": point.carriage_speed_m_s or None,
-        "prompt": f"Hang {one.force_n:g} N on the model" if one.force_n else None,
+        "prompt": f"Put {dead_weight(one.force_n)}" if one.force_n else None,
     }
 
 

@@ -261,6 +261,6 @@ def test_a_dead_weight_tells_play_from_its_twin_and_no_other_run_does(rig: Simul
     found = ask(choices)
     for one in found:
         assert (one.gain > 5.0) is (one.kind == OSCILLATION and one.force_n > 0.0), str(one)
-    assert f"with {found[0].force_n:g} N hung on the model" in str(found[0])
+    assert f"with a dead weight of {found[0].force_n:g} N on the model" in str(found[0])
     kinds = {(one.kind, one.force_n) for one in ask(replace(choices, special=(REST,)))}
     assert kinds == {(OSCILLATION, 0.0), (REST, 0.0)}

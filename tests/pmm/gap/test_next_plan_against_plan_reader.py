@@ -57,9 +57,8 @@ def test_a_dead_weight_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     proposed = [Proposal("oscillation", POINTS[1], 50.0, 5.0)]
     path.write_text(plan_text("next", proposed), encoding="utf-8")
-    assert "Hang 50 N on the model" in {
-        said for one in read_plan(path).runs for said in one.prompts
-    }
+    said = "Put a dead weight of 50 N on the model (on a cord where it moves sideways)"
+    assert said in {prompt for one in read_plan(path).runs for prompt in one.prompts}
 
 
 def test_the_rig_can_run_it(plan: Path) -> None:
