@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun
-from analysis.gap.fit import Fit, Problem
+from analysis.gap.fit import Problem
 from analysis.gap.forecast import forecast, further, next_place, planned
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.measurements import BESIDES, INJECTED_HZ, measured_besides
 from analysis.gap.priors import Priors
 from analysis.gap.regimes import describe
-from analysis.gap.worth import ENOUGH, Worth, apart
+from analysis.gap.worth import Leading, Worth, apart, by_itself
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
@@ -53,9 +53,6 @@ _FREQUENCIES: Final = 3
 _RADII: Final = 2
 _ORDERS: Final = 8  # of a steady state, and points of its period
 _POINTS: Final = 64
-
-Leading = Sequence[tuple[Fit | None, float]]
-"""The leading answers with their probabilities; ``None`` for no gap."""
 
 
 @dataclass(frozen=True)
@@ -227,17 +224,8 @@ def _weighed(
         rows = there.simulator.stack.run == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in told])
         odds = apart(means, [forecasted.whole[rows] for forecasted in told])
-        odds = odds + _by_themselves(one.kind, leading)
+        odds = odds + by_itself(problem, one.kind, leading)
         yield one, Worth.of(shares, odds)
-
-
-def _by_themselves(kind: str, leading: Leading) -> FloatArray:
-    """Return the odds between answers by what does not repeat and shows in a measurement."""
-    told = [
-        {one.name for one in (() if fit is None else fit.candidates) if kind in one.kind.shown_by}
-        for fit, _ in leading
-    ]
-    return np.array([[ENOUGH * (one != other) for other in told] for one in told])
 
 
 def set_points(choices: Choices) -> Iterator[SetPoint]:

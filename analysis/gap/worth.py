@@ -2,12 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.fit import Fit, Problem
+
 FloatArray = NDArray[np.float64]
+
+Leading = Sequence[tuple[Fit | None, float]]
+"""The leading answers with their probabilities; ``None`` for no gap."""
 
 ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
 _NEVER: Final = 1e-300  # least share, for its logarithm
@@ -78,3 +84,31 @@ def apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
         towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
         squares[number] = np.sum(away * (away - root @ towards), axis=0)
     return 0.25 * (squares + squares.T)
+
+
+def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
+    """Return the log odds between answers by what does not repeat and shows in a measurement.
+
+    It shows there as it does in a run of the campaign, at mean: in the scatter, the trends and what
+    lies between the harmonics, beside the noise levels that are free.
+    """
+    stack = problem.simulator.stack
+    rows = ~stack.steady
+    told = [_named(fit, kind) for fit, _ in leading]
+    shown = [
+        fit.signature[rows] if fit is not None and names else np.zeros(int(rows.sum()))
+        for (fit, _), names in zip(leading, told, strict=True)
+    ]
+    free = problem.nuisances.among(rows)
+    odds = np.zeros((len(told), len(told)))
+    for i, j in combinations(range(len(told)), 2):
+        if told[i] != told[j]:
+            away = shown[i] - shown[j]
+            odds[i, j] = odds[j, i] = 0.5 * away @ free.whiten(away) / len(stack.turning)
+    return np.minimum(odds, ENOUGH)
+
+
+def _named(fit: Fit | None, kind: str) -> set[str]:
+    """Return the effects of an answer that do not repeat and show in a measurement."""
+    parts = () if fit is None else fit.candidates
+    return {one.name for one in parts if kind in one.kind.shown_by}

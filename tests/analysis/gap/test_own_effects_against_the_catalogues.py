@@ -48,9 +48,9 @@ def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
     return problem_of(rig, clean[:2])
 
 
-def begun(problem: Problem, kind: type[Effect]) -> Fit:
+def begun(problem: Problem, kind: type[Effect], times: float = 1.0) -> Fit:
     one = next(iter(candidates(kind, FREQUENCIES_HZ)))
-    return at(problem, (one,), one.start)
+    return at(problem, (one,), times * one.start)
 
 
 @pytest.mark.parametrize("name", sorted(set(catalogue()) - set(COEFFICIENTS)))
@@ -103,7 +103,7 @@ def test_the_same_measurements_show_it(
 ) -> None:
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=(), special=tuple(Measurement))
     for kind in both(name, tmp_path):
-        leading = ((begun(problem, kind), 0.6), (None, 0.4))
+        leading = ((begun(problem, kind, 3.0), 0.6), (None, 0.4))
         free = free_numbers(problem.simulator.rig, Priors())
         found = proposals(problem, leading, choices, free, Priors())
         assert {one.kind for one in found if one.gain > 1.0} == shown

@@ -8,18 +8,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from analysis.gap.candidate import candidates
 from analysis.gap.components import GapRun
+from analysis.gap.fit import at
 from analysis.gap.free import free_numbers
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, proposals, set_points
-from analysis.gap.worth import ENOUGH, Worth, gained
+from analysis.gap.worth import ENOUGH, Worth, by_itself, gained
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.catalogue import find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
 
 FloatArray = NDArray[np.float64]
 Pairs = dict[tuple[int, int], float]
+
+NAMES = ("zero-drift", "coulomb-friction")
 
 shares = st.lists(st.floats(0.01, 1.0), min_size=2, max_size=6)
 
@@ -67,6 +72,24 @@ def test_of_runs_that_are_worth_the_same_the_gentlest_comes_first(
     ]
     assert {one.gain for one in found} == {0.0}
     assert speeds == sorted(speeds)
+
+
+def test_what_does_not_repeat_is_worth_what_a_run_shows_of_it(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    """Half the square of its sigma, of which the free noise levels take a part."""
+    problem = problem_of(rig, clean[:2])
+    (drift, more), (friction, _) = (
+        [at(problem, (part,), times * part.start) for times in (1.0, 10.0)]
+        for part in (next(iter(candidates(find(name), (0.5, 1.0)))) for name in NAMES)
+    )
+    trends = drift.signature[~problem.simulator.stack.steady]
+    odds = by_itself(problem, "rest", [(drift, 0.4), (friction, 0.3), (None, 0.3)])
+    assert 0.0 < odds[0, 2] <= 0.5 * trends @ trends / 2.0
+    assert odds[0, 2] == odds[0, 1] == odds[1, 0]
+    assert odds[1, 2] == 0.0  # friction repeats
+    assert by_itself(problem, "rest", [(more, 0.5), (None, 0.5)])[0, 1] == ENOUGH
+    assert not by_itself(problem, "injection", [(more, 0.5), (None, 0.5)]).any()
 
 
 def test_a_run_that_tells_all_apart_is_worth_more_than_one_that_throws_one_far() -> None:
