@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import product
+from itertools import islice, product
 from typing import Final
 
 import numpy as np
@@ -41,7 +41,7 @@ FloatArray = NDArray[np.float64]
 
 NO_GAP: Final = "no gap"
 OSCILLATION: Final = "oscillation"
-_PRELOADED: Final = 6  # of the best oscillations, each once more with a dead weight
+_PRELOADED: Final = 6  # of the oscillations that can be made so, each with a dead weight
 _ABOVE: Final = 1.25  # of a dead weight over the force that would lift it
 _SAID: Final[Mapping[str, str]] = {
     Measurement.REST: "a record at rest",
@@ -136,8 +136,9 @@ def proposals(
     found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and Measurement.PRELOAD in choices.special:
-        bare = [one for one, _ in found[:_PRELOADED]]
-        found += weighed(tuple(_preloaded(problem.simulator, bare, choices)))
+        bare = [one for one, _ in found]
+        pressed = _preloaded(problem.simulator, bare, choices)
+        found += weighed(tuple(islice(pressed, _PRELOADED)))
     found += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
     return tuple(

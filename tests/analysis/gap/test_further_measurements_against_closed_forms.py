@@ -15,7 +15,7 @@ from analysis.gap.forecast import next_place, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.measurements import INJECTED_HZ, measured_besides
 from analysis.gap.priors import Priors
-from analysis.gap.propose import OSCILLATION, Choices, Proposal, proposals
+from analysis.gap.propose import OSCILLATION, Choices, Proposal, proposals, set_points
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2
@@ -207,6 +207,17 @@ def test_a_dead_weight_presses_both_struts_beside_its_own_inertia(problem: Probl
         (same,) = pressed(problem, only(choices, one.set_point, 1.001 * limit_n))
         assert same.force_n == one.force_n
         assert not pressed(problem, only(choices, one.set_point, 0.999 * limit_n))
+
+
+def test_a_dead_weight_is_proposed_where_the_most_telling_runs_would_throw_it_off(
+    problem: Problem,
+) -> None:
+    fast = Choices(Range(1.0, 8.0), Range(0.01, 0.04), media=(Medium.AIR,))
+    found = pressed(problem, fast)
+    thrown = [one for one in set_points(fast) if swing(one) >= 1.0]
+    assert len(thrown) > 6  # of 18
+    assert len(found) == 6
+    assert not {one.set_point for one in found} & {*thrown}
 
 
 def only(choices: Choices, point: SetPoint, limit_n: float) -> Choices:
