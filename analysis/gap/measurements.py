@@ -31,7 +31,9 @@ BESIDES: Final = (
     (Measurement.INJECTION, ""),
 )
 REST_S: Final = 60.0
-INJECTED_HZ: Final = 1.0
+INJECTED_HZ: Final = 10.0  # so fast that a low-pass shows in the size, and not as a delay does
+_SAMPLED: Final = 2.5  # times that, at least
+_USUAL_HZ: Final = 1.0
 _ORDERS: Final = (1, 2)  # of what is done to the rig: its size, and what a curved gauge makes of it
 # How well that is known, of itself: weights of class M1 with their arm; a generator's sine. That
 # one is off alike at both amplifiers, but is taken as off at each by itself: what all observations
@@ -43,7 +45,9 @@ _STANDS: Final = SetPoint(INJECTED_HZ, 0.0)
 def measured_besides(
     problem: Problem, kind: Measurement, place: CampaignRun, force_n: float = 0.0, strut: str = ""
 ) -> GapRun | None:
-    """Return the record of one measurement; ``None`` where no gauge of it was recorded.
+    """Return the record of one measurement.
+
+    ``None`` where no gauge of it was recorded, or too seldom for the sine.
 
     Parameters
     ----------
@@ -57,7 +61,8 @@ def measured_besides(
     near = min(problem.simulator.stack.turning, key=_far)
     parts = tuple(_parts(kind, {one.channel for one in near.observed.components}))
     loaded = [one.channel for one in parts if one.channel.endswith(strut)]
-    if not loaded:
+    sampled = near.sample_rate_hz >= _SAMPLED * INJECTED_HZ or kind is not Measurement.INJECTION
+    if not (loaded and sampled):
         return None
     applied = _applied(kind, force_n, strut)
     noise = np.array([near.observed.uncertainty[_mean(near, one.channel)] for one in parts])
@@ -73,7 +78,7 @@ def measured_besides(
 
 
 def _far(run: GapRun) -> float:
-    return abs(float(np.log(run.set_point.frequency_hz / INJECTED_HZ)))
+    return abs(float(np.log(run.set_point.frequency_hz / _USUAL_HZ)))
 
 
 def _mean(run: GapRun, channel: str) -> int:

@@ -99,6 +99,20 @@ def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: 
         assert other == pytest.approx(plain, rel=1e-9, abs=1e-9)
 
 
+def test_a_sine_tells_a_low_pass_from_the_delay_that_it_is_to_the_shaft(problem: Problem) -> None:
+    """Both are late by 1/(2 pi cutoff); at ten hertz the low-pass of 80 Hz is 0.8 % smaller."""
+    runs = (made(problem, Measurement.INJECTION, 20.0),)
+    late_s = 1.0 / (2.0 * math.pi * 80.0)
+    (lag,) = shown(problem, runs, build("amplifier-lag:cutoff_hz=80.0"))
+    (skew,) = shown(problem, runs, build(f"channel-skew:aft_s={late_s},fore_s={late_s}"))
+    smaller = abs(lag["force_aft 1"]) / abs(skew["force_aft 1"])
+    assert smaller == pytest.approx(1.0 / math.hypot(1.0, INJECTED_HZ / 80.0), rel=1e-6)
+    (known,) = runs
+    at_ = known.observed.components.index(Component("force_aft", Part.QUADRATURE, 1))
+    off_n = (1.0 - smaller) * 20.0
+    assert off_n > 3.0 * known.observed.uncertainty[at_]
+
+
 def test_a_record_at_rest_shows_the_day_that_gets_warmer_at_its_time(problem: Problem) -> None:
     place = CampaignRun(9, 2.0 * 3600.0, 300.0, POINT)
     run = replace(made(problem, REST), place=place)

@@ -49,7 +49,7 @@ def test_every_run_is_as_it_was_proposed(plan: Path) -> None:
 
 def test_what_no_plan_can_do_is_said(plan: Path) -> None:
     said = plan.read_text(encoding="utf-8")
-    assert "# by hand: a sine of 50 N at 1 Hz into all force amplifiers" in said
+    assert "# by hand: a sine of 50 N at 10 Hz into all force amplifiers" in said
 
 
 def test_a_dead_weight_is_asked_for(tmp_path: Path) -> None:
