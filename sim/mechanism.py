@@ -16,19 +16,9 @@ from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 # Of each strut; None before the first sample, and for a strut without play.
 PlayStates: TypeAlias = tuple[PlayState | None, PlayState | None]
 
-_WRITES = (
-    (
-        signals.DISPLACEMENT_AFT,
-        signals.VELOCITY_AFT,
-        signals.ACCELERATION_AFT,
-        signals.LEVER_AFT,
-    ),
-    (
-        signals.DISPLACEMENT_FORE,
-        signals.VELOCITY_FORE,
-        signals.ACCELERATION_FORE,
-        signals.LEVER_FORE,
-    ),
+_LEVERS = (signals.LEVER_AFT, signals.LEVER_FORE)
+_WRITES = tuple(
+    (*motion, lever) for motion, lever in zip(signals.STRUT_MOTIONS, _LEVERS, strict=True)
 )
 
 

@@ -61,6 +61,12 @@ DISPLACEMENT_FORE = of_channel(channels.DISPLACEMENT_FORE)
 VELOCITY_FORE = Signal("velocity_fore", "m/s")
 ACCELERATION_FORE = Signal("acceleration_fore", "m/s2")
 
+# Of each strut, aft and fore: displacement, velocity, acceleration.
+STRUT_MOTIONS = (
+    (DISPLACEMENT_AFT, VELOCITY_AFT, ACCELERATION_AFT),
+    (DISPLACEMENT_FORE, VELOCITY_FORE, ACCELERATION_FORE),
+)
+
 # How struts and carriage move the model: its own and the water's forces follow from nothing else.
 MODEL_MOTION = (
     DISPLACEMENT_AFT,

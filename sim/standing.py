@@ -25,10 +25,6 @@ _ORDERS = 2
 _POINTS = 64
 _TURN_HZ = 1.0  # of the period in which nothing happens
 _SLOW_HZ = 1e-3  # weights are put on and taken off so slowly that no filter shows
-_MOTIONS = (
-    (signals.DISPLACEMENT_AFT, signals.VELOCITY_AFT, signals.ACCELERATION_AFT),
-    (signals.DISPLACEMENT_FORE, signals.VELOCITY_FORE, signals.ACCELERATION_FORE),
-)
 
 
 @dataclass(frozen=True)
@@ -112,8 +108,8 @@ def standing_state(
     turn = replace(set_point, frequency_hz=turn_hz)
     period = Period(turn_hz, _ORDERS, _POINTS)
     still = np.zeros(_ORDERS + 1, dtype=np.complex128)
-    given = {one.name: still for motion in _MOTIONS for one in motion}
-    for (displacement, *_), at_m in zip(_MOTIONS, stands_at_m, strict=True):
+    given = {one.name: still for motion in signals.STRUT_MOTIONS for one in motion}
+    for (displacement, *_), at_m in zip(signals.STRUT_MOTIONS, stands_at_m, strict=True):
         given[displacement.name] = period.constant(at_m)
     turning = replace(standing(rig), drive=DriveSettings())  # a period needs a turn
     chain = turning.chain(turn)

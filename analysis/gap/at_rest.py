@@ -73,11 +73,8 @@ def observe_at_rest(recording: Recording) -> Observation:
 
 def steady_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun) -> FloatArray:
     """Return the components of a standing rig in the order of a run's: means, and what is done."""
-    spectra = standing_state(rig, set_point, run.stands_at_m or (0.0, 0.0), run.applied).spectra
-    layout = run.observed.layout
-    own = np.stack([spectra[f"recorded_{name}"] for name in layout.channels])
-    found = own[layout.row, layout.order]
-    return np.asarray(layout.real * found.real + layout.imaginary * found.imag, np.float64)
+    state = standing_state(rig, set_point, run.stands_at_m or (0.0, 0.0), run.applied)
+    return run.observed.layout.read(state.spectra)
 
 
 def record_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) -> Observation:

@@ -16,6 +16,7 @@ from sim.effects.campaign import CampaignRun
 from sim.standing import Applied
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 class Part(StrEnum):
@@ -99,6 +100,22 @@ class Layout:
             np.array([one is Part.FREQUENCY for one in parts]),
             np.array([one in (*STEADY_PARTS, *SETTLING) for one in parts]),
         )
+
+    def read(
+        self, spectra: Mapping[str, ComplexArray], turn: ComplexArray | float = 1.0
+    ) -> FloatArray:
+        """Return each component of recorded harmonics, shape ``(components,)``; 0 for all else.
+
+        Parameters
+        ----------
+        spectra
+            Of a chain's signals, mean first.
+        turn
+            By what each order is turned.
+        """
+        own = np.stack([spectra[f"recorded_{name}"] for name in self.channels]) * turn
+        found = own[self.row, self.order]
+        return np.asarray(self.real * found.real + self.imaginary * found.imag, np.float64)
 
 
 @dataclass(frozen=True, eq=False)

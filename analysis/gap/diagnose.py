@@ -28,6 +28,7 @@ from analysis.gap.verdict import (
     equivalents,
     passed_on,
     probabilities,
+    ranked,
     stage_probabilities,
 )
 from analysis.gap.whence import unknown_stages
@@ -205,7 +206,7 @@ def _not_foretelling(done: Diagnosis, settings: Settings) -> tuple[str, ...]:
     """Return the most probable names, down to the first that foretells regimes from the others."""
     shares, names = done.probabilities.by_answer, []
     withheld = settings.withheld or regimes(done.problem.simulator.stack.runs)
-    for one in _ranked(done.weighed, done.probabilities) if done.best is not None else ():
+    for one in ranked(done.weighed, done.probabilities) if done.best is not None else ():
         known = done.after if one is done.best else None
         after = known or predict_withheld(done.problem, one.fit, withheld)
         if shares[answer_of(one.fit)] < _NAMED or foretells(done.before, after):
@@ -224,10 +225,10 @@ def _concluded(
     progress: Callable[[str], None],
 ) -> Diagnosis:
     fits = [one.fit for one in weighed.looked if one.fit is not None]
-    ranked = _ranked(weighed, found)
-    best = ranked[0] if ranked and _names(found) else None
+    ones = ranked(weighed, found)
+    best = ones[0] if ones and _names(found) else None
     classes = {} if best is None else equivalents(problem, best.fit, fits)
-    rival = _rival(best, ranked, classes)
+    rival = _rival(best, ones, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
     after = before if best is None else predict_withheld(problem, best.fit, withheld)
@@ -263,25 +264,16 @@ def _names(found: Probabilities) -> bool:
     return found.best not in (NONE, COEFFICIENTS)
 
 
-def _ranked(weighed: Weighed, found: Probabilities) -> list[Named]:
-    """Return the named hypotheses, most probable first.
-
-    Where a pair counts for one of its effects alone, that is what is named.
-    """
-    every = (*weighed.singles, *weighed.pairs)
-    return sorted(every, key=lambda one: -found.by_answer[answer_of(one.fit)])
-
-
 def _rival(
     best: Named | None,
-    ranked: Sequence[Named],
+    ones: Sequence[Named],
     classes: Mapping[str, tuple[tuple[str, float], ...]],
 ) -> Named | None:
     """Return the wrong-effect control: the next best of which none passes for the best's."""
     if best is None:
-        return ranked[0] if ranked else None
+        return ones[0] if ones else None
     alike = {*best.fit.names, *(name for own in classes.values() for name, _ in own)}
-    return next((one for one in ranked if not set(one.fit.names) & alike), None)
+    return next((one for one in ones if not set(one.fit.names) & alike), None)
 
 
 def _next(

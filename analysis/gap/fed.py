@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
-from analysis.gap.forward import Simulator, read_steady, turned
+from analysis.gap.forward import ORDERS, POINTS, Simulator, read_steady, turned
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.observe import STRUTS
 from hardware.description.channels import SHAFT_ANGLE
@@ -38,13 +38,7 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Spectra = dict[str, ComplexArray]
 
-_ORDERS: Final = 8
-_POINTS: Final = 64
 _ROUNDS: Final = 3  # until the phase reference is that of what is fed
-_MOTIONS: Final = (
-    (signals.DISPLACEMENT_AFT, signals.VELOCITY_AFT, signals.ACCELERATION_AFT),
-    (signals.DISPLACEMENT_FORE, signals.VELOCITY_FORE, signals.ACCELERATION_FORE),
-)
 
 
 @dataclass(frozen=True)
@@ -136,9 +130,9 @@ def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray,
     if not {*feed.channels} <= {one.channel for one in run.observed.components}:
         return None
     chain = _Chain.of(rig, set_point, run, simulator.reference_channel)
-    seen = {name: _spectrum(run, name, _ORDERS) for name in feed.channels}
+    seen = {name: _spectrum(run, name, ORDERS) for name in feed.channels}
     base, turn = chain.read(feed, seen, chain.unfed)
-    noises = {name: _noise(run, name, _ORDERS) for name in feed.channels}
+    noises = {name: _noise(run, name, ORDERS) for name in feed.channels}
     moved = [
         chain.read(feed, {**seen, name: seen[name] + one}, turn)[0] - base
         for name, one in noises.items()
@@ -164,7 +158,7 @@ class _Chain:
         # What is fed is there already: nothing acts back on it, whatever turns the shaft.
         rig = replace(rig, drive=replace(rig.drive, motor=None, gear=None, speed_error=0.0))
         point = replace(set_point, frequency_hz=_measured_hz(run, set_point.frequency_hz))
-        period = Period(point.frequency_hz, _ORDERS, _POINTS)
+        period = Period(point.frequency_hz, ORDERS, POINTS)
         return cls(rig.chain(point), period, rig, run, reference_channel)
 
     @property
@@ -242,7 +236,7 @@ def _spectrum(run: GapRun, channel: str, orders: int) -> ComplexArray:
 def _motion(period: Period, channels: Mapping[str, ComplexArray]) -> Spectra:
     """Return displacement, velocity and acceleration of both struts."""
     given: Spectra = {}
-    for names in _MOTIONS:
+    for names in signals.STRUT_MOTIONS:
         own = channels[names[0].name]
         given |= {one.name: period.s**times * own for times, one in enumerate(names)}
     return given

@@ -32,8 +32,8 @@ FloatArray = NDArray[np.float64]
 
 Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
 
-_ORDERS: Final = 8
-_POINTS: Final = 64
+ORDERS: Final = 8  # of a steady state, and points of its period
+POINTS: Final = 64
 _SEED: Final = 20091
 _SETTLING: Final = 3
 DRAWS: Final = 4  # of the noise: one may be odd, and would be so in every campaign
@@ -133,16 +133,22 @@ class Simulator:
         draws = [self._record(number, (), draw) for draw in range(DRAWS)]
         return np.asarray(np.mean(draws, axis=0), np.float64)
 
+    def state(self, run: GapRun, effects: Sequence[Effect]) -> SteadyState:
+        """Return the steady state of a run that turns, with these effects and no others."""
+        rig, set_point = self._set(run, effects)
+        period = Period(set_point.frequency_hz, ORDERS, POINTS)
+        return self.solved.steady_state(rig.chain(set_point), period)
+
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
-        told = replace(
-            run.set_point, frequency_hz=run.set_point.frequency_hz * self.frequency_ratio
-        )
-        rig, set_point = switch_on(*_preloaded(effects, self.rig, run), told, run.place)
         if not run.turns:
-            return steady_at_rest(rig, set_point, run)
-        period = Period(set_point.frequency_hz, _ORDERS, _POINTS)
-        state = self.solved.steady_state(rig.chain(set_point), period)
+            return steady_at_rest(*self._set(run, effects), run)
+        state = self.state(run, effects)
         return read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
+
+    def _set(self, run: GapRun, effects: Sequence[Effect]) -> tuple[SimulatedRig, SetPoint]:
+        frequency_hz = run.set_point.frequency_hz * self.frequency_ratio
+        told = replace(run.set_point, frequency_hz=frequency_hz)
+        return switch_on(*_preloaded(effects, self.rig, run), told, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
         from analysis.readers.dataset import from_dataset
@@ -277,9 +283,7 @@ def read_steady(
         What the run was told to do: its frequency is what the measured one is held against.
     """
     ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
-    spectra = np.stack([state.spectra[f"recorded_{name}"] for name in layout.channels])
-    found = (spectra * turned(state, reference_channel))[layout.row, layout.order]
-    values: FloatArray = layout.real * found.real + layout.imaginary * found.imag
+    values = layout.read(state.spectra, turned(state, reference_channel))
     return values + ratio * layout.frequency
 
 

@@ -1,11 +1,10 @@
 """The answers that a further run has to tell apart."""
 
-from collections.abc import Mapping
 from typing import Final
 
 from analysis.gap.fit import Fit
 from analysis.gap.hypotheses import Weighed
-from analysis.gap.verdict import NONE, UNKNOWN, Probabilities, answer_of
+from analysis.gap.verdict import NONE, UNKNOWN, Probabilities, answer_of, ranked
 
 _MOST: Final = 4
 _DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
@@ -16,14 +15,9 @@ def leading(weighed: Weighed, found: Probabilities) -> list[tuple[Fit | None, fl
 
     Each with its probability; ``None`` stands for no gap, and for what nobody knows.
     """
-    shares = found.by_answer
+    shares, fits = found.by_answer, [one.fit for one in ranked(weighed, found)]
+    others = [one for one in fits[1:] if not {*one.names} & {*fits[0].names}]
     ones: list[tuple[Fit | None, float]] = [
-        (one, max(shares[answer_of(one)], _DOUBTED)) for one in _different(weighed, shares)[:_MOST]
+        (one, max(shares[answer_of(one)], _DOUBTED)) for one in [*fits[:1], *others][:_MOST]
     ]
     return [*ones, (None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), _DOUBTED))]
-
-
-def _different(weighed: Weighed, shares: Mapping[str, float]) -> list[Fit]:
-    fits = [one.fit for one in (*weighed.singles, *weighed.pairs)]
-    ranked = sorted(fits, key=lambda one: -shares[answer_of(one)])
-    return [one for one in ranked if one is ranked[0] or not {*one.names} & {*ranked[0].names}]

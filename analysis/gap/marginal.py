@@ -8,15 +8,7 @@ from typing import Final
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import misfit, posterior
-from analysis.gap.verdict import (
-    ALIKE,
-    COEFFICIENTS,
-    NONE,
-    UNKNOWN,
-    answer_of,
-    beside_rest,
-    equivalents,
-)
+from analysis.gap.verdict import ALIKE, beside_rest, effects_in, equivalents, ranked
 from hardware.description.errors import PmmError
 
 LEAST: Final = 0.01  # probability that is worth a class
@@ -57,7 +49,7 @@ def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
     by_answer
         Probabilities of answers, as :class:`analysis.gap.verdict.Probabilities` has them.
     """
-    names = {name for answer in by_answer for name in _effects(answer)}
+    names = {name for answer in by_answer for name in effects_in(answer)}
     shares = {name: of_any(by_answer, [name]) for name in names}
     return dict(sorted(shares.items(), key=lambda one: (-one[1], one[0])))
 
@@ -65,19 +57,14 @@ def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
 def of_any(by_answer: Mapping[str, float], names: Sequence[str]) -> float:
     """Return the probability of all answers with any of some effects, each counted once."""
     wanted = set(names)
-    found = math.fsum(share for one, share in by_answer.items() if wanted & _effects(one))
+    found = math.fsum(share for one, share in by_answer.items() if wanted & {*effects_in(one)})
     return min(found, 1.0)
-
-
-def _effects(answer: str) -> set[str]:
-    return set() if answer in (NONE, UNKNOWN, COEFFICIENTS) else set(answer.split("+"))
 
 
 def marginals(found: Diagnosis) -> tuple[Marginal, ...]:
     """Return the effects that are not out of the question, most probable first."""
     shares = found.probabilities.by_answer
-    fits = [one.fit for one in (*found.weighed.singles, *found.weighed.pairs)]
-    fits.sort(key=lambda one: -shares[answer_of(one)])
+    fits = [one.fit for one in ranked(found.weighed, found.probabilities)]
     leading = [name for name, share in by_effect(shares).items() if share > LEAST][:_MOST]
     best = {name: next(one for one in fits if name in one.names) for name in leading}
     return tuple(_marginal(found, name, fit) for name, fit in best.items())

@@ -31,10 +31,8 @@ from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Measurement
-from sim.period import Period
 from sim.signals import FORCE_AFT, FORCE_FORE
 
 FloatArray = NDArray[np.float64]
@@ -51,8 +49,6 @@ _SAID: Final[Mapping[str, str]] = {
 }
 _FREQUENCIES: Final = 3
 _RADII: Final = 2
-_ORDERS: Final = 8  # of a steady state, and points of its period
-_POINTS: Final = 64
 
 
 @dataclass(frozen=True)
@@ -262,7 +258,5 @@ def _largest_force_n(simulator: Simulator, runs: Sequence[GapRun]) -> float:
 
 
 def _force_n(simulator: Simulator, run: GapRun) -> float:
-    rig, point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
-    period = Period(point.frequency_hz, _ORDERS, _POINTS)
-    spectra = simulator.solved.steady_state(rig.chain(point), period).spectra
+    spectra = simulator.state(run, simulator.on).spectra
     return max(abs(complex(spectra[one.name][1])) for one in (FORCE_AFT, FORCE_FORE))

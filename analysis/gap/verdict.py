@@ -136,6 +136,20 @@ def demanded(one: Named, weighed: Weighed) -> float:
     return one.log_evidence - max([weighed.unknown.log_evidence, *rest])
 
 
+def effects_in(answer: str) -> tuple[str, ...]:
+    """Return the effects that an answer names; none for one that names no effect."""
+    return () if answer in (NONE, UNKNOWN, COEFFICIENTS) else tuple(answer.split("+"))
+
+
+def ranked(weighed: Weighed, found: Probabilities) -> list[Named]:
+    """Return the named hypotheses, most probable first.
+
+    Where a pair counts for one of its effects alone, that is what is named.
+    """
+    every = (*weighed.singles, *weighed.pairs)
+    return sorted(every, key=lambda one: -found.by_answer[answer_of(one.fit)])
+
+
 def answer_of(fit: Fit) -> str:
     """Return the name of a hypothesis: its effects in alphabetical order."""
     return "+".join(sorted(fit.names))
@@ -232,10 +246,9 @@ def stage_probabilities(
         if answer == UNKNOWN:
             for stage, part in unknown.items():
                 shares[stage] += share * part
-        elif answer not in (NONE, COEFFICIENTS):
-            names = answer.split("+")
-            for name in names:
-                shares[catalogue[name].stage.value] += share / len(names)
+        names = effects_in(answer)
+        for name in names:
+            shares[catalogue[name].stage.value] += share / len(names)
     total = sum(shares.values())
     return {name: value / total for name, value in shares.items()} if total > 0.0 else {}
 

@@ -22,7 +22,7 @@ from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.verdict import NONE, answer_of
+from analysis.gap.verdict import NONE, answer_of, ranked
 from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld
 from pmm.campaign import Campaign
 from pmm.gap.own_effects import chosen_effects, try_own
@@ -182,11 +182,9 @@ def _judged(
 
 def _likeliest(found: Diagnosis) -> dict[str, Fit]:
     """Return the likeliest named answers, and the control."""
-    shares = found.probabilities.by_answer
-    fits = {answer_of(one.fit): one.fit for one in (*found.weighed.singles, *found.weighed.pairs)}
-    names = sorted(fits, key=lambda one: -shares[one])[:_LIKELIEST]
-    leading = [answer_of(one.fit) for one in (found.best, found.rival) if one is not None]
-    return {name: fits[name] for name in dict.fromkeys((*names, *leading))}
+    likeliest = ranked(found.weighed, found.probabilities)[:_LIKELIEST]
+    ones = (*likeliest, *(one for one in (found.best, found.rival) if one is not None))
+    return {answer_of(one.fit): one.fit for one in ones}
 
 
 def _joint(
