@@ -65,11 +65,13 @@ def plausibility_flags(
     Parameters
     ----------
     runs
-        Those that oscillate; with fewer than two nothing is said.
+        Those whose set-point moves nothing are passed over; with fewer than two left nothing is
+        said.
     body, half_spacing_m
         The model and the struts' distance from its midpoint; without them the forces' unit is
         judged from one gauge against the other only.
     """
+    runs = [one for one in runs if one.set_point.eccentricity_m > 0.0]
     if len(runs) < _FEW:
         return ()
     units = (*_of_displacements(runs), *_of_forces(runs, body, half_spacing_m))
@@ -97,7 +99,8 @@ def _of_forces(
             found.add(name)
             yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
     both = [one for one in runs if set(FORCES) <= set(one.first)]
-    ratio = _usual([abs(one.first[FORCES[0]]) / abs(one.first[FORCES[1]]) for one in both])
+    sizes = [tuple(abs(one.first[name]) for name in FORCES) for one in both]
+    ratio = _usual([aft / fore for aft, fore in sizes if fore > 0.0])
     meant = mistaken(ratio, FORCE_AFT.unit, _NEAR)
     if meant and not found:
         said = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"

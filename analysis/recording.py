@@ -17,7 +17,10 @@ FloatArray = NDArray[np.float64]
 
 
 class Samples(Protocol):
-    """A run's values, shape ``(channels, samples)``: an array, or a file read lazily."""
+    """A run's values, shape ``(channels, samples)``: an array, or a file read lazily.
+
+    Several threads may ask at once.
+    """
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -108,7 +108,7 @@ def _ours(truth: Truth, values: FloatArray, edges_cycles: FloatArray, case: _Cas
     reference = from_frequency(truth.frequency_hz, 0.0, recording.end_s, opening_rad)
     alone = case.periods > 1 or not case.drift_per_period
     edges = edges_cycles[1:-1] if alone else edges_cycles
-    sums = period_sums(recording, reference, edges_cycles=edges, compiled=False)
+    sums = period_sums(recording, reference, edges_cycles=edges)
     gate = sums if alone else sums[1:-1]
     found = resolve(recording, gate, around=None if alone else sums)
     return np.asarray(found.coefficients[0])

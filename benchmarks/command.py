@@ -19,12 +19,15 @@ NAMES = (
     "coverage",
     "live",
     "memory",
+    "text",
     "startup",
     "classic",
     "simulator",
     "devices",
     "run_control",
     "console",
+    "latency",
+    "crowd",
     "inertia",
     "recorder",
     "kill",
@@ -32,6 +35,8 @@ NAMES = (
     "campaign",
     "sealed",
     "gap",
+    "campaign_boards",
+    "signs",
 )
 _RESULTS = ROOT / "benchmarks" / "results"
 

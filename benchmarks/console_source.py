@@ -17,6 +17,7 @@ from hardware.description.setpoint import SetPoint
 from pmm.console.app_settings import Settings
 from pmm.console.link import Link
 from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, Trace
+from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
 from pmm.console.station import TICK_S
@@ -30,6 +31,15 @@ _RATE_HZ: Final = 100.0
 _EACH: Final = round(_RATE_HZ * TICK_S)
 _SESSION: Final = "0123456789abcdef"
 _JOIN_S: Final = 10.0
+
+
+def plan_of_many() -> str:
+    """Return a plan of 9950 runs, nearly as many as a plan may have."""
+    frequencies = [round(0.2 + 0.0005 * k, 4) for k in range(1990)]
+    return (
+        'name = "many"\nrig = "rig.toml"\n[[runs]]\nmotion = "heave"\n'
+        f"frequencies_hz = {frequencies}\namplitudes_mm = [1.0, 2.0, 3.0, 4.0, 5.0]\n"
+    )
 
 
 class Source:
@@ -50,7 +60,7 @@ class Source:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         self._process = context.Process(
-            target=serve, args=(settings, self._socket, theirs, None, None)
+            target=serve, args=(settings, self._socket, theirs, QuickStop(), None, None)
         )
         self._process.start()
         theirs.close()
@@ -140,8 +150,15 @@ class Watcher:
 
     def start(self, plan: str) -> None:
         """Queue a plan and start it."""
-        self._post("plans/queue", {"text": plan})
-        self._post("command", {"command": "start"})
+        self.post("plans/queue", {"text": plan})
+        self.post("command", {"command": "start"})
+
+    def frames_per_s(self, seconds: float) -> float:
+        """Return how many frames a second come in a window of so long."""
+        end_s, count = time.monotonic() + seconds, 0
+        while time.monotonic() < end_s:
+            count += json.loads(self._stream.recv(timeout=30.0))["type"] == "frame"
+        return count / seconds
 
     def loops(self, seconds: float) -> list[dict[str, Any]]:
         """Watch for a while; return the loop's statistics of each window that ended."""
@@ -164,7 +181,13 @@ class Watcher:
             if message["type"] == "frame" and condition(message):
                 return
 
-    def _post(self, path: str, body: dict[str, Any]) -> None:
+    def told(self, kind: str) -> None:
+        """Wait for a message of a kind."""
+        while json.loads(self._stream.recv(timeout=30.0))["type"] != kind:
+            pass
+
+    def post(self, path: str, body: dict[str, Any]) -> None:
+        """Post as the page does; raises HTTPError where it is refused."""
         headers = {"origin": self._address, "x-pmm-session": _SESSION}
         request = urllib.request.Request(  # noqa: S310 - our own address
             f"{self._address}/api/{path}", json.dumps(body).encode(), headers

@@ -91,10 +91,11 @@ def _turning(rate_hz: float) -> Iterator[tuple[Rig, World]]:
             one.enable()
         rig.run_until(lambda: all(one.enabled for one in rig.powered()), 100, "enable")
         axes = [one for one in (rig.eccentricity, rig.phase) if one is not None]
+        shaft = cast("Shaft", rig.shaft)
+        rig.run_until(lambda: not shaft.moving, 1000, "rest")
         for one in axes:
             one.home()
         rig.run_until(lambda: all(one.homed and not one.moving for one in axes), 1000, "home")
-        shaft = cast("Shaft", rig.shaft)
         shaft.turn(_FREQUENCY_HZ)
         rig.run_until(lambda: shaft.at_speed, 1000, "speed")
         yield rig, world

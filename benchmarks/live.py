@@ -123,7 +123,7 @@ def _pulses(recording: Recording) -> list[float]:
 def _difference(recording: Recording, finals: list[Harmonics]) -> float:
     """Return the largest difference of a coefficient from the batch's, over all gates."""
     reference = from_photocell(np.asarray(_pulses(recording)))
-    sums = period_sums(recording, reference, compiled=False)
+    sums = period_sums(recording, reference)
     gates = range(sums.period_count - _GATE_PERIODS + 1)
     batch = [resolve(recording, sums[k : k + _GATE_PERIODS]) for k in gates]
     return max(

@@ -64,7 +64,11 @@ def _cpu_model() -> str:
 
 
 def _load() -> str:
-    return f"{os.getloadavg()[0]:.2f}" if sys.platform != "win32" else "unknown"
+    """Return the load, and whether the measurement takes its cores from it (``chrt -f 10``)."""
+    if sys.platform == "win32":
+        return "unknown"
+    first = sys.platform == "linux" and os.sched_getscheduler(0) == os.SCHED_FIFO
+    return f"{os.getloadavg()[0]:.2f}{' by others of lower priority' if first else ''}"
 
 
 def _blas() -> str:

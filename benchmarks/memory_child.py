@@ -5,12 +5,10 @@ the same file read into memory first.
 """
 
 import json
-import resource
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +16,7 @@ from numpy.typing import NDArray
 from analysis.readers import read_recording
 from analysis.recording import Recording
 from analysis.resolver.analyse import Settings, analyse
+from benchmarks.peak import peak_bytes
 from benchmarks.signals import Truth, draw_coefficients, recorded
 
 FloatArray = NDArray[np.float64]
@@ -53,21 +52,6 @@ def generated(seconds: float) -> Recording:
     truth = Truth(1.0137, 0.3, coefficients)
     samples = Generated(truth, round(seconds * RATE_HZ))
     return recorded(samples, RATE_HZ, truth.edges_s(seconds))
-
-
-def peak_bytes() -> int:
-    """Return the largest resident memory of this process so far.
-
-    From ``/proc`` where there is one: what ``getrusage`` tells of a process starts, on Linux, with
-    the peak of the one that started it.
-    """
-    status = Path("/proc/self/status")
-    if status.exists():
-        for line in status.read_text(encoding="utf-8").splitlines():
-            if line.startswith("VmHWM:"):
-                return 1024 * int(line.split()[1])
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak if sys.platform == "darwin" else 1024 * peak
 
 
 def main(source: str, where: str) -> None:

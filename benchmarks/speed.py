@@ -1,4 +1,4 @@
-"""Time of the period sums over that of a plain sum of the same array, and of rivals."""
+"""Time of the period sums over that of a plain sum and of a matrix product, and of rivals."""
 
 import importlib.util
 from collections.abc import Callable
@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.analyse import analyse
-from analysis.resolver.compiled import available
 from analysis.resolver.estimate import resolve
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums
+from analysis.threads import cores, spread
 from benchmarks import speed_rivals
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import Truth, draw_coefficients, recorded
-from benchmarks.speed_compile import compile_times
 from benchmarks.timing import Contender, interleave
 
 FloatArray = NDArray[np.float64]
@@ -26,8 +25,11 @@ _CHANNELS = 8
 _AMPLITUDES = (10.0, 1.0, 0.3, 0.1)
 _FREQUENCY_HZ = 1.0 + 1.0 / 97.3  # commensurate with neither rate
 _SUM = "plain sum"
-_OURS = "period sums, NumPy"
-_COMPILED = "period sums, compiled"
+_SHARED_SUM = f"{_SUM}, {cores()} threads"
+_QUIET = 1.05  # time by the clock over a core's part of the processor's: above, others had a core
+_PRODUCT = "matrix product of the same size"
+_OURS = "period sums"
+_SHARED = f"period sums, {cores()} threads"
 _NAIVE = "sine and cosine per channel and harmonic"
 _NAIVE_PIECE = f"{_NAIVE}, in a piece that the cache holds"
 
@@ -56,19 +58,19 @@ class _Field:
 
         self.contenders.append(Contender(name, call, scale, rounds))
 
-    def add_ours(self, name: str, *, compiled: bool) -> None:
+    def add_ours(self, name: str, threads: int) -> None:
         """Enter the period sums alone, and with what makes harmonics of them."""
         edges_s = self.recording.photocell_edges_s
         reference = from_photocell(np.empty(0) if edges_s is None else edges_s)
 
         def whole() -> None:
-            sums = period_sums(self.recording, reference, compiled=compiled)
+            sums = period_sums(self.recording, reference, threads=threads)
             self.found[name] = resolve(self.recording, sums).coefficients
 
         def alone() -> None:
-            period_sums(self.recording, reference, compiled=compiled)
+            period_sums(self.recording, reference, threads=threads)
 
-        whole()  # warms the compiled code up, and gives the error
+        whole()  # gives the error
         self.contenders.append(Contender(name, alone))
         self.contenders.append(Contender(f"{name}, and harmonics with intervals", whole))
 
@@ -99,38 +101,48 @@ def run(quick: bool, report: Report) -> Outcome:
     interleave(long.contenders, 2 if quick else 15, report)
     minute = _minute()
     interleave(minute.contenders, 3 if quick else 20, report)
-    best = {c.name: c.best_s for c in long.contenders}
-    measured = {"numpy_over_sum": best[_OURS] / best[_SUM]}
-    measured["sine_and_cosine_over_numpy"] = best[_NAIVE] / best[_OURS]
-    measured["sine_and_cosine_in_cache_over_numpy"] = best[_NAIVE_PIECE] / best[_OURS]
+    best = {c.name: c.best_processor_s for c in long.contenders}
+    measured = {
+        "over_sum": best[_OURS] / best[_SUM],
+        "over_product": best[_OURS] / best[_PRODUCT],
+        "sine_and_cosine_over_ours": best[_NAIVE] / best[_OURS],
+        "sine_and_cosine_in_cache_over_ours": best[_NAIVE_PIECE] / best[_OURS],
+    }
+    clock = {c.name: c.best_s for c in long.contenders}
+    if cores() == 2 and clock[_SHARED_SUM] < _QUIET * best[_SHARED_SUM] / cores():
+        measured["two_threads_over_one"] = clock[_SHARED] / clock[_OURS]
     tables = {
         f"Eight channels of {long.samples.shape[1]:,} samples, 10 kHz": _rows(long),
         "Runs of a minute: eight channels at 200 Hz": _run_rows(minute),
     }
-    if _COMPILED in best:
-        measured["compiled_over_sum"] = best[_COMPILED] / best[_SUM]
-        ratios = [best[name] / best[_COMPILED] for name in (_NAIVE, _NAIVE_PIECE)]
-        notes += (
-            f"Over the compiled sums, {_NAIVE} takes {ratios[0]:.0f} times as long, in a piece "
-            f"that the cache holds {ratios[1]:.0f} times.",
-        )
-        if not quick:
-            report("compiling in new interpreters")
-            tables["What compiling takes, once"] = compile_times()
     return Outcome(tables, measured, notes)
 
 
 def _long(count: int, *, quick: bool) -> tuple[_Field, tuple[str, ...]]:
     long = _field(count, 10_000.0)
     long.contenders.append(Contender(_SUM, long.samples.sum))
+    parts = np.array_split(long.samples, cores())
+    long.contenders.append(
+        Contender(_SHARED_SUM, lambda: spread(np.ndarray.sum, parts, len(parts)))
+    )
+    basis = np.random.default_rng(7).standard_normal((count, 7))
+    long.contenders.append(Contender(_PRODUCT, lambda: long.samples @ basis))
     notes = [
         "No noise: the errors are the methods' own. Each rival got the first part of the record "
         "that its row names, and its time is scaled up in proportion. The best round counts, "
         "of fifteen for the sums, of two for the rivals, one after the other in each round.",
         "The nearest bins and the plain products suffer from a record that is not whole periods; a "
         "user would cut it first.",
+        f"The matrix product is that of the samples with a basis of {basis.shape[1]} columns as "
+        "long as they are, on one thread: what the sums would cost at least if the basis were made "
+        "before. It reads that basis from memory too, which the sums need not.",
+        "Times are of the processor, all threads together, so that what else the machine does "
+        "counts less; the gain by threads is by the clock, and judged only where the plain sum by "
+        "as many threads had its cores to itself.",
+        "A plain sum is as fast as one core reads memory, so the ratio to it depends on the "
+        "machine: how fast its memory is for one core, against how fast that core multiplies.",
     ]
-    _enter_ours(long, notes)
+    _enter_ours(long)
     long.add_rival(_NAIVE, speed_rivals.sine_and_cosine, 1, channels=1)
     long.add_rival(_NAIVE_PIECE, speed_rivals.sine_and_cosine, 20)
     long.add_rival("trigonometry reused", speed_rivals.trigonometry_reused, 1)
@@ -143,7 +155,7 @@ def _long(count: int, *, quick: bool) -> tuple[_Field, tuple[str, ...]]:
 def _minute() -> _Field:
     minute = _field(12_000, 200.0)
     minute.contenders.append(Contender(_SUM, minute.samples.sum))
-    _enter_ours(minute, [])
+    _enter_ours(minute)
     minute.contenders.append(Contender("analyse, all of it", lambda: analyse(minute.recording)))
     minute.add_rival(_NAIVE, speed_rivals.sine_and_cosine, 1, rounds=5)
     minute.add_rival("trigonometry reused", speed_rivals.trigonometry_reused, 1, rounds=5)
@@ -153,12 +165,10 @@ def _minute() -> _Field:
     return minute
 
 
-def _enter_ours(arena: _Field, notes: list[str]) -> None:
-    arena.add_ours(_OURS, compiled=False)
-    if available():
-        arena.add_ours(_COMPILED, compiled=True)
-    else:
-        notes.append("The compiled sums were left out: numba is not installed.")
+def _enter_ours(arena: _Field) -> None:
+    arena.add_ours(_OURS, 1)
+    if cores() > 1:
+        arena.add_ours(_SHARED, cores())
 
 
 def _enter_peers(arena: _Field, part: int, notes: list[str]) -> None:
@@ -173,14 +183,15 @@ def _enter_peers(arena: _Field, part: int, notes: list[str]) -> None:
 
 
 def _rows(arena: _Field) -> list[Row]:
-    plain = arena.contenders[0].best_s
+    plain = arena.contenders[0].best_processor_s
     return [
         {
             "method": c.name,
             "measured on": "all" if c.scale == 1.0 else f"1/{c.scale:.0f}",
-            "time, s": c.best_s,
-            "time over sum": c.best_s / plain,
-            "million samples a second": arena.samples.size / c.best_s / 1e6,
+            "processor, s": c.best_processor_s,
+            "over sum": c.best_processor_s / plain,
+            "by the clock, s": c.best_s,
+            "million samples a second of processor": arena.samples.size / c.best_processor_s / 1e6,
             "largest error of S, C": arena.error(c.name),
         }
         for c in arena.contenders
@@ -188,13 +199,13 @@ def _rows(arena: _Field) -> list[Row]:
 
 
 def _run_rows(arena: _Field) -> list[Row]:
-    ours = next(c.best_s for c in arena.contenders if c.name == _OURS)
+    ours = next(c.best_processor_s for c in arena.contenders if c.name == _OURS)
     return [
         {
             "method": c.name,
-            "time a run, ms": 1e3 * c.best_s,
-            "runs a second": 1.0 / c.best_s,
-            f"time over {_OURS}": c.best_s / ours,
+            "processor a run, ms": 1e3 * c.best_processor_s,
+            "runs a second": 1.0 / c.best_processor_s,
+            f"over {_OURS}": c.best_processor_s / ours,
             "largest error of S, C": arena.error(c.name),
         }
         for c in arena.contenders

@@ -24,11 +24,17 @@ class Contender:
     scale: float = 1.0
     repeats: int = 1_000
     times_s: list[float] = field(default_factory=list)
+    processor_times_s: list[float] = field(default_factory=list)
 
     @property
     def best_s(self) -> float:
         """Best time of the whole work."""
         return min(self.times_s) * self.scale
+
+    @property
+    def best_processor_s(self) -> float:
+        """Best processor time of the whole work, all threads together; others' load counts less."""
+        return min(self.processor_times_s) * self.scale
 
 
 def interleave(contenders: list[Contender], rounds: int, report: Callable[[str], None]) -> None:
@@ -37,6 +43,7 @@ def interleave(contenders: list[Contender], rounds: int, report: Callable[[str],
         for contender in contenders:
             if k < contender.repeats:
                 report(f"{contender.name}, round {k + 1} of {rounds}")
-                started = time.perf_counter()
+                started, busy_s = time.perf_counter(), time.process_time()
                 contender.call()
                 contender.times_s.append(time.perf_counter() - started)
+                contender.processor_times_s.append(time.process_time() - busy_s)

@@ -5,7 +5,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from docutils.nodes import math, math_block
     from sphinx.application import Sphinx
+    from sphinx.writers.html5 import HTML5Translator
 
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE))
@@ -52,9 +54,26 @@ html_show_sphinx = False
 html_copy_source = False
 
 
+html_math_renderer = "mathml"
+
+
+def write_math(page: "HTML5Translator", node: "math | math_block") -> None:
+    """Write an equation as MathML, which a browser draws without asking anybody for a script."""
+    from docutils.nodes import SkipNode, math_block
+    from docutils.utils.math.latex2mathml import tex2mathml
+
+    alone = isinstance(node, math_block)
+    equation = tex2mathml(node.astext(), as_block=alone)
+    # What stands above and below an equation would else make its frame scroll.
+    page.body.append(f'<div style="padding: 0.3em 0">{equation}</div>' if alone else equation)
+    raise SkipNode
+
+
 def setup(app: "Sphinx") -> None:
-    """Make known what our pages call their excerpts."""
+    """Make known what our pages call their excerpts, and how an equation is drawn."""
     from pygments.lexers.special import TextLexer
+
+    app.add_html_math_renderer("mathml", (write_math, None), (write_math, None))
 
     for name in ("csv", "options"):
         app.add_lexer(name, TextLexer)

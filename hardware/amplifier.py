@@ -191,7 +191,7 @@ class Amplifier:
 
     def _scaled(self, raw: tuple[int | float, ...], valid: list[bool]) -> tuple[float, ...]:
         return tuple(
-            value * one.scale + one.offset if good else math.nan
+            value * one.scale + one.offset if good and math.isfinite(value) else math.nan
             for value, one, good in zip(raw, self._channels, valid, strict=True)
         )
 

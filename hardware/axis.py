@@ -16,13 +16,15 @@ from hardware.drive import (
     STEP_CYCLES,
     TARGET_POSITION,
     Drive,
+    motor_speed,
 )
-from hardware.driver import Driver, NodePlan, Services, join
+from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import HomingError, LimitError, NotReadyError
+from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN, check_quick_stop
+from hardware.motion import Motion
 from hardware.roles import Cycle, Reading, Role
 
 _STALE_CYCLES = 10  # a homing that was over before is believed after so many
-_MARGIN = 1.5  # a move may take so much longer than its profile
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,8 @@ class PositionAxisSettings:
         Of 6098; 35 takes the present position for ``home_position``.
     velocity_per_count
         Units of 6081, 6083 and so on for one count per second.
+    max_motor_speed_rpm
+        The motor's own limit, before any gear (6080); not written where it is not given.
     """
 
     node: int
@@ -62,6 +66,7 @@ class PositionAxisSettings:
     homing_timeout_s: float = 120.0
     home_position: float = 0.0
     velocity_per_count: float = 1.0
+    max_motor_speed_rpm: float | None = None
     eds: str = "cia402-drive.eds"
 
     def __post_init__(self) -> None:
@@ -69,6 +74,7 @@ class PositionAxisSettings:
         for key in keys:
             if not getattr(self, key) > 0.0:
                 raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_quick_stop(self.speed, self.quick_stop, f"{self.unit}/s", "quick_stop")
         if not self.low < self.high:
             raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
         furthest = max(abs(self.low), abs(self.high)) * abs(self.counts_per_unit)
@@ -99,7 +105,15 @@ class DriveAxis:
         self.homed = False
         self.settled = False
         self.drive = Drive(
-            join(nodes(name, settings)[0], services), (Mode.PROFILE_POSITION, Mode.HOMING)
+            join(nodes(name, settings)[0], services),
+            (Mode.PROFILE_POSITION, Mode.HOMING),
+            Motion(
+                settings.counts_per_unit,
+                f"{settings.unit}/s",
+                AXIS_REST_SHARE * settings.speed,
+                services.sample_rate_hz,
+                gap_cycles(services),
+            ),
         )
         self._settings = settings
         self._rate_hz = services.sample_rate_hz
@@ -114,7 +128,11 @@ class DriveAxis:
 
     @property
     def moving(self) -> bool:
-        """Whether a move, a homing or a stop is under way."""
+        """Whether the axis moves by its encoder, or a move or homing is under way."""
+        return self._pursuing or not self.drive.motion.at_rest
+
+    @property
+    def _pursuing(self) -> bool:
         return self._step is not _Step.IDLE
 
     @property
@@ -135,8 +153,8 @@ class DriveAxis:
         self.drive.head_for(Goal.ENABLED)
 
     def disable(self) -> None:
-        """Take the power off."""
-        self._abandon()
+        """Take the power off as soon as the axis is at rest: by quick stop if it moves."""
+        self._break_off()
         self.drive.head_for(Goal.DISABLED)
 
     def home(self) -> None:
@@ -176,13 +194,13 @@ class DriveAxis:
 
     def stop(self) -> None:
         """Decelerate along the profile, then stand under power."""
-        if self._step is not _Step.IDLE:
-            self._abandon()
+        if self.moving:
+            self._break_off()
             self.drive.extra = Control.HALT
 
     def quick_stop(self) -> None:
         """Decelerate on the quick-stop ramp."""
-        self._abandon()
+        self._break_off()
         self.drive.head_for(Goal.QUICK_STOPPED)
 
     def reset_fault(self) -> None:
@@ -199,6 +217,8 @@ class DriveAxis:
             (
                 (Entry(0x607D, 1), ends[0]),
                 (Entry(0x607D, 2), ends[1]),
+                (Entry(0x607F), round(per_unit * max(one.speed, one.homing_speed))),
+                *motor_speed(one.max_motor_speed_rpm),
                 (Entry(0x6081), round(per_unit * one.speed)),
                 (Entry(0x6083), round(per_unit * one.acceleration)),
                 (Entry(0x6084), round(per_unit * one.acceleration)),
@@ -214,6 +234,11 @@ class DriveAxis:
             )
         )
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What its drive lacks, a sentence each."""
+        return self.drive.notes
+
     def tick(self, cycle: Cycle) -> None:
         """Pursue the move or the homing, one step a cycle.
 
@@ -222,10 +247,11 @@ class DriveAxis:
         HomingError
             If the drive reports one; other faults as in :meth:`hardware.drive.Drive.tick`.
         """
-        if self.moving and not self.enabled:
+        self.drive.listen(cycle.number)
+        if self._pursuing and not self.enabled:
             self._abandon()
         try:
-            if self.moving:
+            if self._pursuing:
                 self._pursue(self.drive.status)
         finally:
             self.drive.tick()
@@ -239,8 +265,14 @@ class DriveAxis:
         self.settled = False
         self._stale_cycles = 0
         self.drive.mode, self.drive.extra = mode, Control(0)
-        self.drive.within(4 * STEP_CYCLES + _MARGIN * time_s * self._rate_hz, what)
+        self.drive.within(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, what)
         self._step = _Step.MODE
+
+    def _break_off(self) -> None:
+        """End what is under way; the encoder has not shown yet what the drive was told last."""
+        if self._pursuing:
+            self.drive.motion.disturb()
+        self._abandon()
 
     def _abandon(self) -> None:
         self._step, self.drive.extra = _Step.IDLE, Control(0)
@@ -272,7 +304,7 @@ class DriveAxis:
             self._stale_cycles += 1
             if not attained or self._stale_cycles > _STALE_CYCLES:
                 self._step = _Step.UNDER_WAY
-        elif self._step is _Step.UNDER_WAY and attained:
+        elif self._step is _Step.UNDER_WAY and attained and self.drive.motion.at_rest:
             self.homed = self.settled = True
             self._abandon()
 
@@ -282,7 +314,7 @@ class DriveAxis:
         elif self._step is _Step.UNDER_WAY and Status.SET_POINT_ACKNOWLEDGED not in status:
             off = abs(int(self.drive.node.values[POSITION]) - self._target)
             near = off <= self._settings.tolerance * abs(self._settings.counts_per_unit)
-            if near and Status.TARGET_REACHED in status:
+            if near and Status.TARGET_REACHED in status and self.drive.motion.at_rest:
                 self.settled = True
                 self._abandon()
 

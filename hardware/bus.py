@@ -49,6 +49,10 @@ class BusConfiguration:
     answer_ms
         How long the answers to a SYNC are waited for; 0 is four fifths of the period. Longer is for
         cycles that do not keep to a clock, so that a slow peer costs time and no samples.
+    listen_ms
+        How long to listen for another controller before anything is sent. One that runs a rig sends
+        SYNC many times a second and its heartbeat at least once; half of it may miss a heartbeat
+        alone, twice only takes longer. 0 does not listen.
     sync_overflow
         The SYNC counter runs from 1 to here (2 to 240); 0 sends SYNC without a counter.
     options
@@ -65,6 +69,7 @@ class BusConfiguration:
     heartbeat_limit_ms: int = 300
     allowed_gap_cycles: int = 3
     answer_ms: int = 0
+    listen_ms: int = 1000
     sync_overflow: int = 240
     options: Mapping[str, int | float | str | bool] = field(
         default_factory=lambda: MappingProxyType({})

@@ -7,7 +7,12 @@ status word and returns the control word to send; its deadlines are counted in t
 from enum import Enum, IntEnum, IntFlag
 from typing import Final
 
-from hardware.errors import DriveFaultError, DriveStateError, TransitionTimeoutError
+from hardware.errors import (
+    DriveFaultError,
+    DriveStateError,
+    NotAtRestError,
+    TransitionTimeoutError,
+)
 
 
 class State(Enum):
@@ -137,7 +142,7 @@ def state_of(status_word: int) -> State:
 
 
 def next_command(state: State, goal: Goal) -> Command:
-    """Return the command that leads from ``state`` one step towards ``goal``."""
+    """Return the command that leads an axis at rest from ``state`` one step towards ``goal``."""
     if goal is Goal.ENABLED:
         return _UP.get(state, Command.DISABLE_VOLTAGE)
     if goal is Goal.QUICK_STOPPED:
@@ -148,23 +153,37 @@ def next_command(state: State, goal: Goal) -> Command:
 class Walk:
     """Walks a drive from state to state, one control word a tick.
 
+    Power is taken off an axis at rest only: until then the word is a quick stop, which from every
+    state either brakes or leaves the drive without torque. An axis that does not come to rest by
+    its deadline loses its power all the same, with an alarm.
+
     Parameters
     ----------
     name
         The axis, for messages.
     step_cycles
         Ticks that one transition may take.
+    rest_cycles
+        Ticks that a quick stop may take until the axis rests.
+
+    Attributes
+    ----------
+    word
+        The control word of the last tick.
     """
 
-    def __init__(self, name: str, step_cycles: int) -> None:
+    def __init__(self, name: str, step_cycles: int, rest_cycles: int) -> None:
         self._name = name
         self._step_cycles = step_cycles
-        self._waited = 0
+        self._rest_cycles = rest_cycles
+        self._waited = self._braked = 0
         self._arrived = False
         self._reset: int | None = None
         self._quiet = False
+        self._at_rest = False
         self.goal = Goal.DISABLED
         self.state = State.NOT_READY_TO_SWITCH_ON
+        self.word = int(Command.QUICK_STOP)
 
     @property
     def arrived(self) -> bool:
@@ -179,8 +198,13 @@ class Walk:
     def head_for(self, goal: Goal) -> None:
         """Change the goal; the next tick takes the first step.
 
-        An arrival at the old goal is forgotten, so that leaving it is no surprise.
+        An arrival at the old goal is forgotten, so that leaving it is no surprise. A quick stop of
+        a drive whose power is to go changes nothing: it brakes already.
         """
+        if goal is Goal.QUICK_STOPPED and self.goal is Goal.DISABLED:
+            return
+        if goal is not self.goal:
+            self._braked = 0
         self.goal = goal
         self._waited = 0
         self._arrived = False
@@ -191,8 +215,8 @@ class Walk:
         self._reset = 0
         self._quiet = False
 
-    def tick(self, status_word: int) -> int:
-        """Take a status word and return the control word for it.
+    def tick(self, status_word: int, *, at_rest: bool) -> int:
+        """Take a status word, and whether the axis is at rest; return the control word for it.
 
         Raises
         ------
@@ -202,18 +226,49 @@ class Walk:
             If the drive left the goal by itself; the goal becomes ``DISABLED``.
         TransitionTimeoutError
             If a step takes longer than its cycles; the goal becomes ``DISABLED``.
+        NotAtRestError
+            If the axis has not come to rest by its deadline; the power goes now.
         """
-        before, self.state = self.state, state_of(status_word)
-        if self._reset is not None:
-            return self._resetting(status_word)
-        if self.faulty:
-            return self._in_fault(status_word)
+        before, self.state, self._at_rest = self.state, state_of(status_word), at_rest
+        edge = 0
+        try:
+            if self._reset is not None:
+                edge = self._resetting(status_word)
+            elif self.faulty:
+                self._in_fault(status_word)
+            else:
+                self._pursue(before, status_word)
+        finally:
+            self.word = self._command() | edge
+        return self.word
+
+    def _command(self) -> Command:
+        """Return the next command, or the quick stop that has to come to rest before it."""
+        command = next_command(self.state, self.goal)
+        braking = not self._at_rest and self._braked <= self._rest_cycles
+        return Command.QUICK_STOP if command is Command.DISABLE_VOLTAGE and braking else command
+
+    def _pursue(self, before: State, status_word: int) -> None:
         self._quiet = False
         if self.arrived:
-            self._waited, self._arrived = 0, True
+            self._waited, self._arrived, self._braked = 0, True, 0
+        elif self._command() is Command.QUICK_STOP and self.goal is not Goal.QUICK_STOPPED:
+            self._brake(status_word)
         else:
             self._under_way(before, status_word)
-        return next_command(self.state, self.goal)
+
+    def _brake(self, status_word: int) -> None:
+        """Wait for rest, which the drive's own state does not show."""
+        self._waited = 0
+        self._braked += 1
+        if self._braked > self._rest_cycles:
+            self.goal, self._arrived = Goal.DISABLED, False
+            raise NotAtRestError(
+                self._name,
+                f"not at rest {self._rest_cycles} cycles after its quick stop (status word "
+                f"0x{status_word:04X}); its power is taken off and it coasts: look at it, and use "
+                "the emergency stop if it turns",
+            )
 
     def _under_way(self, before: State, status_word: int) -> None:
         wanted = self.goal
@@ -233,21 +288,20 @@ class Walk:
                 f"{self._step_cycles} cycles on the way to {wanted.value}",
             )
 
-    def _in_fault(self, status_word: int) -> int:
+    def _in_fault(self, status_word: int) -> None:
         if not self._quiet:
             self._quiet = True
             self.head_for(Goal.DISABLED)
             raise DriveFaultError(
                 self._name, f"{self.state.name} (status word 0x{status_word:04X}); reset it"
             )
-        return Command.DISABLE_VOLTAGE
 
     def _resetting(self, status_word: int) -> int:
-        """Return 0 once, then bit 7, until the drive has left FAULT."""
+        """Return no edge once, then bit 7, until the drive has left FAULT."""
         sent, self._reset = self._reset or 0, (self._reset or 0) + 1
         if sent and not self.faulty:
             self._reset = None
-            return Command.DISABLE_VOLTAGE
+            return 0
         if sent > self._step_cycles:
             self._reset, self._quiet = None, True
             raise TransitionTimeoutError(
@@ -255,4 +309,4 @@ class Walk:
                 f"still {self.state.name} (status word 0x{status_word:04X}) "
                 f"{self._step_cycles} cycles after a fault reset",
             )
-        return Command.FAULT_RESET if sent else Command.DISABLE_VOLTAGE
+        return Command.FAULT_RESET if sent else 0

@@ -3,15 +3,18 @@
 from collections.abc import Iterable
 from typing import Final
 
-from hardware.cia402 import Control, Goal, Mode, State, Status, Walk, next_command
+from hardware.cia402 import Control, Goal, Mode, State, Status, Walk
 from hardware.description.errors import ConfigurationError
-from hardware.dictionary import Entry, has
+from hardware.dictionary import Entry
 from hardware.errors import (
     DriveFaultError,
     FollowingError,
     HardwareError,
+    SdoAbortError,
     TransitionTimeoutError,
 )
+from hardware.limits import READ_BACK_SHARE, REST_DEADLINE_S
+from hardware.motion import Motion
 from hardware.node import Node
 from hardware.sdo import Number
 
@@ -22,16 +25,39 @@ TARGET_POSITION, TARGET_VELOCITY = Entry(0x607A), Entry(0x60FF)
 PROBE_POSITION, PROBE_EDGES, PROBE_STATUS = Entry(0x60BA), Entry(0x60D5), Entry(0x60B9)
 
 STATE_PDOS: Final = ((STATUS_WORD, MODE_DISPLAY, POSITION), (VELOCITY, ERROR_CODE))
+_POSITION_AT: Final = STATE_PDOS[0].index(POSITION)
 PROBE_PDO: Final = (PROBE_POSITION, PROBE_EDGES, PROBE_STATUS)
 
-_SUPPORTED_MODES = Entry(0x6502)
+_SUPPORTED_MODES, _MAX_MOTOR_SPEED = Entry(0x6502), Entry(0x6080)
 _FOLLOWING_ERROR_CODE: Final = 0x8611
 _SAFETY: Final = (
     (Entry(0x6007), 3),  # connection lost: quick stop
     (Entry(0x605A), 6),  # quick stop: decelerate on the quick-stop ramp and stay in that state
-    (Entry(0x605E), 2),  # fault: decelerate on the quick-stop ramp
+    (Entry(0x605B), 1),  # shutdown: decelerate along the profile before the power goes
+    (Entry(0x605C), 1),  # disable operation: the same
     (Entry(0x605D), 1),  # halt: decelerate along the profile
+    (Entry(0x605E), 2),  # fault: decelerate on the quick-stop ramp
 )
+# What CiA 402 leaves to the maker: a drive without one of them is named, and used all the same.
+_OPTIONAL: Final = {
+    0x6007: "abort connection option: it may go on when the controller falls silent",
+    0x605A: "quick stop option: it stops as its maker chose",
+    0x605B: "shutdown option: it stops as its maker chose",
+    0x605C: "disable operation option: it stops as its maker chose",
+    0x605D: "halt option: it stops as its maker chose",
+    0x605E: "fault reaction option: it stops as its maker chose",
+    0x6065: "following error window: it does not notice that it strays",
+    0x6066: "following error time-out: it decides itself how long it may stray",
+    0x6067: "position window: it decides itself what arrived means",
+    0x607C: "home offset: it counts from its own reference",
+    0x607D: "software position limit: the controller alone keeps it",
+    0x607F: "max profile velocity: the controller alone keeps it",
+    0x6080: "max motor speed: the controller alone keeps it",
+    0x6084: "profile deceleration: it stops at its acceleration",
+    0x6085: "quick stop deceleration: it stops as its maker chose",
+    0x609A: "homing acceleration: it homes as its maker chose",
+}
+_ABSENT: Final = (0x06020000, 0x06090011)  # CiA 301: no such object, no such sub-index
 STEP_CYCLES: Final = 50
 
 
@@ -44,17 +70,23 @@ class Drive:
         The mode of operation that is asked for.
     extra
         Bits of the control word beyond the state machine's; sent in OPERATION ENABLED only.
+    motion
+        Whether the axis moves, by the positions that the drive sends.
+    notes
+        What the drive lacks of its optional objects, a sentence each; known once it is prepared.
     """
 
-    def __init__(self, node: Node, modes: tuple[Mode, ...]) -> None:
+    def __init__(self, node: Node, modes: tuple[Mode, ...], motion: Motion) -> None:
         self.node = node
+        self.motion = motion
         self.mode = modes[0]
         self.extra = Control(0)
         self._modes = modes
-        self._walk = Walk(node.name, STEP_CYCLES)
+        self._walk = Walk(node.name, STEP_CYCLES, round(REST_DEADLINE_S * motion.sample_rate_hz))
         self._strayed = False
         self._deadline: int | None = None
         self._waiting_for = ""
+        self.notes: tuple[str, ...] = ()
 
     @property
     def status(self) -> Status:
@@ -67,11 +99,6 @@ class Drive:
         return self._walk.goal is Goal.ENABLED and self._walk.state is State.OPERATION_ENABLED
 
     @property
-    def stopping(self) -> bool:
-        """Whether a quick stop was commanded."""
-        return self._walk.goal is Goal.QUICK_STOPPED
-
-    @property
     def in_mode(self) -> bool:
         """Whether the drive displays the mode that is asked for."""
         return int(self.node.values[MODE_DISPLAY]) == self.mode
@@ -79,10 +106,15 @@ class Drive:
     def prepare(self, settings: Iterable[tuple[Entry, Number]]) -> None:
         """Check the supported modes, write the safety options and the axis's own settings.
 
+        Everything is read back. An optional object that the drive lacks is told in :attr:`notes`.
+
         Raises
         ------
         ConfigurationError
-            If the drive does not support a mode that the axis needs.
+            If the drive does not support a mode that the axis needs, or keeps another value than
+            the one that was written.
+        SdoAbortError
+            If it refuses a value, or lacks an object that is not optional.
         """
         supported = int(self.node.sdo.read(_SUPPORTED_MODES))
         for mode in self._modes:
@@ -91,9 +123,28 @@ class Drive:
                     f"{self.node.name}: the drive does not support {mode.name.lower()} "
                     f"(object 6502 = 0x{supported:08X}, bit {mode.value - 1} is 0)"
                 )
-        for at, value in (*_SAFETY, *settings):
-            if has(self.node.dictionary, at):
-                self.node.sdo.write(at, value)
+        written = [(at, self._keep(at, value)) for at, value in (*_SAFETY, *settings)]
+        self.notes = tuple(
+            f"{self.node.name}: the drive lacks object {at}, {_OPTIONAL[at.object_index]}"
+            for at, kept in written
+            if not kept
+        )
+
+    def _keep(self, at: Entry, value: Number) -> bool:
+        """Write an object and read it back; tell whether the drive has it."""
+        try:
+            self.node.sdo.write(at, value)
+            kept = self.node.sdo.read(at)
+        except SdoAbortError as error:
+            if error.code not in _ABSENT or at.object_index not in _OPTIONAL:
+                raise
+            return False
+        if not isinstance(kept, str) and abs(kept - value) <= READ_BACK_SHARE * abs(value):
+            return True
+        raise ConfigurationError(
+            f"{self.node.name}: object {at} was set to {value} and reads {kept} (limit "
+            f"{READ_BACK_SHARE:.0%} off); set the drive's own range, or rig.toml, so that it fits"
+        )
 
     def head_for(self, goal: Goal) -> None:
         """Change the state to be in; a pending deadline is off."""
@@ -115,29 +166,33 @@ class Drive:
         """Take the deadline back."""
         self._deadline = None
 
+    def listen(self, number: int) -> list[tuple[int, int]]:
+        """Take the positions of cycle ``number``; return them with their numbers, unwrapped."""
+        samples = self.node.streams[0].samples
+        return self.motion.take(
+            number, [(one, int(values[_POSITION_AT])) for one, values in samples]
+        )
+
     def tick(self) -> None:
         """Take the status word, set the control word.
 
         Raises
         ------
-        DriveFaultError, FollowingError, DriveStateError, TransitionTimeoutError
+        DriveFaultError, FollowingError, DriveStateError, TransitionTimeoutError, NotAtRestError
             Each once.
         """
         status = self.status
         try:
-            word = self._walk.tick(int(status))
+            self._walk.tick(int(status), at_rest=self.motion.at_rest)
         except DriveFaultError as error:
-            self._put(next_command(self._walk.state, self._walk.goal))
             raise self._named() from error
-        except HardwareError:
-            self._put(next_command(self._walk.state, self._walk.goal))
-            raise
-        self._put(word)
+        finally:
+            self._put()
         self._watch(status)
 
-    def _put(self, word: int) -> None:
+    def _put(self) -> None:
         extra = self.extra if self.enabled else Control(0)
-        self.node.put(CONTROL_WORD, word | extra)
+        self.node.put(CONTROL_WORD, self._walk.word | extra)
         self.node.put(MODE, self.mode)
 
     def _named(self) -> HardwareError:
@@ -166,3 +221,8 @@ class Drive:
                 f"{self._waiting_for}: not in time (status word 0x{int(status):04X}, "
                 f"position {self.node.values[POSITION]})",
             )
+
+
+def motor_speed(rpm: float | None) -> tuple[tuple[Entry, Number], ...]:
+    """Return what sets a motor's highest speed; nothing where it is not given."""
+    return () if rpm is None else ((_MAX_MOTOR_SPEED, round(rpm)),)

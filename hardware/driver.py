@@ -8,6 +8,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import dotted, not_finite
 from hardware.dictionary import Entry, Layout, layout, load
 from hardware.roles import Device, Role
 from hardware.serial_port import Ports, SerialPort
@@ -97,6 +98,11 @@ def join(plan: NodePlan, services: Services) -> "Node":
     return services.master.add(plan.name, plan.node_id, dictionary, *plan.layouts())
 
 
+def gap_cycles(services: Services) -> int:
+    """Return after how many cycles without process data a value is stale."""
+    return services.master.configuration.allowed_gap_cycles if services.master else 0
+
+
 def _no_nodes(name: str, settings: Any) -> tuple[NodePlan, ...]:  # noqa: ARG001
     return ()
 
@@ -175,6 +181,7 @@ def read_settings(kind: type[T], table: Mapping[str, object], where: str) -> T:
         if key not in known
     ]
     given = {key: value for key, value in table.items() if key in known}
+    faults += [f"{where}.{dotted(place)} has to be a finite number" for place in not_finite(given)]
     settings: T | None = None
     try:
         settings = _adapter(cast("Any", kind)).validate_json(json.dumps(given), strict=True)

@@ -4,7 +4,10 @@ Every class names the situations that raise it. :attr:`HardwareError.reaction` i
 safety table: what has to happen to the rig, whoever notices.
 """
 
+import traceback
+from collections.abc import Iterable
 from enum import IntEnum
+from pathlib import Path
 from typing import ClassVar
 
 from hardware.description.errors import PmmError
@@ -66,6 +69,12 @@ class ProcessDataLostError(HardwareError):
     """A node answered no SYNC with its process data for more than the allowed cycles."""
 
 
+class OtherMasterError(HardwareError):
+    """Another controller commands the bus: its SYNC, NMT, SDO or process data are heard on it."""
+
+    reaction = Reaction.END_RUN  # its commands may undo ours: the drives stop by themselves too
+
+
 class EmergencyError(HardwareError):
     """A node sent an emergency message (EMCY) with an error code other than reset.
 
@@ -92,6 +101,18 @@ class DriveFaultError(HardwareError):
 
 class DriveStateError(HardwareError):
     """A drive left the state that it was commanded to: power lost, quick stop input, local key."""
+
+
+class NotAtRestError(HardwareError):
+    """After a stop nothing says that the axes stand: the bus is lost, or a drive does not brake."""
+
+
+class OverspeedError(HardwareError):
+    """The shaft turns faster than it may, in either sense."""
+
+
+class OverloadError(HardwareError):
+    """A gauge carries more than its safe load."""
 
 
 class TransitionTimeoutError(HardwareError):
@@ -204,3 +225,34 @@ class DialReadingError(HardwareError):
     """An operator's dial reading is no number, or too far from what was asked for."""
 
     reaction = Reaction.REFUSE
+
+
+class ProgramError(HardwareError):
+    """The program itself failed while it drove the rig: an exception that nobody foresaw."""
+
+
+def as_fault(device: str, error: Exception) -> HardwareError:
+    """Return an exception as a fault: itself if it is one, else the program's own.
+
+    What drives a rig must not end by an exception: nobody would be left to stop the axes.
+
+    Parameters
+    ----------
+    device
+        Whose code raised it, as the configuration names it.
+    """
+    if isinstance(error, HardwareError):
+        return error
+    places = traceback.extract_tb(error.__traceback__)
+    place = f" ({Path(places[-1].filename).name}:{places[-1].lineno})" if places else ""
+    fault = ProgramError(device, f"{type(error).__name__}: {error}{place}")
+    fault.__cause__ = error
+    return fault
+
+
+def worst(found: Iterable[HardwareError]) -> HardwareError:
+    """Return the most severe of some faults, the first of equals; the others are its notes."""
+    one, *others = sorted(found, key=lambda error: -error.reaction)
+    for other in others:
+        one.add_note(f"also: {other}")
+    return one

@@ -13,8 +13,9 @@ from hardware.errors import (
     LineError,
     SensorInvalidError,
     SilentPortError,
+    worst,
 )
-from hardware.lines import SEQUENCE_MODULUS, Kind, Line, Unwrapped, decode
+from hardware.lines import SEQUENCE_MODULUS, Decoder, Kind, Line, Unwrapped
 from hardware.roles import Block, Cycle, Role, Sample, blocks
 from hardware.serial_port import PortSettings
 
@@ -51,6 +52,7 @@ class SerialInclinometer:
         self.sample_rate_hz = settings.sample_rate_hz
         self._settings = settings
         self._port = services.port(name, settings.port)
+        self._decoder = Decoder(name)
         self._sequence = Unwrapped(SEQUENCE_MODULUS)
         self._samples: list[Sample] = []
         self._heard_s: float | None = None
@@ -65,20 +67,20 @@ class SerialInclinometer:
         Raises
         ------
         SensorInvalidError
-            If an angle is no number, or at or beyond the range; once, until it is back.
+            If an angle is at or beyond the range; once, until it is back.
         UnpluggedError, SilentPortError, LineError
             As the line shows.
         """
         faults: list[HardwareError] = []
         for raw in self._port.lines():
             try:
-                self._take(decode(raw, self.name))
+                self._take(self._decoder.decode(raw))
                 self._heard_s = cycle.time_s
             except HardwareError as error:
                 faults.append(error)
         self._listen(cycle.time_s, faults)
         if faults:
-            raise faults[0]
+            raise worst(faults)
 
     def take(self) -> tuple[Block, ...]:
         """Return the samples since the last call: one channel, in radians."""
@@ -114,7 +116,7 @@ class SerialInclinometer:
             raise LineError(self.name, f"a line of kind {line.kind} is no angle; swap the ports")
         angle = line.value * self._settings.rad_per_unit
         self._samples.append((self._sequence.take(line.sequence), (angle,)))
-        inside = math.isfinite(angle) and abs(angle) < self._settings.range_rad
+        inside = abs(angle) < self._settings.range_rad
         if inside:
             self._told.discard(SensorInvalidError)
         elif SensorInvalidError not in self._told:

@@ -3,9 +3,10 @@ r"""Lines of the small serial devices: ``kind,sequence,ticks,value*checksum`` an
 ``P,17,4294967295,3*44`` is line 17: pulse number 3 at 4294967295 microseconds of the device's own
 counter. The sequence is of 16 bits and counts every line; ticks are of 32 bits and wrap after
 71.6 minutes; the checksum is the exclusive or of all bytes before the asterisk, in two hexadecimal
-digits, as in NMEA 0183.
+digits, as in NMEA 0183. A value is a decimal number, of a pulse or a mark a whole one.
 """
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import reduce
@@ -16,6 +17,13 @@ from hardware.errors import LineError
 
 SEQUENCE_MODULUS: Final = 2**16
 TICK_MODULUS: Final = 2**32
+# No count of 32 bits and no angle in any unit is larger; twice or half of it would serve as well.
+LARGEST_VALUE: Final = 2.0**32
+_BODY: Final = re.compile(
+    rb"([PTA]),(\d{1,5}),(\d{1,10}),([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+)
+_SHOWN: Final = 64  # bytes of a malformed line in its message
+_CHECKSUM: Final = re.compile(rb"[0-9A-Fa-f]{2}")
 
 
 class Kind(StrEnum):
@@ -55,23 +63,62 @@ def decode(raw: bytes, device: str) -> Line:
     Raises
     ------
     LineError
-        If the checksum is wrong, a field is missing or is no number.
+        If the checksum is wrong, a field is missing, is no number, or is out of its range.
     """
-    body, star, given = raw.strip().rpartition(b"*")
-    try:
-        right = bool(star) and int(given, 16) == checksum(body)
-    except ValueError:
-        right = False
-    if not right:
-        raise LineError(
-            device, f"{raw!r} has a wrong checksum (its body gives {checksum(body):02X})"
-        )
-    fields = body.split(b",")
-    try:
-        kind, sequence, ticks, value = fields
-        return Line(Kind(kind.decode("ascii")), int(sequence), int(ticks), float(value))
-    except ValueError as error:
-        raise LineError(device, f"{raw!r} is no line: {error}") from error
+    return Decoder(device).decode(raw)
+
+
+class Decoder:
+    """Decodes the lines of a device.
+
+    Attributes
+    ----------
+    malformed
+        How many were none so far.
+    """
+
+    def __init__(self, device: str) -> None:
+        self.malformed = 0
+        self._device = device
+
+    def decode(self, raw: bytes) -> Line:
+        """Return what a line says; raises as :func:`decode`, which counts from 1."""
+        try:
+            return _parsed(raw)
+        except ValueError as error:
+            self.malformed += 1
+            shown = repr(raw if len(raw) <= _SHOWN else raw[:_SHOWN] + b"...")
+            raise LineError(
+                self._device, f"{shown} {error}; malformed line {self.malformed}"
+            ) from None
+
+
+def _parsed(raw: bytes) -> Line:
+    """Return what a line says; a ValueError tells why it is none."""
+    body, _, given = raw.strip().rpartition(b"*")
+    if not _CHECKSUM.fullmatch(given) or int(given, 16) != checksum(body):
+        raise ValueError(f"has a wrong checksum (its body gives {checksum(body):02X})")
+    found = _BODY.fullmatch(body)
+    if found is None:
+        raise ValueError("is no line: not kind,sequence,ticks,value in decimal digits")
+    line = Line(Kind(found[1].decode()), int(found[2]), int(found[3]), float(found[4]))
+    what = _out_of_range(line)
+    if what:
+        raise ValueError(f"is no line: {what}")
+    return line
+
+
+def _out_of_range(line: Line) -> str:
+    """Say which field is beyond what a device can count; empty if none is."""
+    if line.sequence >= SEQUENCE_MODULUS:
+        return f"sequence {line.sequence} (limit {SEQUENCE_MODULUS - 1})"
+    if line.ticks_us >= TICK_MODULUS:
+        return f"ticks {line.ticks_us} (limit {TICK_MODULUS - 1})"
+    if not abs(line.value) < LARGEST_VALUE:
+        return f"value {line.value:g} (limit {LARGEST_VALUE:g})"
+    if line.kind is not Kind.ANGLE and not (line.value >= 0.0 and line.value.is_integer()):
+        return f"value {line.value:g} is no count of pulses"
+    return ""
 
 
 class Unwrapped:

@@ -38,7 +38,7 @@ class ManualShaft:
     @property
     def moving(self) -> bool:
         """Whether the shaft turns as far as anyone has said; unknown counts as turning."""
-        return self._question.open or self.measured_frequency_hz > 0.0
+        return self._question.open or self.measured_frequency_hz != 0.0
 
     @property
     def at_speed(self) -> bool:
@@ -50,8 +50,10 @@ class ManualShaft:
         """Nothing to write."""
 
     def enable(self) -> None:
-        """Let the shaft be started."""
+        """Let the shaft be started; if nobody has said yet that it stands, ask for that."""
         self.enabled = True
+        if math.isnan(self.measured_frequency_hz):
+            self.stop()
 
     def disable(self) -> None:
         """Have the shaft stopped and let it be started no more."""

@@ -2,16 +2,18 @@
 
 import threading
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from typing import Final
 
 import can
 import canopen
 
 from hardware.bus import BusConfiguration, Pumped, Receiver, Sender, Threaded, open_bus
+from hardware.bus_owner import is_private, owned_bus
 from hardware.dictionary import Entry, Layout
-from hardware.errors import HardwareError
+from hardware.errors import HardwareError, as_fault
 from hardware.node import Node, Stream
+from hardware.other_master import Company
 from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
 
 Clock = Callable[[], float]
@@ -62,7 +64,10 @@ class Master:
         self.nodes: list[Node] = []
         self.error_frames = ErrorFrames()
         self._observers = tuple(observers)
-        self._bus = open_bus(configuration)
+        with ExitStack() as stack:
+            stack.enter_context(owned_bus(configuration))
+            self._bus = open_bus(configuration)
+            self._owned = stack.pop_all()
         self._sender = Sender(self._bus)
         receiver = Threaded if configuration.receive_thread else Pumped
         self._receiver: Receiver = receiver(self._bus)
@@ -72,6 +77,7 @@ class Master:
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
         self._number = 0
         self._commanded = False  # whether any node's state was commanded
+        self._company = Company(configuration)
         self._operating = False
         self._missing = 0
         beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
@@ -97,21 +103,31 @@ class Master:
         return node
 
     def prepare(self) -> None:
-        """Bring all nodes to pre-operational and configure them.
+        """Listen for another master, then bring all nodes to pre-operational and configure them.
 
         Raises
         ------
+        OtherMasterError
+            If another one commands the bus: nothing was sent.
         SdoTimeoutError, SdoAbortError
             If a node does not answer or refuses.
         """
+        self._listen()
         self._commanded = True
         self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
         for node in self.nodes:
             node.configure(self.configuration)
 
     def start(self) -> None:
-        """Start all nodes and the supervision."""
+        """Start all nodes and the supervision.
+
+        Raises
+        ------
+        OtherMasterError
+            If another one has commanded the bus meanwhile.
+        """
         self._drain()
+        self._company.refuse()
         self._supervisor = Supervisor(self.configuration, self.nodes)
         self._supervisor.start(self._number)
         for node in self.nodes:
@@ -131,27 +147,36 @@ class Master:
             try:
                 self._announce(number)
                 faults = self._collect()
-            except HardwareError as error:
-                faults = [error]
-            for stream in self._streams.values():
-                stream.close(number)
-            faults += self.error_frames.check(self._bus.state)
-            return faults + (self._supervisor.check(number) if self._operating else [])
+            except Exception as error:  # an adapter may raise anything
+                faults = [as_fault("bus", error)]
+            try:
+                faults += self._watch(number)
+            except Exception as error:  # what is found in a cycle is told, whatever comes of it
+                faults.append(as_fault("bus", error))
+            return faults
 
     def flush(self) -> list[HardwareError]:
-        """Send the process data that the devices have set; return what went wrong."""
+        """Send the process data that the devices have set; return what went wrong.
+
+        A value that fits no object of a node does not keep the other nodes from theirs; a bus that
+        takes nothing is not tried again and again.
+        """
         repeat = self._number % _REPEAT_CYCLES == 0
-        try:
-            for node in self.nodes:
+        faults: list[HardwareError] = []
+        for node in self.nodes:
+            try:
                 for identifier, data in node.outputs(repeat=repeat):
                     self._send(identifier, data)
-        except HardwareError as error:
-            return [error]
-        return []
+            except HardwareError as error:
+                return [*faults, error]
+            except Exception as error:  # a value that does not fit its object, for example
+                faults.append(as_fault(node.name, error))
+        return faults
 
     def reset(self) -> None:
         """Let findings be told again and the heartbeat run: the operator has reset the faults."""
         self._supervisor.reset()
+        self._company.forget()
         self.healthy = True
 
     def send(self, identifier: int, data: bytes) -> None:
@@ -185,10 +210,11 @@ class Master:
     def close(self) -> None:
         """Bring the nodes to pre-operational if possible, and let go of the bus.
 
-        A master that has only looked, as a scan does, leaves the nodes as they were.
+        A master that has only looked, as a scan does, leaves the nodes as they were; so does one
+        that has met another.
         """
         try:
-            if self._commanded:
+            if self._commanded and not self._company.met:
                 self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
         except HardwareError:
             pass  # a lost bus cannot be told anything
@@ -196,19 +222,35 @@ class Master:
             self._receiver.close()
             with suppress(can.CanError, OSError):  # a dead adapter cannot be told good-bye
                 self._bus.shutdown()
+            self._owned.close()
+
+    def _listen(self) -> None:
+        """Listen for another master before anything is sent; on a private bus there is none."""
+        self._company.begin([one for node in self.nodes for one in node.rpdos])
+        listen_ms = 0 if is_private(self.configuration) else self.configuration.listen_ms
+        end = self.clock() + listen_ms / 1000.0
+        while (frame := self.receive(max(end - self.clock(), 0.0))) is not None:
+            self.deliver(frame)
+        self._company.refuse()
+
+    def _look(self, frame: can.Message) -> None:
+        """Notice what only another master sends."""
+        if said := self._company.look(frame, operating=self._operating):
+            self._supervisor.other_master(said)
 
     def _dispatch(self, frame: can.Message) -> None:
         identifier = frame.arbitration_id
         if frame.is_error_frame:
             self.error_frames.take(frame)
         elif frame.is_remote_frame or frame.is_extended_id:
-            return
+            self._look(frame)
         elif (stream := self._streams.get(identifier)) is not None:
             self._missing -= 1
             stream.take(frame.data)
         elif (found := self._supervised.get(identifier)) is not None:
             found[0](found[1], frame.data)
         else:
+            self._look(frame)
             self.network.notify(identifier, frame.data, frame.timestamp)
 
     def _heartbeat(self, node_id: int, data: bytearray) -> None:
@@ -239,9 +281,16 @@ class Master:
                 return faults
             try:
                 self.deliver(frame)
-            except HardwareError as error:
-                faults.append(error)
+            except Exception as error:  # a frame of a foreign node may hold anything
+                faults.append(as_fault("bus", error))
         return faults
+
+    def _watch(self, number: int) -> list[HardwareError]:
+        """Number what came, and return what a cycle shows of the bus."""
+        for stream in self._streams.values():
+            stream.close(number)
+        found = list(self.error_frames.check(self._bus.state))
+        return found + (self._supervisor.check(number) if self._operating else [])
 
     def _drain(self) -> None:
         while (frame := self._receiver.receive(0.0)) is not None:
@@ -249,6 +298,7 @@ class Master:
 
     def _send(self, identifier: int, data: bytes) -> None:
         frame = self._sender.send(identifier, data)
+        self._company.sent(frame)
         for observe in self._observers:
             observe(frame)
 

@@ -95,6 +95,11 @@ class Node:
         self._wanted: dict[Entry, Number] = {at: 0 for one in rpdos for at in one.entries}
         self._sent: dict[int, bytes] = {}
 
+    @property
+    def rpdos(self) -> frozenset[int]:
+        """Identifiers by which the node is commanded."""
+        return frozenset(one.cob_id for one in self._rpdos)
+
     def put(self, at: Entry, value: Number) -> None:
         """Set an object of an RPDO; it goes out at the end of the cycle."""
         self._wanted[at] = value
@@ -122,6 +127,7 @@ class Node:
             (_SYNC_COB_ID, 0x80),
             (_SYNC_PERIOD, round(bus.period_s * 1e6)),
             (_SYNC_OVERFLOW, bus.sync_overflow),
+            (_CONSUMED_BEAT, 0),  # an earlier controller's last heartbeat must not count
             (_CONSUMED_BEAT, consumed),
             (_PRODUCED_BEAT, bus.heartbeat_ms),
         ):

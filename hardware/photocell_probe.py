@@ -50,7 +50,8 @@ class ProbePhotocell:
         self._period_s = 1.0 / services.sample_rate_hz
         self._edges: int | None = None
         self._count = Unwrapped(2**16)
-        self._last: int | None = None
+        self._pulse: int | None = None  # where the last pulse of this motion was
+        self._since: int | None = None  # from where turns without a pulse are counted
         self._told: type | None = None
         self._pulses: list[Pulse] = []
 
@@ -78,7 +79,7 @@ class ProbePhotocell:
     def expect(self, frequency_hz: float | None) -> None:
         """Begin to count turns anew; the shaft's own position says how far it turned."""
         if frequency_hz is None:
-            self._last, self._told = None, None
+            self._begin_anew()
 
     def tick(self, cycle: Cycle) -> None:
         """Take the edges of the cycle.
@@ -101,44 +102,46 @@ class ProbePhotocell:
         return taken
 
     def carried(self) -> dict[str, Any]:
-        """Return the edges so far and where the last was; see :mod:`hardware.opening`."""
-        return {"edges": self._edges, "last": self._last}
+        """Return the edges so far, where the last was, and since where turns are counted."""
+        return {"edges": self._edges, "last": self._pulse, "since": self._since}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:
         """Count on from there."""
         self._edges = self._count.value = carried["edges"]
-        self._last = carried["last"]
+        self._pulse = carried["last"]
+        self._since = carried.get("since", self._pulse)
 
     def reset_fault(self) -> None:
         """Count turns from here."""
-        self._last, self._told = self._shaft.counts, None
+        self._begin_anew()
 
     def close(self) -> None:
         """Nothing to let go of: the bus is the master's."""
 
     def _look(self, number: int, latched: int, edges: int) -> None:
         before, self._edges = self._edges, self._count.take(edges)
-        if self._last is None:
-            self._last = self._shaft.counts
-            if before is None or before == self._edges:
-                return
-            before = None  # the first pulse of a run has no neighbour to be compared with
-        elif before == self._edges:
-            self._absent()
+        if self._since is None:
+            self._since = self._shaft.counts
+        if before is None or before == self._edges:
+            self._absent(self._since)
             return
-        at = self._shaft.position_near(latched)
-        turns = self._turns(at - self._last)
-        self._last = at
+        at, last = self._shaft.position_near(latched), self._pulse
+        self._pulse = self._since = at
         angle = 2.0 * math.pi * at / self._shaft.settings.counts_per_turn
         self._pulses.append(Pulse(self._edges, self._time_s(number, at), angle))
-        if before is not None:
-            self._compare(turns, self._edges - before)
+        missed, self._told = self._told, None
+        # The shaft may have stood anywhere: the first pulse of a motion has no neighbour.
+        if last is not None:
+            self._compare(self._turns(at - last), self._edges - before, told=missed is not None)
+
+    def _begin_anew(self) -> None:
+        self._pulse = self._since = self._told = None
 
     def _turns(self, counts: int) -> float:
         return abs(counts / self._shaft.settings.counts_per_turn)
 
-    def _absent(self) -> None:
-        turns = self._turns(self._shaft.counts - (self._last or 0))
+    def _absent(self, since: int) -> None:
+        turns = self._turns(self._shaft.counts - since)
         if turns > _DEAD_TURNS and self._told is not PhotocellDeadError:
             self._told = PhotocellDeadError
             raise PhotocellDeadError(
@@ -150,13 +153,12 @@ class ProbePhotocell:
                 self.name, f"no pulse for {turns:.2f} turns (limit {_MISSED_TURNS})"
             )
 
-    def _compare(self, turns: float, edges: int) -> None:
-        missed, self._told = self._told, None
+    def _compare(self, turns: float, edges: int, *, told: bool) -> None:
         if edges > 1 or turns < _EXTRA_TURNS:
             raise PhotocellExtraError(
                 self.name, f"{edges} pulses within {turns:.3f} turns (one in about 1 expected)"
             )
-        if turns > _MISSED_TURNS and missed is None:
+        if turns > _MISSED_TURNS and not told:
             raise PhotocellMissedError(
                 self.name, f"{turns:.3f} turns between pulses (limit {_MISSED_TURNS})"
             )

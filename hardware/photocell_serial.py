@@ -13,8 +13,9 @@ from hardware.errors import (
     PhotocellExtraError,
     PhotocellMissedError,
     SilentPortError,
+    worst,
 )
-from hardware.lines import TICK_MODULUS, Kind, Line, Unwrapped, decode
+from hardware.lines import TICK_MODULUS, Decoder, Kind, Line, Unwrapped
 from hardware.roles import Cycle, Pulse, Role
 from hardware.serial_port import PortSettings
 
@@ -49,6 +50,7 @@ class SerialPhotocell:
         self.fit = ClockFit()
         self._settings = settings
         self._port = services.port(name, settings.port)
+        self._decoder = Decoder(name)
         self._ticks = Unwrapped(TICK_MODULUS)
         self._pulses: list[Pulse] = []
         self._count: int | None = None
@@ -82,12 +84,12 @@ class SerialPhotocell:
         faults: list[HardwareError] = []
         for raw in self._port.lines():
             try:
-                self._take(decode(raw, self.name), cycle)
+                self._take(self._decoder.decode(raw), cycle)
             except HardwareError as error:
                 faults.append(error)
         self._absent(cycle.time_s, faults)
         if faults:
-            raise faults[0]
+            raise worst(faults)
 
     def take(self) -> tuple[Pulse, ...]:
         """Return the pulses since the last call."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import can
 from can.interfaces import BACKENDS
 
-from hardware.raw_log import read_frames
+from hardware.raw_log_reading import read_frames
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -26,6 +26,8 @@ class PlaybackBus(can.BusABC):
 
     Attributes
     ----------
+    private
+        Whether no other process can be on it.
     at_end
         Whether the whole log has been played.
 
@@ -39,6 +41,8 @@ class PlaybackBus(can.BusABC):
     OSError
         If there is no such file.
     """
+
+    private = True
 
     def __init__(self, channel: str, **_options: object) -> None:
         Path(channel).stat()

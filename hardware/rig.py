@@ -5,12 +5,20 @@ in real time a pacer keeps it to the clock. Nothing else differs.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import cast
 
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, PmmError
 from hardware.driver import Prompt, Services
-from hardware.errors import HardwareError, Reaction, TransitionTimeoutError
+from hardware.errors import (
+    HardwareError,
+    NotReadyError,
+    Reaction,
+    TransitionTimeoutError,
+    as_fault,
+    worst,
+)
 from hardware.interlock import guard_axis, guard_shaft
 from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
@@ -29,6 +37,7 @@ from hardware.roles import (
     Shaft,
 )
 from hardware.serial_port import Port, Ports, PortSettings, SerialPort
+from hardware.watch import Watch, Watched
 
 
 class Rig:
@@ -112,11 +121,18 @@ class Rig:
         ------
         ConfigurationError, SdoTimeoutError, SdoAbortError
             If a device does not answer, refuses, or cannot do what its role needs.
+        ProgramError
+            If its driver fails over what it answers.
         """
         if self.master is not None:
             self.master.prepare()
         for device in self._devices:
-            device.prepare()
+            try:
+                device.prepare()
+            except PmmError:
+                raise
+            except Exception as error:  # a driver that meets an answer that nobody foresaw
+                raise as_fault(device.name, error) from error
         if self.master is not None:
             self.master.start()
         self._prepared = True
@@ -129,7 +145,8 @@ class Rig:
         HardwareError
             The most severe of what was found in this cycle, after the cycle is complete and what it
             asks for (quick stop, profile stop, silence) is on its way; the others are its notes.
-            Each fault is raised once and latched; a lost bus is raised in every cycle.
+            Each fault is raised once and latched; a lost bus is raised in every cycle. What a
+            driver raises beside is a fault too: a cycle is always completed.
         """
         late = self._pacer.wait()
         self.number += 1
@@ -138,16 +155,16 @@ class Rig:
         for device in self._devices:
             try:
                 device.tick(cycle)
-            except HardwareError as error:
-                found.append(error)
+            except Exception as error:  # a driver of a lab's own may raise anything
+                found.append(as_fault(device.name, error))
+        found += self._watch.look()
         fresh = [error for error in found if self._latch(error)]
-        self._react(fresh)
+        fresh += self._react(fresh)
         if self.master is not None:
             lost = [error for error in self.master.flush() if self._latch(error)]
-            self._react(lost)
-            fresh += lost
+            fresh += lost + self._react(lost)
         if fresh:
-            raise _worst(fresh)
+            raise worst(fresh)
         return cycle
 
     def run_until(self, condition: Callable[[], bool], within_cycles: int, what: str) -> int:
@@ -166,24 +183,35 @@ class Rig:
             self.cycle()
         raise TransitionTimeoutError("rig", f"{what}: not within {within_cycles} cycles")
 
+    def limit(self, limits: Watched) -> None:
+        """Watch speed and loads against these limits, in every cycle from now on."""
+        self._watch.limit(limits)
+
     def stop(self) -> None:
-        """Profile stop of all axes."""
-        for one in self.powered():
-            one.stop()
+        """Profile stop of all axes; an axis that refuses does not keep the others from it."""
+        self._each(lambda one: one.stop())
 
     def quick_stop(self) -> None:
-        """Quick stop of all axes."""
-        for one in self.powered():
-            one.quick_stop()
+        """Quick stop of all axes; an axis that refuses does not keep the others from it."""
+        self._each(lambda one: one.quick_stop())
 
     def reset(self) -> None:
         """Forget the latched faults and reset those of the devices: on the operator's demand.
 
         Raises
         ------
+        NotReadyError
+            If an axis is not seen to rest; nothing was reset.
         HardwareError
             If a device cannot be reset (a port is still unplugged); its fault stays latched.
         """
+        moving = [one.name for one in self.powered() if one.moving]
+        if moving:
+            raise NotReadyError(
+                "rig",
+                f"cannot reset while {' and '.join(moving)} moves or is not heard; wait until it "
+                "stands (the emergency stop holds it), or start anew if it is not heard",
+            )
         for device in self._devices:
             device.reset_fault()
         if self.master is not None:
@@ -191,12 +219,20 @@ class Rig:
         self.faults.clear()
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What devices lack and are used without, a sentence each; known once prepared."""
+        return tuple(one for device in self._devices for one in getattr(device, "notes", ()))
+
+    @property
     def devices(self) -> tuple[Device, ...]:
         """All devices, in the order in which they tick."""
         return tuple(self._devices)
 
     def latch(self, error: HardwareError) -> None:
-        """Latch a fault that was found above the devices, and do what it asks for."""
+        """Latch a fault that was found above the devices, and do what it asks for.
+
+        Nothing is raised: an axis that refuses is latched beside it.
+        """
         self._latch(error)
         self._react([error])
 
@@ -204,6 +240,16 @@ class Rig:
         """Return the axes that the rig has."""
         axes = (self.shaft, self.eccentricity, self.phase)
         return tuple(one for one in axes if one is not None)
+
+    def _each(self, command: Callable[[Powered], None]) -> None:
+        failed = []
+        for one in self.powered():
+            try:
+                command(one)
+            except Exception as error:  # whatever it is, the next axis has to stop
+                failed.append(as_fault(one.name, error))
+        if failed:
+            raise worst(failed)
 
     def close(self) -> None:
         """Leave the axes at rest and without power, close devices and bus; may be called twice."""
@@ -215,12 +261,13 @@ class Rig:
             self._let_go()
 
     def _let_go(self) -> None:
-        for device in self._devices:
-            device.close()
-        self._devices = []
-        if self.master is not None:
-            self.master.close()
-            self.master = None
+        devices, self._devices = self._devices, []
+        with ExitStack() as stack:  # one that does not let go does not keep the others from it
+            if self.master is not None:
+                stack.callback(setattr, self, "master", None)
+                stack.callback(self.master.close)
+            for device in reversed(devices):
+                stack.callback(device.close)
 
     def _open(self, services: Services) -> None:
         one = self.configuration
@@ -230,9 +277,9 @@ class Rig:
             cast("PositionAxis | None", self._device(part, services))
             for part in (one.eccentricity, one.phase)
         ]
-        self.forces = tuple(
-            cast("ForceChannels", self._device(part, services)) for part in one.forces
-        )
+        forces = [cast("ForceChannels", self._device(part, services)) for part in one.forces]
+        self._watch = Watch(shaft, forces)
+        self.forces = self._watch.forces
         self.photocell = cast("Photocell | None", self._device(one.photocell, services))
         self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
         present = [axis for axis in axes if axis is not None]
@@ -271,19 +318,15 @@ class Rig:
             self.faults.append(error)
         return new or error.reaction is Reaction.END_RUN
 
-    def _react(self, found: Sequence[HardwareError]) -> None:
+    def _react(self, found: Sequence[HardwareError]) -> list[HardwareError]:
+        """Do what faults ask for; return what went wrong in that, which is latched too."""
         reaction = max((error.reaction for error in found), default=Reaction.REFUSE)
         if reaction is Reaction.END_RUN and self.master is not None:
             self.master.healthy = False
-        if reaction >= Reaction.QUICK_STOP:
-            self.quick_stop()
-        elif reaction is Reaction.PROFILE_STOP:
-            self.stop()
-
-
-def _worst(found: Sequence[HardwareError]) -> HardwareError:
-    worst = max(found, key=lambda error: error.reaction)
-    for other in found:
-        if other is not worst:
-            worst.add_note(f"also: {other}")
-    return worst
+        if reaction < Reaction.PROFILE_STOP:
+            return []
+        try:
+            (self.quick_stop if reaction >= Reaction.QUICK_STOP else self.stop)()
+        except HardwareError as error:
+            return [error] if self._latch(error) else []
+        return []

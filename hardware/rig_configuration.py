@@ -20,6 +20,7 @@ ROLES: Final = {
     "forces": Role.FORCES,
 }
 TABLES: Final = (*ROLES, "bus", "cycle_rate_hz")  # of rig.toml; others are not the devices'
+FASTEST_HZ: Final = 10_000.0  # cycles: ten times what any loop here keeps
 _SYNC_BYTES, _BEAT_BYTES = 1, 1
 
 
@@ -96,8 +97,10 @@ def read_rig(
         raise ConfigurationError("\n".join(faults))
     single = {role: parts[0] for role, parts in found.items() if role != "forces" and parts}
     rate = tables.get("cycle_rate_hz", 100.0)
-    if isinstance(rate, bool) or not isinstance(rate, int | float) or not rate > 0:
-        raise ConfigurationError(f"cycle_rate_hz = {rate!r} has to be a number above 0")
+    if not isinstance(rate, int | float) or rate is True or not 0.0 < rate <= FASTEST_HZ:
+        raise ConfigurationError(
+            f"cycle_rate_hz = {rate!r} has to be a number above 0, at most {FASTEST_HZ:g}"
+        )
     rig = RigConfiguration(bus=bus, forces=tuple(found.get("forces", ())), cycle_rate_hz=rate,
                            **single)  # fmt: skip
     check(rig)

@@ -153,7 +153,7 @@ class Powered(Device, Protocol):
 
     @property
     def moving(self) -> bool:
-        """Whether it moves or has been told to."""
+        """Whether it moves by what measures it, or has been told to; not known is moving."""
         ...
 
     def enable(self) -> None:
@@ -161,7 +161,7 @@ class Powered(Device, Protocol):
         ...
 
     def disable(self) -> None:
-        """Take the power off."""
+        """Bring it to rest, then take the power off; what does not brake in time loses it so."""
         ...
 
     def stop(self) -> None:

@@ -1,11 +1,13 @@
 """SDO transfers, guarded: one at a time, never from a receive callback, with typed errors."""
 
+import struct
 import threading
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
 import can
 import canopen
+from canopen.objectdictionary import ObjectDictionaryError
 from canopen.sdo.client import SdoClient
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
@@ -15,6 +17,7 @@ from hardware.errors import SdoAbortError, SdoInCallbackError, SdoTimeoutError
 Number = int | float
 T = TypeVar("T")
 _REQUEST, _RESPONSE = 0x600, 0x580
+_WRONG_LENGTH = 0x06070010  # CiA 301: data type does not match, length of service parameter
 
 
 class Carrier(Protocol):
@@ -93,7 +96,12 @@ class Sdo:
             If the node does not answer, refuses, or the call comes from a receive callback.
         """
         raw = self._guarded(at, "read", lambda: self._client.upload(*at))
-        value = self._variable(at).decode_raw(raw)
+        try:
+            value = self._variable(at).decode_raw(raw)
+        except (ObjectDictionaryError, ValueError, struct.error) as error:
+            raise SdoAbortError(
+                self._name, f"answers {at} with {raw.hex() or 'nothing'}: {error}", _WRONG_LENGTH
+            ) from error
         return value if isinstance(value, int | float | str) else bytes(value).hex()
 
     def read_raw(self, at: Entry) -> bytes:

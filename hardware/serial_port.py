@@ -1,15 +1,20 @@
 """Serial ports: local, or on a device server (``socket://``, ``rfc2217://``), read by lines."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import entry_points
-from typing import Final, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
 import serial
 from serial.tools import list_ports
 
+from hardware.bus_owner import own_port
 from hardware.errors import LineError, PortOpenError, UnpluggedError
+
+if TYPE_CHECKING:
+    from hardware.ownership import Ownership
 
 # A package that brings URLs of its own for pyserial has an entry point here, named by the scheme;
 # loading it makes them known.
@@ -144,6 +149,7 @@ class SerialPort:
         self._back_off_s = _FIRST_BACK_OFF_S
         self._again_s = 0.0
         self._port: serial.Serial | None = None
+        self._owned: Ownership | None = None
         self.open()
 
     @property
@@ -157,14 +163,17 @@ class SerialPort:
             return
         try:
             know(self._settings.url.partition("://")[0])
+            url = resolve(self._settings.url)
+            self._owned = self._owned or own_port(self._name, url)
             self._port = serial.serial_for_url(
-                resolve(self._settings.url),
+                url,
                 baudrate=self._settings.baud_rate,
                 timeout=0,
                 write_timeout=self._settings.write_timeout_s,
                 exclusive=True,
             )
         except (OSError, ValueError) as error:
+            self._disown()
             raise PortOpenError(
                 self._name, f"{self._settings.url} cannot be opened: {error}"
             ) from error
@@ -233,10 +242,15 @@ class SerialPort:
         """Close the port; may be called twice."""
         port, self._port = self._port, None
         if port is not None:
-            try:
+            with suppress(OSError):  # an unplugged port has nothing left to close
                 port.close()
-            except OSError:
-                return  # an unplugged port has nothing left to close
+        self._disown()
+
+    def _disown(self) -> None:
+        """Let other processes have the port."""
+        owned, self._owned = self._owned, None
+        if owned is not None:
+            owned.release()
 
     def _lost(self, what: str, error: OSError) -> UnpluggedError:
         self.close()

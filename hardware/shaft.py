@@ -18,17 +18,17 @@ from hardware.drive import (
     STATE_PDOS,
     STEP_CYCLES,
     TARGET_VELOCITY,
-    VELOCITY,
     Drive,
+    motor_speed,
 )
-from hardware.driver import Driver, NodePlan, Services, join
+from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import LimitError, NotReadyError
+from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop
+from hardware.motion import Motion
 from hardware.roles import Block, Cycle, Role, Sample, blocks
 
 _TURN = 2.0 * math.pi
-_REST_SHARE = 0.002  # of the largest frequency: below it the shaft stands
 _SPEED_SHARE = 0.02  # of the commanded frequency: within it the speed is reached
-_MARGIN = 1.5  # a run-up may take so much longer than its profile
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,8 @@ class ShaftSettings:
         Units of 606C and 60FF for one count per second.
     following_error_turns
         Window outside of which the drive faults.
+    max_motor_speed_rpm
+        The motor's own limit, before any gear (6080); not written where it is not given.
     touch_probe
         The photocell is wired to the drive's touch probe 1: maps its objects.
     """
@@ -60,12 +62,16 @@ class ShaftSettings:
     following_error_turns: float = 0.1
     following_error_ms: int = 20
     touch_probe: bool = False
+    max_motor_speed_rpm: float | None = None
     eds: str = "cia402-drive.eds"
 
     def __post_init__(self) -> None:
         for key in ("highest_frequency_hz", "acceleration_hz_per_s", "quick_stop_hz_per_s"):
             if not getattr(self, key) > 0.0:
                 raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_quick_stop(
+            self.highest_frequency_hz, self.quick_stop_hz_per_s, "Hz", "quick_stop_hz_per_s"
+        )
         if self.counts_per_turn == 0.0:
             raise ConfigurationError("counts_per_turn = 0: the shaft would never move")
 
@@ -86,9 +92,17 @@ class DriveShaft:
         self.settings = settings
         self.sample_rate_hz = services.sample_rate_hz
         self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
-        self.drive = Drive(join(nodes(name, settings)[0], services), (Mode.PROFILE_VELOCITY,))
+        self.motion = Motion(
+            settings.counts_per_turn,
+            "Hz",
+            SHAFT_REST_SHARE * settings.highest_frequency_hz,
+            services.sample_rate_hz,
+            gap_cycles(services),
+        )
+        self.drive = Drive(
+            join(nodes(name, settings)[0], services), (Mode.PROFILE_VELOCITY,), self.motion
+        )
         self._target_hz = 0.0
-        self._counts: int | None = None
         self._track: deque[tuple[int, int]] = deque(maxlen=4)
         self._samples: list[Sample] = []
 
@@ -100,18 +114,17 @@ class DriveShaft:
     @property
     def counts(self) -> int:
         """Position in counts since the start, never wrapping."""
-        return self._counts or 0
+        return self.motion.counts or 0
 
     @property
     def measured_frequency_hz(self) -> float:
-        """Turns per second, positive in the shaft's sense."""
-        return self.drive.node.values[VELOCITY] / self._velocity_per_hz
+        """Turns per second by the encoder, positive in the shaft's sense; NaN if not known."""
+        return self.motion.speed
 
     @property
     def moving(self) -> bool:
-        """Whether the shaft turns, or is commanded to."""
-        rest = _REST_SHARE * self.settings.highest_frequency_hz
-        return abs(self.measured_frequency_hz) > rest or self._target_hz != 0.0
+        """Whether the shaft turns by its encoder, or is commanded to."""
+        return not self.motion.at_rest or self._target_hz != 0.0
 
     @property
     def at_speed(self) -> bool:
@@ -126,7 +139,7 @@ class DriveShaft:
         self.drive.head_for(Goal.ENABLED)
 
     def disable(self) -> None:
-        """Take the power off."""
+        """Take the power off as soon as the shaft is at rest: by quick stop if it turns."""
         self._aim(0.0)
         self.drive.head_for(Goal.DISABLED)
 
@@ -147,15 +160,14 @@ class DriveShaft:
             )
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it before it turns")
-        change = abs(frequency_hz - self.measured_frequency_hz)
         self._aim(frequency_hz)
-        self.drive.within(self._cycles(change), f"run-up to {frequency_hz:g} Hz")
+        self.drive.within(self._cycles(frequency_hz), f"run-up to {frequency_hz:g} Hz")
 
     def stop(self) -> None:
         """Decelerate along the profile, then stand under power."""
         self._aim(0.0)
         if self.enabled:
-            self.drive.within(self._cycles(abs(self.measured_frequency_hz)), "profile stop")
+            self.drive.within(self._cycles(0.0), "profile stop")
 
     def quick_stop(self) -> None:
         """Decelerate on the quick-stop ramp."""
@@ -179,13 +191,18 @@ class DriveShaft:
                 (Entry(0x6085), round(per_hz * self.settings.quick_stop_hz_per_s)),
                 (Entry(0x6065), round(counts * self.settings.following_error_turns)),
                 (Entry(0x6066), self.settings.following_error_ms),
+                *motor_speed(self.settings.max_motor_speed_rpm),
             )
         )
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What its drive lacks, a sentence each."""
+        return self.drive.notes
+
     def tick(self, cycle: Cycle) -> None:
         """Take the cycle's positions and keep the drive going."""
-        for number, values in self.drive.node.streams[0].samples:
-            counts = self._unwrap(int(values[2]))
+        for number, counts in self.drive.listen(cycle.number):
             self._track.append((number, counts))
             angle = _TURN * counts / self.settings.counts_per_turn
             self._samples.append((number, (angle,)))
@@ -200,16 +217,16 @@ class DriveShaft:
 
     def carried(self) -> dict[str, Any]:
         """Return the count and the latest of its way; see :mod:`hardware.opening`."""
-        return {"counts": self._counts, "track": list(self._track)}
+        return {"counts": self.motion.counts, "track": list(self._track)}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:
         """Count on from there."""
-        self._counts = carried["counts"]
+        self.motion.counts = carried["counts"]
         self._track.extend((number, counts) for number, counts in carried["track"])
 
     def position_near(self, raw: int) -> int:
         """Return the count, never wrapping, of a 32-bit position near the present one."""
-        return self.counts + _wrapped(raw - self.counts)
+        return self.motion.near(raw)
 
     def last_two(self, number: int) -> tuple[tuple[int, int], tuple[int, int]]:
         """Return (number, count) at SYNC ``number`` and at the one known before it."""
@@ -223,25 +240,19 @@ class DriveShaft:
     def _velocity_per_hz(self) -> float:
         return self.settings.counts_per_turn * self.settings.velocity_per_count
 
-    def _cycles(self, change_hz: float) -> float:
-        ramp_s = change_hz / self.settings.acceleration_hz_per_s
-        return STEP_CYCLES + _MARGIN * ramp_s * self.sample_rate_hz
+    def _cycles(self, target_hz: float) -> float:
+        """Return how many cycles a ramp to a speed may take, seen by an encoder."""
+        measured_hz = self.measured_frequency_hz
+        known = measured_hz if math.isfinite(measured_hz) else -self.settings.highest_frequency_hz
+        ramp_s = abs(target_hz - known) / self.settings.acceleration_hz_per_s
+        return STEP_CYCLES + RAMP_MARGIN * ramp_s * self.sample_rate_hz
 
     def _aim(self, frequency_hz: float) -> None:
+        if self._target_hz and not frequency_hz:
+            self.motion.disturb()  # the encoder has not shown yet what the drive was told last
         self._target_hz = frequency_hz
         self.drive.done()
         self.drive.node.put(TARGET_VELOCITY, round(frequency_hz * self._velocity_per_hz))
-
-    def _unwrap(self, raw: int) -> int:
-        """Make the 32-bit position count on."""
-        if self._counts is None:
-            self._counts = raw
-        self._counts += _wrapped(raw - self._counts)
-        return self._counts
-
-
-def _wrapped(difference: int) -> int:
-    return (difference + 2**31) % 2**32 - 2**31
 
 
 def nodes(name: str, settings: ShaftSettings) -> tuple[NodePlan, ...]:

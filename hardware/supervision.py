@@ -16,6 +16,7 @@ from hardware.errors import (
     HardwareError,
     HeartbeatLostError,
     NodeStateError,
+    OtherMasterError,
     ProcessDataLostError,
 )
 from hardware.node import Node
@@ -101,7 +102,7 @@ class Supervisor:
 
     def emergency(self, node_id: int, data: bytes | bytearray) -> None:
         """Take an emergency message; a reset (code 00xx) lets the same one be told again."""
-        code, register, vendor = EMCY_STRUCT.unpack(bytes(data).ljust(8, b"\0"))
+        code, register, vendor = EMCY_STRUCT.unpack(bytes(data[:8]).ljust(8, b"\0"))
         name = self._nodes[node_id].name
         if code & 0xFF00 == 0:
             self._told = {one for one in self._told if one[1] != name}
@@ -109,6 +110,14 @@ class Supervisor:
             self._tell(FollowingError(name, f"emergency 0x{code:04X}: outside its window"))
         else:
             self._tell(EmergencyError(name, code, register, vendor))
+
+    def other_master(self, said: str) -> None:
+        """Take in words what another master commanded."""
+        self._tell(
+            OtherMasterError(
+                "bus", f"another controller sent {said}; end it, see to the axes, then reset"
+            )
+        )
 
     def check(self, number: int) -> list[HardwareError]:
         """Return what is new since the last call, gaps up to SYNC ``number`` included."""

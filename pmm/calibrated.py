@@ -58,10 +58,10 @@ def _kept(recording: Recording, key: str) -> Calibration | None:
     if text is None:
         return None
     try:
-        table = json.loads(text)
+        table = dict(json.loads(text))
         found = from_table(table, f"{recording.name}: calibration in the provenance")
         return replace(found, file=str(table["file"]), sha256=str(table["sha256"]))
-    except (ValueError, KeyError, TypeError, ConfigurationError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, ConfigurationError) as error:
         raise DataError(f"{recording.name}: its calibration cannot be read: {error}") from error
 
 

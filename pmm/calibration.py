@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import parse_toml
 from pmm.plan.toml_text import toml_value
+from pmm.whole_file import write_whole
 
 FloatArray = NDArray[np.float64]
 CALIBRATION_FILE: Final = "calibration.toml"
@@ -80,7 +82,7 @@ def write_calibration(one: Calibration, path: Path) -> Path:
             path.rename(path.with_name(f"{path.stem}-{before.made.isoformat()}{path.suffix}"))
     head = "# Reading of a channel (row) for a newton on a gauge (column): docs/run-control.md\n"
     lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in as_table(one).items())
-    path.write_text(head + lines, encoding="utf-8")
+    write_whole(path, head + lines)
     return path
 
 
@@ -93,12 +95,11 @@ def read_calibration(path: Path) -> Calibration:
         If it cannot be read, a key is missing or of the wrong shape, or two gauges tell the same.
     """
     import hashlib
-    import tomllib
 
     try:
         data = path.read_bytes()
-        table = tomllib.loads(data.decode("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        table = parse_toml(data.decode("utf-8"))
+    except (OSError, UnicodeDecodeError, ConfigurationError) as error:
         raise ConfigurationError(f"{path}: no calibration: {error}") from error
     found = from_table(table, str(path))
     return replace(found, file=path.name, sha256=hashlib.sha256(data).hexdigest())
@@ -134,7 +135,10 @@ def from_table(table: Mapping[str, Any], where: str) -> Calibration:
     size = len(channels)
     if [one.shape for one in arrays] != [(size, size), (size, size), (size,), (size,)]:
         raise ConfigurationError(f"{where}: the matrix does not fit the {size} channels")
-    if not np.all(np.isfinite(arrays[0])) or not np.linalg.cond(arrays[0]) < _WORST_CONDITION:
+    pairs = zip(_ARRAYS, arrays, strict=True)
+    if wrong := [key for key, one in pairs if not np.isfinite(one).all()]:
+        raise ConfigurationError(f"{where}: {' and '.join(wrong)} should be finite numbers")
+    if not np.linalg.cond(arrays[0]) < _WORST_CONDITION:
         raise ConfigurationError(
             f"{where}: matrix = {arrays[0].tolist()} is singular: two gauges would tell the same"
         )

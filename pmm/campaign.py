@@ -3,8 +3,8 @@
 ``docs/campaigns.md`` describes the file for people; :mod:`pmm.campaign_file` reads it.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -18,7 +18,6 @@ from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.run_plan import KnownMass, LoadStep
-from pmm.radiation_file import RadiationFile
 from sim.acquisition import Acquisition
 from sim.acting import Acting
 from sim.carriage import CarriageSettings
@@ -33,9 +32,27 @@ from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.rig import SimulatedRig
 from sim.surge import SurgeForces
+from sim.water.radiation_file import RadiationFile
 
 CAMPAIGN_FILE = "campaign.toml"
 RUN_FILE = "run.nc"  # a recording in its run's own folder
+
+
+@dataclass(frozen=True)
+class RecordedWith:
+    """What a run was recorded with where it is not what the campaign's tables say of the others.
+
+    Attributes
+    ----------
+    oscillator, model, model_uncertainty, hull, reference
+        As in :class:`Campaign`; ``None`` where that is right for the run.
+    """
+
+    oscillator: Oscillator | None = None
+    model: Body | None = None
+    model_uncertainty: ModelUncertainty | None = None
+    hull: HullCoefficients | None = None
+    reference: ReferenceChoice | None = None
 
 
 @dataclass(frozen=True)
@@ -65,6 +82,10 @@ class Run:
         Place among all runs of the campaign, those at rest too, from 1.
     outcome
         ``"complete"``, ``"stopped"`` or ``"fault"``.
+    differs
+        What plan, rig, model and calibration said otherwise when it was recorded, in words.
+    recorded_with
+        Tables of the campaign that were others for it.
     """
 
     name: str
@@ -86,6 +107,8 @@ class Run:
     zero_after: str | None = None
     number: int | None = None
     outcome: str = "complete"
+    differs: tuple[str, ...] = ()
+    recorded_with: RecordedWith | None = None
 
     @property
     def set_point(self) -> SetPoint:
@@ -130,6 +153,8 @@ class AtRest:
     zero_after: str | None = None
     number: int | None = None
     outcome: str = "complete"
+    differs: tuple[str, ...] = ()
+    recorded_with: RecordedWith | None = None
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the recording lies, as for a run."""
@@ -189,6 +214,9 @@ class Campaign:
         Standard uncertainties of the model's numbers, as ``pmm inertia`` writes them.
     at_rest
         Records without oscillation: zero runs, loads, tows.
+    tared
+        Whether the gauges' zeros were taken off the recordings before they were written, so that
+        means are forces as they stand and no zero runs are needed.
     """
 
     name: str = "campaign"
@@ -215,6 +243,7 @@ class Campaign:
     model_uncertainty: ModelUncertainty | None = None
     runs: tuple[Run, ...] = ()
     at_rest: tuple[AtRest, ...] = ()
+    tared: bool = False
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
@@ -255,6 +284,15 @@ class Campaign:
             surge=self.surge,
         )
 
+    def as_recorded(self, name: str) -> "Campaign":
+        """Return the campaign with the tables that a run or a record at rest was recorded with."""
+        every: tuple[Run | AtRest, ...] = (*self.runs, *self.at_rest)
+        own = next((one for one in every if one.name == name), None)
+        if own is None or own.recorded_with is None:
+            return self
+        told = {one.name: getattr(own.recorded_with, one.name) for one in fields(RecordedWith)}
+        return replace(self, **{key: one for key, one in told.items() if one is not None})
+
     def effects_on(self, more: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:
         """Return the effects that the file switches on.
 
@@ -286,11 +324,16 @@ class Campaign:
         ConfigurationError
             If there is none; the message names the nearest.
         """
-        from difflib import get_close_matches
-
         names = [run.name for run in self.runs]
         if name in names:
             return self.runs[names.index(name)]
-        near = get_close_matches(name, names, n=1, cutoff=0.4)
-        hint = f"did you mean {near[0]!r}?" if near else f"runs: {', '.join(names)}"
+        hint = nearest_run(name, names)
         raise ConfigurationError(f"campaign {self.name!r}: no run {name!r}; {hint}")
+
+
+def nearest_run(name: str, names: Sequence[str]) -> str:
+    """Return which run may be meant by a name that there is not, or which there are."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, names, n=1, cutoff=0.4)
+    return f"did you mean {near[0]!r}?" if near else f"runs: {', '.join(names)}"

@@ -14,6 +14,7 @@ from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
+from pmm.file_names import campaign_name_faults, no_file_name
 from pmm.model_uncertainty import take_uncertainty
 from pmm.oscillator_table import expand_preset
 from pmm.plan.kinds import RunKind
@@ -29,7 +30,6 @@ _UNITS = {
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": ("drift_deg",)}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
-_NOT_IN_FILE_NAMES = set('/\\:*?"<>|\0')
 
 
 def read_campaign(path: str | Path) -> Campaign:
@@ -54,6 +54,7 @@ def read_campaign(path: str | Path) -> Campaign:
     _none_for_false(table)
     campaign = validate(Campaign, table, faults, _EXTRA_KEYS)
     faults += _run_faults(table)
+    faults += campaign_name_faults(original)
     if campaign is None or faults:
         raise as_error(path, faults, original)
     name = campaign.name if "name" in original else path.resolve().parent.name
@@ -121,8 +122,9 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     for place, one in every:
         yield from _name_faults(one.name, (*place, "name"), names)
     for place, run in runs:
-        if oscillator is not None:
-            yield from _beyond(oscillator, run, place)
+        own = run.recorded_with.oscillator if run.recorded_with is not None else None
+        if (rig := own or oscillator) is not None:
+            yield from _beyond(rig, run, place)
     zeros = [one.name for _, one in rest if one.kind is RunKind.ZERO]
     for place, one in every:
         yield from _zero_faults(one, place, zeros)
@@ -139,8 +141,9 @@ def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[P
 def _name_faults(name: str, place: Place, names: set[str]) -> Iterator[Fault]:
     if name.casefold() in names:
         yield Fault(place, "is taken already; a recording is named by it")
-    if not name or name.startswith(".") or set(name) & _NOT_IN_FILE_NAMES:
-        yield Fault(place, f"= {name!r} cannot be the name of a file")
+    fault = no_file_name(name)
+    if fault is not None:
+        yield Fault(place, f"= {name!r} {fault}")
     names.add(name.casefold())
 
 

@@ -1,7 +1,7 @@
 """Configuration files: read, checked against a dataclass, and every error of a file at once."""
 
 import json
-import tomllib
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
@@ -10,11 +10,13 @@ from types import MappingProxyType
 from typing import (
     TYPE_CHECKING,
     Any,
+    Final,
     NamedTuple,
     TypeVar,
 )
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import parse_toml
 from pmm.places import Place as Place
 from pmm.places import find
 
@@ -40,11 +42,13 @@ def read_toml(path: Path) -> dict[str, Any]:
         If it cannot be read; the message gives the line.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return parse_toml(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path}: {error}") from None
 
 
 def validate(
@@ -68,7 +72,7 @@ def validate(
     key: Any = kind
     try:
         # By way of JSON: there pydantic is strict about numbers and yet takes arrays for tuples.
-        found: T = _adapter(key).validate_json(json.dumps(table, default=str), strict=True)
+        found: T = _adapter(key).validate_json(json.dumps(table), strict=True)
     except ValidationError as error:
         for one in error.errors(include_url=False):
             where = find(kind, one["loc"], table)
@@ -118,57 +122,94 @@ def unknown(place: Place, known: Sequence[str]) -> str:
     return f"is not a known key; {hint}"
 
 
-# What a number of that name must be, in whichever table it stands.
-_ABOVE_0 = (
-    "frequency_hz",
-    "force_per_strut_n",
-    "full_scale",
-    "full_scale_n",
-    "half_spacing_m",
-    "inertia_kg_m2",
-    "mass_kg",
-    "periods",
-    "rod_length_m",
-    "sample_rate_hz",
-    "steady_tolerance",
-)
-_NOT_BELOW_0 = (
-    "eccentricity_m",
-    "eccentricity_mm",
-    "jitter_rms_s",
-    "noise_rms",
-    "resolution",
-    "seed",
-    "settling_periods",
-    "start_ramp_s",
-    "waiting_s",
-)
+_MAY_BE_INFINITE: Final = "degrees_of_freedom"  # of what does not rest on repeats
+
+
+class Bounds(NamedTuple):
+    """What a number must be: above (or from) its low end, up to its high end."""
+
+    low: float
+    high: float
+    from_low: bool = False
+
+    def fault(self, value: float) -> str | None:
+        """Say what a value should be that is not within; ``None`` if it is."""
+        if value < self.low or (value == self.low and not self.from_low):
+            return f"should be {self.low:g} or more" if self.from_low else "should be above 0"
+        return f"should be at most {self.high:g}" if value > self.high else None
+
+
+_MOST: Final = 1e12  # of whatever unit, as of a sample: no tank has more
+_COUNT: Final = 100_000  # of periods: more than two weeks at 0.1 Hz
+_SECONDS: Final = 1e6  # eleven days
+# What a number of that name must be, in whichever table it stands. Ten times more would ask for
+# what no tank does and no memory holds; ten times less would refuse long swings and fast gauges.
+_BOUNDS: Final[Mapping[str, Bounds]] = {
+    "duration_s": Bounds(0.0, _SECONDS),
+    "eccentricity_m": Bounds(0.0, _MOST, from_low=True),
+    "eccentricity_mm": Bounds(0.0, _MOST, from_low=True),
+    "every": Bounds(0.0, _COUNT),
+    "force_per_strut_n": Bounds(0.0, _MOST),
+    "frequency_hz": Bounds(0.0, 1e4),
+    "full_scale": Bounds(0.0, _MOST),
+    "full_scale_n": Bounds(0.0, _MOST),
+    "gate_periods": Bounds(0.0, _COUNT),
+    "half_spacing_m": Bounds(0.0, _MOST),
+    "harmonics": Bounds(0.0, 1000.0),
+    "inertia_kg_m2": Bounds(0.0, _MOST),
+    "jitter_rms_s": Bounds(0.0, _SECONDS, from_low=True),
+    "mass_kg": Bounds(0.0, _MOST),
+    "max_periods": Bounds(0.0, _COUNT),
+    "noise_rms": Bounds(0.0, _MOST, from_low=True),
+    "pause_s": Bounds(0.0, _SECONDS, from_low=True),
+    "periods": Bounds(0.0, _COUNT),
+    "repeats": Bounds(0.0, 1000.0),
+    "resolution": Bounds(0.0, _MOST, from_low=True),
+    "rod_length_m": Bounds(0.0, _MOST),
+    "sample_rate_hz": Bounds(0.0, 1e6),
+    "seed": Bounds(0.0, 2.0**63, from_low=True),
+    "settling_periods": Bounds(0.0, _COUNT, from_low=True),
+    "start_ramp_s": Bounds(0.0, _SECONDS, from_low=True),
+    "steady_tolerance": Bounds(0.0, _MOST),
+    "waiting_s": Bounds(0.0, _SECONDS, from_low=True),
+}
+
+
+def _number_fault(key: str, value: float) -> str | None:
+    """Say what a number should be that is none, or not within the bounds of its name."""
+    if not math.isfinite(value) and (math.isnan(value) or not key.endswith(_MAY_BE_INFINITE)):
+        return "should be a finite number"
+    bounds = _BOUNDS.get(key)
+    return bounds.fault(value) if bounds else None
 
 
 def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
-    """Yield what is below zero and should not be, at any depth of a table."""
+    """Yield what is no finite number or not within the bounds of its name, at any depth."""
     parts = table.items() if isinstance(table, dict) else enumerate(table)
     for key, value in parts:
         here: Place = (*place, key)
         if isinstance(value, dict | list):
             yield from limit_faults(value, here)
         elif isinstance(value, int | float) and not isinstance(value, bool):
-            if key in _ABOVE_0 and value <= 0:
-                yield Fault(here, f"= {value:g} should be above 0")
-            elif key in _NOT_BELOW_0 and value < 0:
-                yield Fault(here, f"= {value:g} should be 0 or more")
+            fault = _number_fault(str(key), value)
+            if fault is not None:
+                yield Fault(here, f"= {value:g} {fault}")
 
 
 def as_error(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> ConfigurationError:
     """Return all faults of a file as one error: for each its path in the file and the message."""
-    lines = list(dict.fromkeys(f"{_path(fault.place, table)}{fault.message}" for fault in faults))
+    told = (f"{place_text(fault.place, table)}{fault.message}" for fault in faults)
+    lines = list(dict.fromkeys(told))
     if len(lines) == 1:
         return ConfigurationError(f"{path}: {lines[0]}")
     return ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))
 
 
-def _path(place: Place, table: Any) -> str:
-    """Return ``runs["heave"].frequency_hz``: entries by name, or else counted from 1."""
+def place_text(place: Place, table: Any) -> str:
+    """Return a place in words and a blank, as ``runs["heave"].frequency_hz``.
+
+    Entries go by their name, those without one are counted from 1.
+    """
     text = ""
     for key in place:
         table = table[key] if _holds(table, key) else None

@@ -28,13 +28,14 @@ from pathlib import Path
 from platform import node
 from typing import Any, Final, TypeVar
 
+from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
 
 T = TypeVar("T")
 S = TypeVar("S")
 
 MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
-_THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+_THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", SETTING)
 IN_HAND: Final = 500  # tasks at a time: more than the workers of a cluster, few enough to hold
 _TIMEOUT: Final = "10s"  # for a scheduler to answer, and for its first worker
 
@@ -121,12 +122,6 @@ def check_seen(folder: Path) -> None:
         raise DataError(
             f"{folder}: not there on {node()}; the workers of a cluster need it under the same path"
         )
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    mine = getattr(os, "sched_getaffinity", None)  # not on every system
-    return len(mine(0)) if mine is not None else os.cpu_count() or 1
 
 
 class InThisProcess(Executor):

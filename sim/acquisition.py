@@ -1,95 +1,23 @@
 """The acquisition: filter, sampling, noise and conversion of each channel that the rig records."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
 from hardware.description import channels
 from hardware.description.channels import Channel
-from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.amplifier import Carrier, LowPass, delay_weights
-from sim.linear import ComplexArray
-from sim.noise import NoiseState, draw_normal, start_stream
+from sim.digitiser import Digitiser as Digitiser
+from sim.digitiser import LineState, digitise
+from sim.noise import start_stream
 from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
-
-@dataclass(frozen=True)
-class Digitiser:
-    """How one channel is sampled; all values in the channel's unit.
-
-    The signal passes the low-pass and the carrier, is sampled, gets drift and noise, and is limited
-    and rounded.
-
-    Attributes
-    ----------
-    noise_rms
-        Standard deviation of white noise.
-    drift_per_s
-        Slope of a linear drift that is zero at time 0.
-    resolution
-        Step of the converter; 0 for none.
-    full_scale
-        Converter's range to either side of zero; beyond it the samples stay at it. ``None`` for no
-        limit.
-    walk_per_sqrt_s
-        The drift part of the noise: a random walk whose standard deviation after t seconds is this
-        times the root of t.
-    offset
-        Added to the signal: a zero offset, or the mounting angle of an encoder.
-    gain
-        Factor of the amplifier.
-    low_pass
-        Amplifier filter; ``None`` for none.
-    carrier
-        ``None`` for a direct-current bridge.
-    delay_s
-        The sample at time t shows the signal at t less this: skew of a scanned channel.
-    hum, hum_hz, hum_phase_rad
-        Amplitude, frequency and phase of a disturbance from the mains; it is sampled as it is, so
-        that it folds.
-
-    Raises
-    ------
-    ConfigurationError
-        If the delay is negative.
-    """
-
-    noise_rms: float = 0.0
-    drift_per_s: float = 0.0
-    resolution: float = 0.0
-    full_scale: float | None = None
-    walk_per_sqrt_s: float = 0.0
-    offset: float = 0.0
-    gain: float = 1.0
-    low_pass: LowPass | None = None
-    carrier: Carrier | None = None
-    delay_s: float = 0.0
-    hum: float = 0.0
-    hum_hz: float = 50.0
-    hum_phase_rad: float = 0.0
-
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-
-    def __post_init__(self) -> None:
-        if not self.delay_s >= 0.0:
-            raise ConfigurationError(
-                f"delay_s = {self.delay_s:g} must not be negative; delay the other channels instead"
-            )
-
-    def response(self, s: ComplexArray) -> ComplexArray:
-        """Return what filter, carrier, gain and delay make of harmonics at ``s``."""
-        factor: ComplexArray = np.exp(-s * self.delay_s) * np.complex128(self.gain)
-        if self.low_pass is not None:
-            factor = factor * self.low_pass.response(s)
-        if self.carrier is not None:
-            factor = factor * math.cos(self.carrier.phase_error_rad)
-        return factor
+if TYPE_CHECKING:
+    from sim.linear import ComplexArray
 
 
 class Line(NamedTuple):
@@ -98,27 +26,6 @@ class Line(NamedTuple):
     channel: Channel
     source: Signal
     digitiser: Digitiser
-
-
-class LineState(NamedTuple):
-    """What a channel remembers.
-
-    Attributes
-    ----------
-    walk, level
-        Stream and present value of the random walk.
-    filtered
-        States of the low-pass; ``None`` before the first sample.
-    before, after
-        The last values before and after the low-pass, newest last.
-    """
-
-    noise: NoiseState
-    walk: NoiseState
-    level: float = 0.0
-    filtered: tuple[float, ...] | None = None
-    before: tuple[float, ...] | None = None
-    after: tuple[float, ...] | None = None
 
 
 # Field of Acquisition (and name of the channel) -> the signal behind it.
@@ -133,6 +40,9 @@ _SOURCES = {
 }
 
 
+_PERFECT = Digitiser()
+
+
 @dataclass(frozen=True)
 class Acquisition:
     """The recorded channels, under their standard names; ``None`` where the rig has no such sensor.
@@ -143,8 +53,8 @@ class Acquisition:
     shaft_angle: Digitiser | None = None
     displacement_aft: Digitiser | None = None
     displacement_fore: Digitiser | None = None
-    force_aft: Digitiser | None = Digitiser()
-    force_fore: Digitiser | None = Digitiser()
+    force_aft: Digitiser | None = _PERFECT
+    force_fore: Digitiser | None = _PERFECT
     carriage_speed: Digitiser | None = None
     force_x: Digitiser | None = None
 
@@ -167,6 +77,18 @@ class Acquisition:
         """The recorded channels."""
         return tuple(signals.recorded(line.channel) for line in self.lines)
 
+    def drifting_from(self, time_s: float) -> "Acquisition":
+        """Return the acquisition with drifts that are zero at this time."""
+        ways = {line.channel.name: line.digitiser for line in self.lines}
+        drifting = {name: how for name, how in ways.items() if how.drift_per_s}
+        return replace(
+            self,
+            **{
+                name: replace(how, drifted=how.drifted - how.drift_per_s * time_s)
+                for name, how in drifting.items()
+            },
+        )
+
     def start(self, sample_rate_hz: float, seed: int) -> tuple[LineState, ...]:
         """Return the beginning of each channel's own noise."""
         return tuple(
@@ -184,7 +106,7 @@ class Acquisition:
         after: list[LineState] = []
         written: dict[str, FloatArray] = {}
         for line, before, out in zip(self.lines, state, self.writes, strict=True):
-            kept, samples = _digitise(line.digitiser, before, block, inputs[line.source.name])
+            kept, samples = digitise(line.digitiser, before, block, inputs[line.source.name])
             after.append(kept)
             written[out.name] = samples
         return tuple(after), written
@@ -207,73 +129,3 @@ class Acquisition:
                 recorded = period.harmonics(limited)
             written[out.name] = recorded
         return period, written
-
-
-def _digitise(
-    how: Digitiser, state: LineState, block: Block, values: FloatArray
-) -> tuple[LineState, FloatArray]:
-    """Filter and delay, add drift and noise, then limit and round, as the converter does."""
-    if not block.count:
-        return state, values
-    state, values = _analog(how, state, block, values)
-    if how.drift_per_s:
-        values = values + how.drift_per_s * block.time_s
-    if how.hum:
-        turned = 2.0 * math.pi * how.hum_hz * block.time_s + how.hum_phase_rad
-        values = values + how.hum * np.sin(turned)
-    if how.noise_rms:
-        noise, deviates = draw_normal(state.noise, block.count)
-        state, values = state._replace(noise=noise), values + how.noise_rms * deviates
-    if how.walk_per_sqrt_s:
-        walk, deviates = draw_normal(state.walk, block.count)
-        size = how.walk_per_sqrt_s / math.sqrt(block.sample_rate_hz)
-        levels = np.cumsum(np.concatenate([[state.level], size * deviates]))[1:]
-        state, values = state._replace(walk=walk, level=float(levels[-1])), values + levels
-    if how.full_scale is not None:
-        values = np.clip(values, -how.full_scale, how.full_scale)
-    if how.resolution:
-        values = np.round(values / how.resolution) * how.resolution
-    return state, values
-
-
-def _analog(
-    how: Digitiser, state: LineState, block: Block, values: FloatArray
-) -> tuple[LineState, FloatArray]:
-    """Do what happens before the converter: offset, filter, delay, carrier and gain."""
-    if how.offset:
-        values = values + how.offset
-    if how.low_pass is not None:
-        state, values = _filtered(how.low_pass, state, block, values)
-    if how.delay_s:
-        state, values = _delayed(how.delay_s, state, block, values)
-    factor = how.gain if how.carrier is None else how.gain * how.carrier.modulation(block.time_s)
-    return state, values if how.carrier is None and how.gain == 1.0 else values * factor
-
-
-def _filtered(
-    low_pass: LowPass, state: LineState, block: Block, values: FloatArray
-) -> tuple[LineState, FloatArray]:
-    hold = low_pass.hold(1.0 / block.sample_rate_hz)
-    if state.before is None or state.filtered is None:
-        first = float(values[0])
-        # As if the signal had been at its first value all the time: one step changes nothing.
-        state = state._replace(
-            before=(first,) * hold.past, filtered=tuple(low_pass.settled(first).tolist())
-        )
-    joined = np.concatenate([state.before or (), values])
-    states = hold.run(np.array(state.filtered), joined[:, np.newaxis])
-    state = state._replace(
-        before=tuple(joined[-hold.past :].tolist()), filtered=tuple(states[-1].tolist())
-    )
-    return state, states[:, 0].copy()
-
-
-def _delayed(
-    delay_s: float, state: LineState, block: Block, values: FloatArray
-) -> tuple[LineState, FloatArray]:
-    weights = delay_weights(delay_s, block.sample_rate_hz)
-    past = weights.size - 1
-    earlier = state.after if state.after is not None else (float(values[0]),) * past
-    joined = np.concatenate([earlier, values])
-    state = state._replace(after=tuple(joined[-past:].tolist()))
-    return state, np.convolve(joined, weights, mode="valid")

@@ -5,23 +5,25 @@ in a table. Loaded when it is first needed, because numba is. Complex harmonics 
 imaginary parts, ``(orders + 1, 2, columns)``.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.compiled import compile_loop
-from sim.compiled_laws import law_force
+from sim.compiled_laws import cross_flow_load, law_force, law_value
+from sim.corners import find_corners, gauss, multiples, pieces_between, value_at
+from sim.force_law import CREEP_M_S
 from sim.law_table import LawTable
 from sim.linear import ComplexArray
+from sim.mixing import mix
 from sim.period import Period
 from sim.relaxation import MOST_SWEEPS, ROUNDING, STALLED, TOLERANCE
 from sim.signals import FloatArray
 
 _DEPTH = 4
-_DEPENDENT = 1e-12  # of a direction's square: what is left of it beside the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +68,8 @@ class LawBalance:
     def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
         period = self.period
         return (
-            self.table.laws, self.table.cross_flow, self._free(y), self._by_laws,
-            *_waves(period.orders, period.points), period.mean_over_step, period.step_s,
+            *self.table, self._smooth, self._free(y), self._by_laws,
+            *_waves(period.orders, period.points), gauss(period.orders), period.step_s,
             self.speed_m_s, *more,
         )  # fmt: skip
 
@@ -79,6 +81,12 @@ class LawBalance:
         linear = (self.impedance @ h[:, :, np.newaxis])[:, :, 0]
         moving = (self._powers[:, :, None] * h[:, None, :]).reshape(-1, 6)
         return np.concatenate([moving, linear], axis=1)
+
+    @cached_property
+    def _smooth(self) -> FloatArray:
+        """The rows of the laws that have no corners."""
+        laws, cornered = self.table.laws, self.table.corners[:, 0]
+        return laws[~np.isin(np.arange(len(laws)), cornered)]
 
     @cached_property
     def _powers(self) -> ComplexArray:
@@ -103,18 +111,21 @@ def _waves(orders: int, points: int) -> tuple[FloatArray, FloatArray]:
 def _respond(
     laws: FloatArray,
     cross_flow: FloatArray,
+    arguments: FloatArray,
+    corners: FloatArray,
+    smooth: FloatArray,
     free: ComplexArray,
     by_laws: ComplexArray,
     cosine: FloatArray,
     sine: FloatArray,
-    mean_over_step: FloatArray,
+    nodes: FloatArray,
     step_s: float,
     speed_m_s: float,
     at: FloatArray,
     answer: FloatArray,
 ) -> None:
     """Fill in the harmonics of the forces of the laws for the motion under harmonics ``at``."""
-    orders, points = free.shape[0], cosine.shape[0]
+    orders = free.shape[0]
     real, imaginary = np.empty((orders, 8)), np.empty((orders, 8))
     for n in range(orders):
         first, second = complex(at[n, 0, 0], at[n, 1, 0]), complex(at[n, 0, 1], at[n, 1, 1])
@@ -122,91 +133,121 @@ def _respond(
             wave = free[n, j] + by_laws[n, j, 0] * first + by_laws[n, j, 1] * second
             real[n, j], imaginary[n, j] = wave.real, wave.imag
     answer[:] = 0.0
-    value, force = np.empty((1, 8)), np.zeros((2, 2))
-    smooth, jumps = force[:1], force[1:]
+    if smooth.shape[0]:
+        _at_points(smooth, real, imaginary, cosine, sine, step_s, speed_m_s, answer)
+    row = 0
+    while row < corners.shape[0]:
+        item, own = int(corners[row, 0]), row
+        while row < corners.shape[0] and int(corners[row, 0]) == item:
+            row += 1
+        force = (laws, cross_flow, item, step_s * cosine.shape[0], speed_m_s)
+        waves = (arguments[item] @ real.T, arguments[item] @ imaginary.T)
+        _between_corners(force, corners[own:row, 1:], waves, cosine, sine, nodes, answer)
+    answer *= 2.0
+    answer[0] /= 2.0
+    answer[0, 1] = 0.0
+
+
+@compile_loop
+def _at_points(
+    smooth: FloatArray,
+    real: FloatArray,
+    imaginary: FloatArray,
+    cosine: FloatArray,
+    sine: FloatArray,
+    step_s: float,
+    speed_m_s: float,
+    answer: FloatArray,
+) -> None:
+    """Add the mean over the points of what smooth laws ask for times each harmonic."""
+    orders, points = real.shape[0], cosine.shape[0]
+    value, force, none = np.empty((1, 8)), np.zeros((1, 2)), np.zeros((0, 4))
     for k in range(points):
         value[:] = 0.0
         for n in range(orders):
             for j in range(8):
                 value[0, j] += real[n, j] * cosine[k, n] - imaginary[n, j] * sine[k, n]
         force[:] = 0.0
-        law_force(laws, cross_flow, value, 0, k * step_s, step_s, speed_m_s, smooth, jumps, 0)
+        law_force(smooth, none, value, 0, k * step_s, step_s, speed_m_s, force, 0)
         for n in range(orders):
             for j in range(2):
-                total = force[0, j] + force[1, j] / mean_over_step[n]
-                answer[n, 0, j] += total * cosine[k, n]
-                answer[n, 1, j] -= total * sine[k, n]
-    answer *= 2.0 / points
-    answer[0] /= 2.0
-    answer[0, 1] = 0.0
+                answer[n, 0, j] += force[0, j] * cosine[k, n] / points
+                answer[n, 1, j] -= force[0, j] * sine[k, n] / points
 
 
 @compile_loop
-def _pivot(left: FloatArray, gram: FloatArray, free: NDArray[np.bool_]) -> int:
-    """Return the free direction of which most is left, or -1 where they all depend on others."""
-    best, most = -1, _DEPENDENT
-    for i in range(free.size):
-        if free[i] and left[i, i] > most * gram[i, i]:
-            best, most = i, left[i, i] / gram[i, i]
-    return best
+def _between_corners(
+    force: tuple[FloatArray, FloatArray, int, float, float],
+    corners: FloatArray,
+    waves: tuple[FloatArray, FloatArray],
+    cosine: FloatArray,
+    sine: FloatArray,
+    nodes: FloatArray,
+    answer: FloatArray,
+) -> None:
+    """Add the mean over the period of what one item asks for times each harmonic, exactly.
+
+    Parameters
+    ----------
+    force
+        Laws, coupled loads, the item's number, the period's length in seconds, carriage speed.
+    waves
+        Real and imaginary parts of the harmonics of its arguments, ``(4, orders + 1)``.
+    """
+    real, imaginary = waves
+    orders = real.shape[1]
+    room = np.empty(cosine.shape[0] * corners.shape[0])
+    count = find_corners(real, imaginary, corners, cosine, sine, room)
+    pieces = np.empty((count + 2, 2))
+    way, asked = np.empty((orders, 2)), np.empty(2)
+    for piece in range(pieces_between(room[:count], pieces)):
+        for node in range(nodes.shape[1]):
+            phase = pieces[piece, 0] + pieces[piece, 1] * nodes[0, node]
+            weight = pieces[piece, 1] * nodes[1, node] / (2.0 * math.pi)
+            multiples(phase, way)
+            _ask(force, phase, (real, imaginary), way, asked)
+            for n in range(orders):
+                for j in range(2):
+                    answer[n, 0, j] += weight * asked[j] * way[n, 0]
+                    answer[n, 1, j] -= weight * asked[j] * way[n, 1]
 
 
 @compile_loop
-def _weights(gram: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the solution of ``gram x = right``, directions that depend on others left out."""
-    size = right.size
-    left, rest = gram.copy(), right.copy()
-    order, found = np.zeros(size, dtype=np.int64), np.zeros(size)
-    free = np.ones(size, dtype=np.bool_)
-    rank = 0
-    for _ in range(size):
-        best = _pivot(left, gram, free)
-        if best < 0:
-            break
-        free[best] = False
-        order[rank] = best
-        rank += 1
-        for i in range(size):
-            if free[i]:
-                factor = left[i, best] / left[best, best]
-                left[i] -= factor * left[best]
-                rest[i] -= factor * rest[best]
-    for place in range(rank - 1, -1, -1):
-        i = order[place]
-        total = rest[i]
-        for later in range(place + 1, rank):
-            total -= left[i, order[later]] * found[order[later]]
-        found[i] = total / left[i, i]
-    return found
-
-
-@compile_loop
-def _mix(answers: FloatArray, changes: FloatArray, count: int, at: FloatArray) -> None:
-    """Fill in the mean of the answers whose changes cancel best (Anderson); newest last."""
-    size = at.size
-    steps = np.empty((count - 1, size))
-    for i in range(count - 1):
-        steps[i] = changes[i + 1] - changes[i]
-    gram, right = np.zeros((count - 1, count - 1)), np.zeros(count - 1)
-    for i in range(count - 1):
-        right[i] = (steps[i] * changes[count - 1]).sum()
-        for j in range(count - 1):
-            gram[i, j] = (steps[i] * steps[j]).sum()
-    weights = _weights(gram, right)
-    at[:] = answers[count - 1]
-    for i in range(count - 1):
-        at -= weights[i] * (answers[i + 1] - answers[i])
+def _ask(
+    force: tuple[FloatArray, FloatArray, int, float, float],
+    phase: float,
+    waves: tuple[FloatArray, FloatArray],
+    way: FloatArray,
+    asked: FloatArray,
+) -> None:
+    """Fill in what one item asks for of each strut at one phase."""
+    laws, cross_flow, item, period_s, speed_m_s = force
+    real, imaginary = waves
+    x, v = value_at(real, imaginary, 0, way), value_at(real, imaginary, 1, way)
+    if item < laws.shape[0]:
+        a, load = value_at(real, imaginary, 2, way), value_at(real, imaginary, 3, way)
+        time_s = phase / (2.0 * math.pi) * period_s
+        one = law_value(laws, item, (x, v, a, load), CREEP_M_S, time_s, speed_m_s)
+        asked[0], asked[1] = one * laws[item, 5], one * laws[item, 6]
+    else:
+        load = cross_flow_load(cross_flow, 0, x, v)
+        moment = cross_flow_load(cross_flow, 1, x, v)
+        for j in range(2):
+            asked[j] = cross_flow[4, j] * load + cross_flow[5, j] * moment
 
 
 @compile_loop
 def _balance(
     laws: FloatArray,
     cross_flow: FloatArray,
+    arguments: FloatArray,
+    corners: FloatArray,
+    smooth: FloatArray,
     free: ComplexArray,
     by_laws: ComplexArray,
     cosine: FloatArray,
     sine: FloatArray,
-    mean_over_step: FloatArray,
+    nodes: FloatArray,
     step_s: float,
     speed_m_s: float,
     acts_back: bool,
@@ -214,7 +255,8 @@ def _balance(
 ) -> bool:
     """Fill in the harmonics that come back unchanged; tell whether there are any."""
     answer, flat = np.zeros_like(found), found.reshape(-1)
-    given = (laws, cross_flow, free, by_laws, cosine, sine, mean_over_step, step_s, speed_m_s)
+    laws_given = (laws, cross_flow, arguments, corners, smooth)
+    given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
     _respond(*given, found, answer)
     found[:] = answer
     if not acts_back:
@@ -237,7 +279,7 @@ def _balance(
             return True
         count += 1
         if count > 1:
-            _mix(answers, changes, count, flat)
+            mix(answers, changes, count, flat)
         else:
             flat[:] = answers[0]
     return False

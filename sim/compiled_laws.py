@@ -68,14 +68,51 @@ def _arc_sine(p: FloatArray, i: int, x: float, v: float, a: float, load: float) 
 
 
 @compile_loop
+def law_value(
+    p: FloatArray,
+    i: int,
+    at: tuple[float, float, float, float],
+    half: float,
+    time_s: float,
+    speed_m_s: float,
+) -> float:
+    """Return the force that one law asks for at its point.
+
+    Parameters
+    ----------
+    p, i
+        The laws, see :class:`sim.law_table.LawTable`, and the row of this one.
+    at
+        Position, velocity, acceleration and load at the law's point.
+    half
+        See :attr:`sim.force_law.Motion.half_change`.
+    """
+    kind = int(p[i, 0])
+    x, v, a, load = at
+    if kind < _FIRST_WITH_REFERENCE:
+        return _polynomial(kind, p, i, x, v)
+    if kind < _FIRST_THAT_JUMPS:
+        return _curved(kind, p, i, x, time_s, speed_m_s)
+    if kind == _ARC_SINE:
+        return _arc_sine(p, i, x, v, a, load)
+    return _jumping(kind, p, i, x, v, half, load)
+
+
+@compile_loop
+def cross_flow_load(k: FloatArray, row: int, v: float, r: float) -> float:
+    """Return force (row 0) or moment (row 1) of both velocities through the water, coupled."""
+    cubic = k[row, 0] * v**3 + k[row, 1] * v * v * r + k[row, 2] * v * r * r + k[row, 3] * r**3
+    quadratic = k[row + 2, 0] * v * abs(v) + k[row + 2, 1] * v * abs(r)
+    return float(cubic + quadratic + k[row + 2, 2] * r * abs(v) + k[row + 2, 3] * r * abs(r))
+
+
+@compile_loop
 def _cross_flow(k: FloatArray, at: FloatArray, line: int, force: FloatArray, into: int) -> None:
     h0, h1, v0, v1 = at[line, 0], at[line, 1], at[line, 2], at[line, 3]
     v = k[4, 0] * v0 + k[4, 1] * v1 + k[4, 2] * h0 + k[4, 3] * h1
     r = k[5, 0] * v0 + k[5, 1] * v1 + k[5, 2] * h0 + k[5, 3] * h1
     for row in range(2):
-        load = k[row, 0] * v**3 + k[row, 1] * v * v * r + k[row, 2] * v * r * r
-        load += k[row, 3] * r**3 + k[row + 2, 0] * v * abs(v) + k[row + 2, 1] * v * abs(r)
-        load += k[row + 2, 2] * r * abs(v) + k[row + 2, 3] * r * abs(r)
+        load = cross_flow_load(k, row, v, r)
         force[into, 0] += k[4 + row, 0] * load
         force[into, 1] += k[4 + row, 1] * load
 
@@ -89,11 +126,10 @@ def law_force(
     time_s: float,
     step_s: float,
     speed_m_s: float,
-    smooth: FloatArray,
-    jumps: FloatArray,
+    force: FloatArray,
     into: int,
 ) -> None:
-    """Add the force of each strut that the laws ask for, those that jump apart from the others.
+    """Add the force of each strut that the laws ask for.
 
     Parameters
     ----------
@@ -102,33 +138,18 @@ def law_force(
     at, line
         The row that holds the model at the struts: h, h', h'' and the load of the linear parts, two
         values each.
-    smooth, jumps, into
-        Where the forces go, to the first two columns of row ``into``; ``smooth`` and ``jumps`` are
-        the same array where no difference is made.
+    force, into
+        Where the forces go, to the first two columns of row ``into``.
     """
     for i in range(laws.shape[0]):
-        kind, a0, a1 = int(laws[i, 0]), laws[i, 5], laws[i, 6]
-        turn0, turn1 = laws[i, 9], laws[i, 10]
+        a0, a1, turn0, turn1 = laws[i, 5], laws[i, 6], laws[i, 9], laws[i, 10]
         x = at[line, 0] * a0 + at[line, 1] * a1
         v = at[line, 2] * a0 + at[line, 3] * a1 + at[line, 0] * turn0 + at[line, 1] * turn1
-        if kind < _FIRST_THAT_JUMPS:
-            if kind < _FIRST_WITH_REFERENCE:
-                force = _polynomial(kind, laws, i, x, v)
-            else:
-                force = _curved(kind, laws, i, x, time_s, speed_m_s)
-            smooth[into, 0] += force * a0
-            smooth[into, 1] += force * a1
-        else:
-            a = at[line, 4] * a0 + at[line, 5] * a1 + at[line, 2] * turn0 + at[line, 3] * turn1
-            load = at[line, 6] * laws[i, 7] + at[line, 7] * laws[i, 8]
-            if kind == _ARC_SINE:
-                force = _arc_sine(laws, i, x, v, a, load)
-                smooth[into, 0] += force * a0
-                smooth[into, 1] += force * a1
-            else:
-                half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
-                force = _jumping(kind, laws, i, x, v, half, load)
-                jumps[into, 0] += force * a0
-                jumps[into, 1] += force * a1
+        a = at[line, 4] * a0 + at[line, 5] * a1 + at[line, 2] * turn0 + at[line, 3] * turn1
+        load = at[line, 6] * laws[i, 7] + at[line, 7] * laws[i, 8]
+        half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
+        value = law_value(laws, i, (x, v, a, load), half, time_s, speed_m_s)
+        force[into, 0] += value * a0
+        force[into, 1] += value * a1
     if cross_flow.shape[0]:
-        _cross_flow(cross_flow, at, line, smooth, into)
+        _cross_flow(cross_flow, at, line, force, into)

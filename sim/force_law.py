@@ -2,7 +2,8 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final, Self
+from enum import IntEnum
+from typing import ClassVar, Final, NamedTuple, Self
 
 import numpy as np
 
@@ -13,6 +14,26 @@ from sim.stage import UNKNOWN_KEYS_REFUSED
 # Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens
 # the turn of a motion with peak speed V, which takes (CREEP / V)^2 / 6 from the first harmonic.
 CREEP_M_S: Final = 1e-4
+
+
+class Argument(IntEnum):
+    """What of a :class:`Motion` a law may jump or bend over."""
+
+    POSITION = 0
+    VELOCITY = 1
+    ACCELERATION = 2
+    LOAD = 3
+
+
+class Corner(NamedTuple):
+    """Where a law jumps or bends: the argument passes the level, in that argument's unit."""
+
+    argument: Argument
+    level: float = 0.0
+
+
+# The corners of a law that jumps where the motion turns: where friction ends to build up.
+TURNS: Final = (Corner(Argument.VELOCITY, -CREEP_M_S), Corner(Argument.VELOCITY, CREEP_M_S))
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +49,8 @@ class Motion:
     time_s
         Time of each sample.
     step_s
-        Time from sample to sample, over which a law that jumps is averaged.
+        Time from sample to sample, over which a law that jumps is averaged; 0 at instants between
+        which there are no samples.
     speed_m_s
         Carriage speed.
     """
@@ -57,8 +79,6 @@ class ForceLaw(ABC):
 
     Attributes
     ----------
-    jumps
-        True where the law uses :attr:`Motion.direction`, so that it is a mean over a sample.
     periodic
         False for a force with a frequency of its own, which has no part in a periodic steady state.
     strengths
@@ -66,9 +86,13 @@ class ForceLaw(ABC):
     """
 
     strengths: ClassVar[tuple[str, ...]] = ()
-    jumps: ClassVar[bool] = False
     periodic: ClassVar[bool] = True
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Where the law jumps or bends; a periodic steady state is integrated between them."""
+        return ()
 
     @abstractmethod
     def force(self, motion: Motion) -> FloatArray:

@@ -6,6 +6,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from sim.acting import Acting, Point
+from sim.corners import nodes_between
 from sim.hull_system import HullSystem
 from sim.laws import Motion
 from sim.linear import ComplexArray, Rows, as_rows
@@ -113,23 +114,59 @@ def law_harmonics(
     laws: tuple[Acting, ...],
     cross_flow: CrossFlow | None,
     system: HullSystem,
-    motion: ModelMotion,
+    waves: ComplexArray,
     period: Period,
     speed_m_s: float,
 ) -> ComplexArray:
     """Return the harmonics of :func:`law_forces` over a period, shape ``(orders + 1, 2)``.
 
-    ``motion`` holds values at the period's points.
+    What jumps or bends is integrated between its corners, all else at the period's points.
+
+    Parameters
+    ----------
+    waves
+        Harmonics of h, h', h'' and the load of the linear parts at the struts,
+        ``(orders + 1, 8)``.
     """
-    instants = Instants(
-        period.time_s, period.step_s, np.full(period.points, speed_m_s, dtype=np.float64)
-    )
-    taking_part = [one for one in laws if one.law.periodic]
-    smooth = tuple(one for one in taking_part if not one.law.jumps)
-    jumping = tuple(one for one in taking_part if one.law.jumps)
-    found = period.harmonics(law_forces(smooth, cross_flow, system, motion, instants))
-    if jumping:
-        alone = replace(system, drift_load=np.zeros(2))
-        means = period.harmonics(law_forces(jumping, None, alone, motion, instants))
-        found += means / period.mean_over_step[:, np.newaxis]
+    laws = tuple(one for one in laws if one.law.periodic)
+    smooth = tuple(one for one in laws if not one.law.corners)
+    at_points = ModelMotion(*np.split(period.values(waves), 4, axis=1))
+    instants = Instants(period.time_s, period.step_s, np.full(period.points, speed_m_s))
+    found = period.harmonics(law_forces(smooth, None, system, at_points, instants))
+    alone = replace(system, drift_load=np.zeros(2))
+    orders = np.arange(len(waves))
+    for one in (*(one for one in laws if one.law.corners), cross_flow):
+        if one is None:
+            continue
+        signals, corners = _cornered(one, system, waves, speed_m_s)
+        phase, weight = nodes_between(signals, corners, period.points)
+        turned = np.exp(1j * np.outer(phase, orders))
+        motion = ModelMotion(*np.split((turned @ waves).real, 4, axis=1))
+        instants = Instants(phase / period.omega_rad_s, 0.0, np.full(phase.size, speed_m_s))
+        if isinstance(one, CrossFlow):
+            force = law_forces((), one, alone, motion, instants)
+        else:
+            force = law_forces((one,), None, alone, motion, instants)
+        added = 2.0 * (turned.conj() * weight[:, np.newaxis]).T @ force
+        added[0] = added[0].real / 2.0
+        found += added
     return found
+
+
+def _cornered(
+    one: Acting | CrossFlow, system: HullSystem, waves: ComplexArray, speed_m_s: float
+) -> tuple[ComplexArray, FloatArray]:
+    """Return the harmonics of what a force depends on, a row each, and its corners."""
+    h, velocity, acceleration, load = np.split(waves, 4, axis=1)
+    flow = np.zeros(len(waves))
+    flow[0] = speed_m_s
+    if isinstance(one, CrossFlow):
+        through = velocity @ system.to_motion.T + h @ system.incidence.T
+        through = through + flow[:, np.newaxis] * system.drift
+        return through.T, np.array([[0.0, 0.0], [1.0, 0.0]])
+    along, share = direction(one.point, system.to_motion)
+    v, a = velocity @ along, acceleration @ along
+    if one.point is Point.THROUGH_WATER:
+        v = v + h @ system.incidence[0] + flow * system.drift[0]
+        a = a + velocity @ system.incidence[0]
+    return np.stack([h @ along, v, a, load @ share]), np.array(one.law.corners, dtype=float)

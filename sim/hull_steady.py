@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.hull_forces import ModelMotion, law_harmonics
+from sim.hull_forces import law_harmonics
 from sim.hull_system import HullSystem
 from sim.linear import ComplexArray
 from sim.model_march import periodic_laws
@@ -53,13 +53,12 @@ class HullSteady:
         h = self._model(y, laws)
         column = self.period.s[:, np.newaxis]
         waves = np.hstack([h, h * column, h * column**2, _apply(self.impedance, h)])
-        motion = ModelMotion(*np.split(self.period.values(waves), 4, axis=1))
         hull = self.hull
         return law_harmonics(
             hull.laws,
             hull.cross_flow,
             hull.system,
-            motion,
+            waves,
             self.period,
             hull.carriage_speed_m_s,
         )

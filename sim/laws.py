@@ -4,11 +4,11 @@ A law gives the force that a strut (or the couple that both) has to exert becaus
 along the motion, from the motion at one :class:`sim.acting.Point` of the model. A new law is a new
 class with a method ``force``; nothing else needs to know of it.
 
-A law that jumps where the velocity changes sign is averaged over the sample (``jumps = True``): the
-velocity is taken as linear over the sample, so that sgn(v) becomes the part of the sample with
-v > 0 less the part with v < 0. Its harmonics then lack sinc(n w h / 2), as those of every mean over
-a sample do: 4e-5 of the first at 200 samples a period, where sampling sgn(v) itself is off by up to
-1.5 %. The periodic form divides that factor out.
+A law that jumps where the velocity changes sign is averaged over the sample: the velocity is taken
+as linear over the sample, so that sgn(v) becomes the part of the sample with v > 0 less the part
+with v < 0. Its harmonics then lack sinc(n w h / 2), as those of every mean over a sample do: 4e-5
+of the first at 200 samples a period, where sampling sgn(v) itself is off by up to 1.5 %. A periodic
+steady state has no samples: there the law is integrated between its ``corners``, which it names.
 """
 
 import math
@@ -17,10 +17,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from sim.force_law import CREEP_M_S, ForceLaw, Motion
+from sim.force_law import CREEP_M_S, TURNS, Argument, Corner, ForceLaw, Motion
 from sim.signals import FloatArray
 
 __all__ = ["CREEP_M_S", "ForceLaw", "Motion"]
+
+# Of the Stribeck speed: beyond it exp(-9), 1e-4 of the force, is left. It only parts the period.
+_STRIBECK_ENDS = 3.0
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,11 @@ class Quadratic(ForceLaw):
     drift_m_s: float = 0.0
 
     strengths: ClassVar[tuple[str, ...]] = ("quadratic_n_s2_m2",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the flow turns."""
+        return (Corner(Argument.VELOCITY, -self.drift_m_s),)
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -75,9 +83,12 @@ class Coulomb(ForceLaw):
     coulomb_n: float
     uneven_n: float = 0.0
 
-    jumps: ClassVar[bool] = True
-
     strengths: ClassVar[tuple[str, ...]] = ("coulomb_n", "uneven_n")
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the motion turns."""
+        return TURNS
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -91,9 +102,13 @@ class Stribeck(ForceLaw):
     excess_n: float
     stribeck_speed_m_s: float
 
-    jumps: ClassVar[bool] = True
-
     strengths: ClassVar[tuple[str, ...]] = ("excess_n",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the motion turns, and where little of the force is left."""
+        rest = _STRIBECK_ENDS * self.stribeck_speed_m_s
+        return (*TURNS, Corner(Argument.VELOCITY, rest), Corner(Argument.VELOCITY, -rest))
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force that has to be exerted: its mean over the sample, by its integral."""
@@ -114,9 +129,14 @@ class LoadFriction(ForceLaw):
     side_load_n: float = 0.0
     load_share: float = 1.0
 
-    jumps: ClassVar[bool] = True
-
     strengths: ClassVar[tuple[str, ...]] = ("friction",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the motion turns, and where the load changes sides."""
+        if not self.load_share:
+            return TURNS
+        return (*TURNS, Corner(Argument.LOAD, -self.side_load_n / self.load_share))
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""
@@ -153,9 +173,12 @@ class RubbingSpring(ForceLaw):
 
     rubbing_n_m: float
 
-    jumps: ClassVar[bool] = True
-
     strengths: ClassVar[tuple[str, ...]] = ("rubbing_n_m",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the motion turns, and its middle."""
+        return (*TURNS, Corner(Argument.POSITION))
 
     def force(self, motion: Motion) -> FloatArray:
         """Return the force."""

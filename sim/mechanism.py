@@ -66,7 +66,8 @@ class Mechanism:
     Attributes
     ----------
     rod_length_m
-        ``L``; ``None`` for a scotch yoke.
+        ``L``; ``None`` for a scotch yoke. Negative, with ``-sqrt`` for ``+sqrt``, for a rod that
+        lies to the other side of the crank.
     aft, fore
         How each strut's linkage differs from what was set.
 
@@ -93,7 +94,8 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         offset_m = max(abs(self.aft.rod_offset_m), abs(self.fore.rod_offset_m))
-        if self.rod_length_m is not None and self.rod_length_m <= self.eccentricity_m + offset_m:
+        rod_m = math.inf if self.rod_length_m is None else abs(self.rod_length_m)
+        if rod_m <= self.eccentricity_m + offset_m:
             aside = f" and rod_offset_m = {offset_m:g}" if offset_m else ""
             raise ConfigurationError(
                 f"rod_length_m = {self.rod_length_m:g} must exceed "
@@ -185,12 +187,12 @@ class Mechanism:
         if self.rod_length_m is None:
             return yoke
         beside = e * cosine + rod_offset_m
-        rod = np.sqrt(self.rod_length_m**2 - beside**2)
+        rod = math.copysign(1.0, self.rod_length_m) * np.sqrt(self.rod_length_m**2 - beside**2)
         rod_slope = e * sine * beside / rod
         rod_curvature = (e * (cosine * beside - e * sine**2) - rod_slope**2) / rod
-        middle = (
-            math.sqrt(self.rod_length_m**2 - rod_offset_m**2) if rod_offset_m else self.rod_length_m
-        )
+        middle = self.rod_length_m
+        if rod_offset_m:
+            middle = math.copysign(math.sqrt(middle**2 - rod_offset_m**2), middle)
         return (
             yoke[0] + (rod - middle),
             yoke[1] + rod_slope,

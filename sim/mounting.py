@@ -1,5 +1,6 @@
 """How the model hangs: the stiffness of the gauges, and of the frame that holds the struts."""
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -31,8 +32,8 @@ class Joint:
     half_play_m
         Clearance to either side of its middle.
     preload_n
-        Force that presses it to one side: it opens where the strut's force is larger, and at rest
-        lies at that side.
+        Force that presses it to one side, or to the other where it is negative: it opens where the
+        strut's force is larger, and at rest lies at that side.
     """
 
     half_play_m: float
@@ -41,10 +42,10 @@ class Joint:
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
-        if not (self.half_play_m > 0.0 and self.preload_n >= 0.0):
+        if not (self.half_play_m > 0.0 and math.isfinite(self.preload_n)):
             raise ConfigurationError(
                 f"joint: half_play_m = {self.half_play_m:g} must be positive and "
-                f"preload_n = {self.preload_n:g} not negative; leave the joint out for none"
+                f"preload_n = {self.preload_n:g} a number; leave the joint out for none"
             )
 
 

@@ -60,11 +60,6 @@ class Period:
         """Time from point to point."""
         return 1.0 / (self.points * self.frequency_hz)
 
-    @property
-    def mean_over_step(self) -> FloatArray:
-        """What a mean over a step leaves of each order: sinc(n / points), shape (orders + 1,)."""
-        return np.sinc(np.arange(self.orders + 1) / self.points)
-
     def at(self, frequency_hz: float) -> "Period":
         """Return the period at another frequency."""
         return replace(self, frequency_hz=frequency_hz)

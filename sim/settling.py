@@ -36,7 +36,7 @@ def joint_return(gap: FloatArray, opening: float) -> float:
     gap
         Stiffness, half clearance, preload.
     """
-    at = opening + gap[1] + gap[2] / gap[0]
+    at = opening + math.copysign(gap[1], gap[2]) + gap[2] / gap[0]
     pressed = max(at - gap[1], 0.0) + min(at + gap[1], 0.0)
     return float(gap[0] * (opening - pressed) + gap[2])
 
@@ -57,7 +57,7 @@ def _model_loads(
     """Fill in row 0 of ``room``: the loads that belong to the outputs in row 1 of ``work``."""
     for j in range(given.shape[1]):
         room[0, j] = given[k, j]
-    law_force(laws, cross_flow, work, 1, instants[k, 0], step_s, instants[k, 2], room, room, 0)
+    law_force(laws, cross_flow, work, 1, instants[k, 0], step_s, instants[k, 2], room, 0)
     extra = instants[k, 1]
     if extra != 0.0:
         for i in range(2):

@@ -83,7 +83,7 @@ def linkages_of(mechanism: Mechanism) -> Linkages:
                 phase_rad + setting.phase_error_rad + setting.slot_tilt_rad,
                 rod or 0.0,
                 offset,
-                math.sqrt(rod**2 - offset**2) if rod else 0.0,
+                math.copysign(math.sqrt(rod**2 - offset**2), rod) if rod else 0.0,
             )
         )
     return Linkages(np.array(rows))
@@ -103,9 +103,9 @@ def strut_motion(links: FloatArray, work: FloatArray, struts: FloatArray, into: 
         angle, speed = work[2, 0] + links[i, 1], work[2, 1]
         sine, cosine = math.sin(angle), math.cos(angle)
         place, slope, curvature = e * sine, e * cosine, -e * sine
-        if links[i, 2] > 0.0:
+        if links[i, 2] != 0.0:
             beside = e * cosine + links[i, 3]
-            rod = math.sqrt(links[i, 2] ** 2 - beside**2)
+            rod = math.copysign(math.sqrt(links[i, 2] ** 2 - beside**2), links[i, 2])
             rod_slope = e * sine * beside / rod
             place += rod - links[i, 4]
             slope += rod_slope

@@ -4,11 +4,15 @@ from collections.abc import Iterator
 
 import can
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
+from analysis.foreign.process import end_children
 from tests.hardware.leaks import Leaks
 
-settings.register_profile("seeded", derandomize=True)
+# No clock decides a test: a slow machine is no fault of the code.
+settings.register_profile(
+    "seeded", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("seeded")
 
 
@@ -18,6 +22,7 @@ def _nothing_left_behind() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         leaks = Leaks(patch)
         yield
+        end_children()  # one is kept for the next file, by design
         left = leaks.found()
     assert not left, f"left behind: {', '.join(left)}"
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_checks import consistency
 from analysis.coefficients.campaign_plan import Group, Request, check_campaign, plan
-from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, Entry, Missing
+from analysis.coefficients.campaign_records import ZERO_FREQUENCY, Entry, Missing
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_solve import Block, solve_group
 from analysis.coefficients.cycle import Cycle
@@ -134,12 +134,12 @@ def _check_name(name: str, found: CampaignCoefficients, request: Request) -> Non
 def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
     """Return the campaign with each coefficient at zero frequency, where two frequencies allow it.
 
-    Those of the non-linear fits are taken before the linear ones, which hold what the amplitude
-    adds; of several amplitudes the smallest.
+    At each frequency the fit of all amplitudes is taken; a linear value of one amplitude only where
+    the load was found linear, for it holds what the amplitude adds.
     """
     entries, values = list(found.entries), [found.uncertain]
     for name, speed in dict.fromkeys((one.name, one.speed_m_s) for one in found.entries):
-        rows = _series(found, name, speed)
+        rows = found.at_each_frequency(name, speed)
         if len(rows) < 2:
             continue
         own = found.uncertain.taken(rows)
@@ -161,21 +161,6 @@ def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
             np.concatenate((trials.high, empty)),
         ),
     )
-
-
-def _series(found: CampaignCoefficients, name: str, speed_m_s: float) -> list[int]:
-    """Rows of a coefficient over frequency, one each."""
-    rows = found.rows(name, speed_m_s=speed_m_s)
-    rows = [k for k in rows if found.entries[k].frequency_hz > 0.0]
-    higher = [k for k in rows if found.entries[k].method.startswith("higher")]
-    if len({found.entries[k].frequency_hz for k in higher}) > 1:
-        rows = higher
-    else:
-        rows = [k for k in rows if found.entries[k].method == LINEAR]
-    single: dict[float, int] = {}
-    for k in rows:
-        single.setdefault(round(found.entries[k].frequency_hz, 4), k)
-    return list(single.values())
 
 
 def _at_zero(found: CampaignCoefficients, rows: Sequence[int]) -> Entry:

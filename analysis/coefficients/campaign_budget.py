@@ -16,6 +16,7 @@ _KINDS = {
     "repeats:": "repeats",
     "zero run": "zero runs",
     "extrapolation of": "extrapolation to zero frequency",
+    "form of": "form of the loads",
 }
 _WORDS = {
     "mass_kg": "mass",

@@ -1,11 +1,12 @@
 """The non-linear fits of one speed and frequency: several runs, quasi-steady, single runs, X."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from analysis.coefficients.campaign_plan import Request
-from analysis.coefficients.campaign_records import FormChoice, Missing
+from analysis.coefficients.campaign_records import HIGHER_ORDER, FormChoice, Missing
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import (
     FIRST,
@@ -15,12 +16,18 @@ from analysis.coefficients.cycle_fit import (
     CycleFit,
     fit_cycles,
 )
-from analysis.coefficients.form_choice import LINEAR_FORM, NOT_SEPARABLE, choose_form, forms_of
+from analysis.coefficients.form_choice import (
+    CUBIC,
+    LINEAR_FORM,
+    choose_among,
+    choose_form,
+    forms_of,
+    rival_forms,
+)
 from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 
-HIGHER_ORDER = "higher order, several runs"
 FIRST_HARMONICS = "first harmonics, several runs"
 QUASI = "quasi-steady"
 SINGLE_RUN = "single run"
@@ -28,7 +35,7 @@ STATIC_DRIFT = "static drift"
 SURGE_FORCES = "surge"
 
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
-_STATIC_FOR_CUBIC = 4
+_STATIC_FOR_FORMS = 4  # angles; fewer do not tell a curve from its straight line
 
 Found = tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]]
 
@@ -47,23 +54,16 @@ def nonlinear_fits(cycles: Sequence[Cycle], request: Request) -> Found:
             missing.append(Missing(f"{LOAD_LETTERS[cycles[0].plane][row]} terms", str(error)))
             continue
         choices.append(choice)
-        names = forms_of(cycles[0].plane, row, motions, cross=cross)[_form(choice)]
+        forms = forms_of(cycles[0].plane, row, motions, cross=cross)
         for method, of, chosen in _methods(cycles, orders):
-            _try(fits, missing, method, of, names, chosen, request)
+            _try_form(fits, missing, method, of, forms, choice, chosen, request)
         for cycle in cycles:
             own, both = _motions([cycle])
-            single = forms_of(cycle.plane, row, own, cross=both)[_form(choice)]
-            _try(fits, [], SINGLE_RUN, [cycle], single, orders, request)
+            single = forms_of(cycle.plane, row, own, cross=both)
+            _try_form(fits, [], SINGLE_RUN, [cycle], single, choice, orders, request)
     if all(cycle.has_surge for cycle in cycles):
         _surge(fits, missing, cycles, motions, cross, request)
     return fits, choices, missing
-
-
-def _form(choice: FormChoice) -> str:
-    """The form to be fitted: where forms cannot be told apart, the best of the non-linear ones."""
-    if choice.verdict != NOT_SEPARABLE:
-        return choice.verdict
-    return next(form for form in choice.forms if form != LINEAR_FORM)
 
 
 def _methods(
@@ -76,6 +76,30 @@ def _methods(
     if all(cycle.mean_known for cycle in cycles):
         found.append((QUASI, cycles, QUASI_STEADY))
     return found
+
+
+def _try_form(
+    fits: list[tuple[str, CycleFit]],
+    missing: list[Missing],
+    method: str,
+    cycles: Sequence[Cycle],
+    forms: Mapping[str, Sequence[str]],
+    choice: FormChoice,
+    orders: tuple[int, ...],
+    request: Request,
+) -> None:
+    """Fit the form that was chosen; where others do about as well, what they differ by is added."""
+    before = len(fits)
+    _try(fits, missing, method, cycles, forms[choice.fitted], orders, request)
+    for form, weight in rival_forms(choice) if len(fits) > before else ():
+        try:
+            rival = fit_cycles(cycles, forms[form], orders)
+        except DataError:
+            continue  # these runs alone do not tell its terms
+        taken = fits[-1][1]
+        apart = [rival[name] - taken[name] if name in rival.names else 0.0 for name in taken.names]
+        label = f"form of the {choice.load}: {form}"
+        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(apart)))
 
 
 def _try(
@@ -140,19 +164,24 @@ def _surge(
 def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
-    Force and moment are linear, cubic from four angles on; X is the resistance and, where the model
-    was turned, quadratic.
+    Force and moment are linear, or cubic where there are angles enough to tell and the data support
+    it; X is the resistance and, where the model was turned, quadratic.
     """
     plane = cycles[0].plane
     letter = VELOCITY_LETTERS[plane][0]
     angles = {round(cycle.drift_rad, 6) for cycle in cycles}
     fits: list[tuple[str, CycleFit]] = []
+    choices: list[FormChoice] = []
     missing: list[Missing] = []
-    for load in LOAD_LETTERS[plane]:
-        names = [f"{load}_0", f"{load}_{letter}"]
-        names += [f"{load}_{letter * 3}"] if len(angles) >= _STATIC_FOR_CUBIC else []
-        _try(fits, missing, STATIC_DRIFT, cycles, names, STATIC, request)
+    for row, load in enumerate(LOAD_LETTERS[plane]):
+        linear = (f"{load}_0", f"{load}_{letter}")
+        forms = {LINEAR_FORM: linear, CUBIC: (*linear, f"{load}_{letter * 3}")}
+        if len(angles) < _STATIC_FOR_FORMS:
+            _try(fits, missing, STATIC_DRIFT, cycles, linear, STATIC, request)
+            continue
+        choices.append(choose_among(forms, cycles, row, STATIC))
+        _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choices[-1], STATIC, request)
     if all(cycle.has_surge for cycle in cycles):
         names = ["X_0"] if angles == {0.0} else ["X_0", f"X_{letter * 2}"]
         _try(fits, missing, SURGE_FORCES, cycles, names, STATIC, request)
-    return fits, [], missing
+    return fits, choices, missing

@@ -39,6 +39,7 @@ class Entry:
 
 
 LINEAR = "linear"
+HIGHER_ORDER = "higher order, several runs"
 ZERO_FREQUENCY = "zero frequency"
 
 
@@ -55,7 +56,8 @@ class Check:
     difference, standard_uncertainty, degrees_of_freedom
         First less second, with what both share left out of its uncertainty.
     agrees
-        Whether the difference lies within its interval.
+        Whether the difference lies within an interval so wide that all checks of a good campaign
+        agree together with the campaign's level.
     """
 
     kind: str
@@ -105,6 +107,9 @@ class FormChoice:
     parameters, chi_square, aicc, weights
         Of each form: number of coefficients, weighted squares of the residuals (not over-
         dispersed: see ``dispersion``), Akaike's criterion for few data, and its weight.
+    fitted
+        The form that is taken: linear unless another is supported as many times better as
+        :data:`analysis.coefficients.form_choice.DECIDES` asks.
     dispersion
         Squares left over by the richest form for each degree of freedom, at least 1: the others'
         are divided by it, so that a model that fits nowhere does not seem to decide.
@@ -123,6 +128,7 @@ class FormChoice:
     weights: tuple[float, ...]
     dispersion: float
     verdict: str
+    fitted: str
     evidence_ratio: float
     message: str
 

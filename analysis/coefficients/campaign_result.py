@@ -2,11 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analysis.coefficients.campaign_records import (
+    HIGHER_ORDER,
+    LINEAR,
     Check,
     Entry,
     FormChoice,
@@ -14,7 +17,9 @@ from analysis.coefficients.campaign_records import (
     Outlier,
     ReferenceRow,
 )
+from analysis.coefficients.form_choice import LINEAR_FORM
 from analysis.coefficients.names import Form
+from analysis.coefficients.terms import load_of
 from analysis.uncertainty import FloatArray, UncertainValues
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
@@ -133,8 +138,42 @@ class CampaignCoefficients:
             )
         return found[0]
 
+    def curved(self, name: str, speed_m_s: float) -> bool:
+        """Whether a coefficient's load was found not to be linear in oscillations at a speed."""
+        rows = self.rows(name, speed_m_s=speed_m_s)
+        moving = [self.entries[k] for k in rows if self.entries[k].frequency_hz > 0.0]
+        runs = [run for entry in moving for run in entry.runs]
+        return any(one.fitted != LINEAR_FORM for one in self.choices_of(name, runs))
+
+    def at_each_frequency(self, name: str, speed_m_s: float) -> list[int]:
+        """Return the places of a coefficient's values over frequency, one each.
+
+        The fit of all amplitudes goes first; a linear value of one amplitude (the smallest) serves
+        only where the load was found linear, for it holds what the amplitude adds.
+        """
+        methods = (HIGHER_ORDER,) if self.curved(name, speed_m_s) else (HIGHER_ORDER, LINEAR)
+        single: dict[float, int] = {}
+        for method in methods:
+            for k in self.rows(name, method=method, speed_m_s=speed_m_s):
+                single.setdefault(round(self.entries[k].frequency_hz, 4), k)
+        return sorted(single.values(), key=lambda k: self.entries[k].frequency_hz)
+
+    def choices_of(self, name: str, runs: Sequence[str]) -> tuple[FormChoice, ...]:
+        """Return what was found of the form of a coefficient's load with any of some runs."""
+        load = load_of(name)
+        own = set(runs)
+        return tuple(one for one in self.choices if one.load == load and own & set(one.runs))
+
+    @cached_property
+    def recommended(self) -> tuple[int, ...]:
+        """Places of the values to be used first; :mod:`analysis.coefficients.recommended`."""
+        from analysis.coefficients.recommended import recommended
+
+        return recommended(self)
+
     def table(self) -> Iterator[Mapping[str, Any]]:
-        """Yield a row per entry: the entry's own, value, uncertainty, interval, Monte Carlo."""
+        """Yield a row per entry: its own, value, uncertainty, interval, trials, whether first."""
+        first = set(self.recommended)
         spread, freedom = self.uncertain.standard_uncertainty, self.uncertain.degrees_of_freedom
         half = self.half_widths
         for k, entry in enumerate(self.entries):
@@ -155,6 +194,7 @@ class CampaignCoefficients:
                 "trials_high": float(self.trials.high[k]),
                 "retained": entry.retained,
                 "misfit": entry.misfit,
+                "recommended": k in first,
             }
 
     def shares(self, row: int) -> Mapping[str, float]:

@@ -122,7 +122,7 @@ def _fits_block(
         _fit_entry(method, fit, k) for method, fit in fits for k in range(len(fit.names))
     )
     uncertain = stacked([fit.uncertain for _, fit in fits])
-    flags = tuple(flag for cycle in cycles for flag in cycle.flags)
+    flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
     trials = _fits_trials(fits, request)
     return Block(entries, uncertain, trials, tuple(choices), tuple(missing), flags)
 

@@ -47,6 +47,8 @@ class CycleFit:
         Weighted squares of the residuals by load (force, moment, surge), shape ``(3,)``.
     data
         Numbers fitted by load, shape ``(3,)``.
+    more
+        Inputs besides scatter and what is stated: name, and what it adds to each value.
     """
 
     names: tuple[str, ...]
@@ -56,11 +58,19 @@ class CycleFit:
     data: FloatArray
     problem: CycleProblem
     stated: Stated
+    more: tuple[tuple[str, FloatArray], ...] = ()
 
     @cached_property
     def uncertain(self) -> UncertainValues:
-        """The values with what scatter and stated uncertainties add."""
-        return UncertainValues(self.values, _contributions(self))
+        """The values with what scatter, stated uncertainties and other inputs add."""
+        found = UncertainValues(self.values, _contributions(self))
+        for label, parts in self.more:
+            found = found.plus(label, parts)
+        return found
+
+    def beside(self, label: str, parts: FloatArray) -> "CycleFit":
+        """Return the fit with one more input, and what that adds to each value."""
+        return replace(self, more=(*self.more, (label, parts)))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""

@@ -25,7 +25,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients, TrialCol
 from analysis.coefficients.names import Form
 from analysis.uncertainty import Contribution, FloatArray, UncertainValues
 from hardware.description.errors import DataError
-from hardware.description.flags import Flag, Severity
+from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
 
 if TYPE_CHECKING:
@@ -170,9 +170,7 @@ def _result(
     records: dict[str, Any] = {
         name: tuple(_record(kind, one) for one in content[name]) for name, kind in _RECORDS.items()
     }
-    flags = tuple(
-        Flag(**{**one, "severity": Severity(one["severity"])}) for one in content["flags"]
-    )
+    flags = tuple(map(Flag.read, content["flags"]))
     return CampaignCoefficients(
         Form(content["form"]),
         Plane(content["plane"]),

@@ -1,5 +1,7 @@
 """Which non-linear form the data support: cubic, ``|v|v``, both or none; or that they cannot tell.
 
+Linear is taken unless another form is :data:`DECIDES` times as well supported.
+
 All forms are fitted to the same harmonics. Squares of the residuals over their scatter give
 Akaike's criterion for few data, and ``exp(difference/2)`` is the evidence ratio. Where even the
 richest form leaves more than scatter explains, all squares are divided by that excess (quasi-AIC):
@@ -14,7 +16,13 @@ import numpy as np
 from analysis.coefficients.campaign_records import FormChoice
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import HIGHER, CycleFit, fit_cycles
-from analysis.coefficients.terms import VELOCITY_LETTERS, linear_terms, name_of_term, term_of
+from analysis.coefficients.terms import (
+    LOAD_WORDS,
+    VELOCITY_LETTERS,
+    linear_terms,
+    name_of_term,
+    term_of,
+)
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 
@@ -25,8 +33,8 @@ BOTH = "cubic and quadratic"
 NOT_SEPARABLE = "not separable"
 
 DECIDES = 20.0  # evidence ratio: 1 in 20 is what the intervals leave open too
+BEYOND_DOUBT = 1e6  # an evidence ratio above is not counted out
 _DESCRIBES = 3.0  # squares left over by the richest form, for each degree of freedom
-_LOADS = ("force", "moment", "surge force")
 
 
 def forms_of(
@@ -80,9 +88,29 @@ def choose_form(
     DataError
         If not even the linear terms are determined.
     """
-    forms = forms_of(cycles[0].plane, row, motions, cross=cross)
+    return choose_among(forms_of(cycles[0].plane, row, motions, cross=cross), cycles, row, orders)
+
+
+def choose_among(
+    forms: Mapping[str, Sequence[str]],
+    cycles: Sequence[Cycle],
+    row: int,
+    orders: tuple[int, ...],
+) -> FormChoice:
+    """Return which of some forms of one load the cycles support.
+
+    Parameters
+    ----------
+    forms
+        Names of the terms by form, :data:`LINEAR_FORM` among them.
+
+    Raises
+    ------
+    DataError
+        If not even the linear terms are determined.
+    """
     fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
-    for form in (CUBIC, QUADRATIC, BOTH):
+    for form in [form for form in forms if form != LINEAR_FORM]:
         try:
             fits[form] = fit_cycles(cycles, forms[form], orders)
         except DataError:
@@ -90,7 +118,7 @@ def choose_form(
     criteria, dispersion = _criteria(fits, row)
     best = min(criteria.values())
     weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
-    verdict, ratio, why = _verdict(criteria)
+    verdict, fitted, ratio, why = _verdict(criteria)
     if dispersion > _DESCRIBES:
         why += (
             f"; but even the richest leaves {dispersion:.3g} times what scatter explains (limit "
@@ -99,7 +127,7 @@ def choose_form(
     ranked = sorted(criteria, key=lambda form: criteria[form])
     total = sum(weights.values())
     return FormChoice(
-        _LOADS[row],
+        LOAD_WORDS[row],
         tuple(cycle.name for cycle in cycles),
         tuple(ranked),
         tuple(len(fits[form].names) for form in ranked),
@@ -108,8 +136,21 @@ def choose_form(
         tuple(weights[form] / total for form in ranked),
         dispersion,
         verdict,
+        fitted,
         ratio,
         why,
+    )
+
+
+def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
+    """Return the forms that do about as well as the one taken, each with its Akaike weight."""
+    if choice.verdict != NOT_SEPARABLE:
+        return ()
+    several = zip(choice.forms, choice.aicc, choice.weights, strict=True)
+    return tuple(
+        (form, weight)
+        for form, criterion, weight in several
+        if form != choice.fitted and criterion - min(choice.aicc) < _NEAR
     )
 
 
@@ -127,8 +168,8 @@ def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float],
     return found, dispersion
 
 
-def _verdict(criteria: Mapping[str, float]) -> tuple[str, float, str]:
-    """Return the verdict, the evidence ratio that decided it, and words for both."""
+def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
+    """Return the verdict, the form taken, the evidence ratio that decided, and words for it."""
     best = min(criteria, key=lambda form: criteria[form])
 
     def ratio(over: Sequence[str]) -> float:
@@ -137,22 +178,28 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, float, str]:
 
     if best == LINEAR_FORM:
         found = ratio((CUBIC, QUADRATIC, BOTH))
-        return best, found, "no non-linear term is needed within the scatter"
+        return best, best, found, "no non-linear term is needed within the scatter"
     if best == BOTH and ratio((CUBIC, QUADRATIC)) < DECIDES:
-        inner = {form: value for form, value in criteria.items() if form != BOTH}
-        return _verdict(inner)
-    rivals = [form for form in (LINEAR_FORM, CUBIC, QUADRATIC) if form != best]
-    found = ratio(rivals)
-    if found < DECIDES:
-        close = [f for f in rivals if f in criteria and criteria[f] - criteria[best] < _NEAR]
-        words = f"{best} and {' and '.join(close)} explain the data about as well"
-        return (
-            NOT_SEPARABLE,
-            found,
-            f"{words} (evidence ratio {found:.3g}, {DECIDES:g} is needed): take a larger range of "
-            "amplitudes, or more periods",
-        )
-    return best, found, f"{best} is {found:.3g} times as well supported as the next"
+        return _verdict({form: value for form, value in criteria.items() if form != BOTH})
+    rivals = [form for form in (CUBIC, QUADRATIC) if form != best]
+    over_linear, over_rivals = ratio((LINEAR_FORM,)), ratio(rivals)
+    if (found := min(over_linear, over_rivals)) >= DECIDES:
+        return best, best, found, f"{best} is {_times(found)} as well supported as the next"
+    if over_linear < DECIDES:
+        taken, close, found = LINEAR_FORM, LINEAR_FORM, over_linear
+    else:
+        taken, close = best, rivals[0]
+    why = (
+        f"{best} is {_times(found)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
+        f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
+        "take a larger range of amplitudes, or more periods"
+    )
+    return NOT_SEPARABLE, taken, found, why
+
+
+def _times(ratio: float) -> str:
+    """Words for an evidence ratio; what is beyond any doubt is not counted out."""
+    return f"{ratio:.3g} times" if ratio < BEYOND_DOUBT else f"over {BEYOND_DOUBT:g} times"
 
 
 _NEAR = 2.0 * math.log(DECIDES)

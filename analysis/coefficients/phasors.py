@@ -4,13 +4,15 @@ A phasor ``S + iC`` counts as two real numbers. A covariance has the order S1, C
 is kept by source, because each source has its own degrees of freedom.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.kinematics.geometry import Waves
+from analysis.kinematics.linearised import slope
 from hardware.description.errors import ConfigurationError
 
 FloatArray = NDArray[np.float64]
@@ -130,6 +132,22 @@ class Phasors:
             self.names if names is None else tuple(names),
             self.units if units is None else tuple(units),
         )
+
+    def through(
+        self, function: Callable[[Waves], Waves], names: Sequence[str], units: Sequence[str]
+    ) -> "Phasors":
+        """Return what a function makes of the phasors, with the covariance of its slope.
+
+        Parameters
+        ----------
+        function
+            Of interleaved parts, as :func:`analysis.kinematics.linearised.slope` takes it.
+        names, units
+            Of the result.
+        """
+        parts = interleaved(self.values)
+        values = from_interleaved(function(parts[None])[0])
+        return self._carried(values, slope(function, parts), tuple(names), tuple(units))
 
     def select(self, names: Sequence[str]) -> "Phasors":
         """Return some of the phasors, in this order."""

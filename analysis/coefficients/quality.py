@@ -132,7 +132,8 @@ def quality_flags(
     covariance: FloatArray,
 ) -> tuple[Flag, ...]:
     """Return the runs' own flags and what the coefficients add."""
-    found = [flag for run in problem.runs for flag in run.flags]
+    found = [flag.of(run.name) for run in problem.runs for flag in run.flags]
+    own = tuple(run.name for run in problem.runs)
     for name, place, part in zip(names, places, retained, strict=True):
         if part < _DIGIT:
             what = "gain, mass or restoring" if place.inertial else "phase (in radians)"
@@ -141,16 +142,16 @@ def quality_flags(
                 f"{100 * _DIGIT:g} %): an error in {what} is {1.0 / max(part, 1e-12):.3g} times "
                 "as large in it"
             )
-            found.append(Flag("digits_lost", Severity.WARNING, text, name))
+            found.append(Flag("digits_lost", Severity.WARNING, text, name, own))
     if misfit > _DISAGREE:
         text = (
             f"the runs differ {misfit:.2g} times as much as their scatter (limit {_DISAGREE:g}): "
             "amplitude, alignment or a force that is not linear; solve them apart"
         )
-        found.append(Flag("runs_disagree", Severity.WARNING, text))
+        found.append(Flag("runs_disagree", Severity.WARNING, text, None, own))
     if not np.isfinite(covariance).all():
         text = "a run has too few periods for scatter: no interval can be given"
-        found.append(Flag("no_interval", Severity.WARNING, text))
+        found.append(Flag("no_interval", Severity.WARNING, text, None, own))
     return (*found, *_neglected(problem))
 
 
@@ -168,4 +169,5 @@ def _neglected(problem: Problem) -> tuple[Flag, ...]:
         f"{words[1 - column]} of {100 * part:.2g} % of {words[column]} at the struts was left out "
         f"(limit {100 * ALONE:g} %); add a run in {words[1 - column]} to have it taken off"
     )
-    return (Flag("other_motion_left_out", Severity.WARNING, text),)
+    own = tuple(run.name for run in problem.runs)
+    return (Flag("other_motion_left_out", Severity.WARNING, text, None, own),)

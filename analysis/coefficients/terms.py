@@ -14,6 +14,7 @@ from analysis.coefficients.phasors import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
+LOAD_WORDS = ("force", "moment", "surge force")
 LOAD_LETTERS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
 VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
 SURGE = 2  # row of X
@@ -103,6 +104,12 @@ def name_of_term(term: Term, plane: Plane) -> str:
         re.sub("[vr](?!o)", lambda m: letters[m[0]], factor, count=1) for factor in term.factors
     ]
     return f"{loads[term.row]}_{''.join(factors) or '0'}"
+
+
+def load_of(name: str) -> str:
+    """Return the load that a coefficient of either form is of; one of :data:`LOAD_WORDS`."""
+    letter = name[1] if name[0] in "ab" else name[0]
+    return LOAD_WORDS[0 if letter in "YZ23" else 1 if letter in "MN56" else 2]
 
 
 def waves_of(terms: Sequence[Term], velocity: FloatArray, rate: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from analysis.coefficients.corrections import ZERO_BLOCKS, zero_reading
 from analysis.gap.components import Component, GapRun, Observation, Part
 from analysis.gap.observe import FORCES, STRUTS
+from analysis.gap.plateau import steps_of
 from analysis.recording import Recording
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
@@ -68,7 +69,8 @@ def observe_at_rest(recording: Recording) -> Observation:
         )
     means = zero_reading(recording, 0.0, names).offsets
     parts = tuple(Component(name, Part.MEAN) for name in names)
-    return Observation(parts, means.values.real, means.standard_uncertainty.real)
+    steps = steps_of(recording.select(names))
+    return Observation(parts, means.values.real, means.standard_uncertainty.real, steps=steps)
 
 
 def steady_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun) -> FloatArray:

@@ -36,6 +36,8 @@ class Axis:
         Of the prior; of the logarithm where ``is_log``.
     start
         Where a fit begins, in prior units.
+    sign
+        Of the values, where their logarithm is what is fitted; they rise with the unit either way.
     """
 
     parameter: Parameter
@@ -43,6 +45,7 @@ class Axis:
     deviation: float
     is_log: bool
     start: float = 0.0
+    sign: float = 1.0
 
     @property
     def is_size(self) -> bool:
@@ -51,14 +54,23 @@ class Axis:
 
     def value(self, unit: float) -> float:
         """Return the parameter's value, kept within its plausible range."""
-        raw = self.centre + self.deviation * unit
-        raw = math.exp(raw) if self.is_log else raw
-        return min(max(raw, self.parameter.low), self.parameter.high)
+        raw = self.centre + self.sign * self.deviation * unit
+        raw = self.sign * math.exp(raw) if self.is_log else raw
+        low, high = self.range
+        return min(max(raw, low), high)
 
     def unit(self, value: float) -> float:
         """Return a value of the parameter in units of its prior."""
-        raw = math.log(value) if self.is_log else value
-        return (raw - self.centre) / self.deviation
+        raw = math.log(abs(value)) if self.is_log else value
+        return self.sign * (raw - self.centre) / self.deviation
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Plausible values, on this side of zero where that one is never passed."""
+        one = self.parameter
+        if not one.least:
+            return one.low, one.high
+        return (one.least, one.high) if self.sign > 0.0 else (one.low, -one.least)
 
 
 @dataclass(frozen=True)
@@ -97,7 +109,7 @@ class Candidate:
     @property
     def bounds(self) -> FloatArray:
         """Plausible range of each parameter in prior units, shape ``(2, p)``."""
-        pairs = [[one.unit(one.parameter.low), one.unit(one.parameter.high)] for one in self.axes]
+        pairs = [[one.unit(end) for end in one.range] for one in self.axes]
         return np.array(pairs).reshape(-1, 2).T
 
 
@@ -130,6 +142,8 @@ def _options(
     else:
         begins = _begins(axis, frequencies_hz)
         yield from (replace(axis, start=axis.unit(value)) for value in begins)
+        if one.least:
+            yield from (replace(axis, sign=-1.0, start=-axis.unit(value)) for value in begins)
 
 
 def _bands(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
@@ -145,9 +159,10 @@ def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
         return Axis(one, 0.5, 0.5, is_log=False)
     if is_phase(one):
         return Axis(one, 0.0, _EVEN, is_log=False)
-    if one.low <= 0.0:
+    if one.low <= 0.0 and not one.least:
         return Axis(one, 0.0, _TYPICAL * _size(one, siblings), is_log=False)
-    return Axis(one, math.log(one.typical), _SPREAD * math.log(one.high / one.low), is_log=True)
+    widest = math.log(one.high / (one.least or one.low))
+    return Axis(one, math.log(one.typical), _SPREAD * widest, is_log=True)
 
 
 def _begins(axis: Axis, frequencies_hz: Sequence[float]) -> Sequence[float]:
@@ -201,5 +216,6 @@ def _size(one: Parameter, siblings: tuple[Parameter, ...]) -> float:
 
     Only of siblings that can be zero too: a rod's length says nothing of what it is out of line by.
     """
-    alike = [abs(other.typical) for other in siblings if other.unit == one.unit and other.low <= 0]
+    zeroed = [other for other in siblings if other.low <= 0.0 and not other.least]
+    alike = [abs(other.typical) for other in zeroed if other.unit == one.unit]
     return abs(one.typical) or max(alike) or max(abs(one.low), abs(one.high)) / 10.0

@@ -129,6 +129,9 @@ class Observation:
         are in the channel's SI unit, the rest are logarithms.
     quiet
         Lines between the harmonics, by channel; empty where nobody looked.
+    steps
+        Smallest step of each channel's values: no less than its resolution. NaN where the channel
+        does not move; empty where nobody looked.
     plateaus
         What is cut off struts and forces, by channel; empty where nobody looked.
     turns_per_period
@@ -140,6 +143,7 @@ class Observation:
     values: FloatArray
     uncertainty: FloatArray
     quiet: Mapping[str, Lines] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
     plateaus: Mapping[str, Plateau] = field(default_factory=dict)
     turns_per_period: float = math.nan
 

@@ -115,12 +115,6 @@ class Diagnosis:
             return None
         return self.best.fit
 
-    @property
-    def left(self) -> FloatArray:
-        """What the cause leaves of the difference, in sigma, shape ``(observations,)``."""
-        whole = self.problem.residual
-        return whole if self.cause is None else whole - self.cause.signature
-
 
 def diagnose(
     rig: SimulatedRig,

@@ -1,5 +1,6 @@
 """Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ from analysis.gap.candidate import STEP, Axis, Candidate, least_step
 from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
-from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior
+from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior, scales
 from sim.effects.effect import Effect
 
 FloatArray = NDArray[np.float64]
@@ -104,6 +105,24 @@ class Fit:
         groups = [sizes & (self.whose == number) for number in range(len(self.candidates))]
         reaches = [one.reach for one in self.candidates]
         return self.posterior.log_volume + any_size(self.posterior, groups, reaches)
+
+    @cached_property
+    def suited(self) -> tuple[FloatArray, float]:
+        """The prior widths of the mixture that suit the sizes as they are, and their log share.
+
+        In prior deviations, shape ``(p,)``; 1 for what is no size.
+        """
+        widths, share = np.ones(len(self.units)), 0.0
+        told = np.diagonal(self.posterior.precision) - 1.0
+        sizes = np.array([one.is_size for one in self.axes], dtype=bool)
+        for number, one in enumerate(self.candidates):
+            group = sizes & (self.whose == number)
+            if group.any():
+                every = scales(told[group], one.reach)
+                size = max(float(np.abs(self.units[group]).max()), float(every.min()))
+                widths[group] = every[np.argmin(np.abs(np.log(every / size)))]
+                share -= math.log(len(every))
+        return widths, share
 
     @property
     def axes(self) -> tuple[Axis, ...]:

@@ -119,14 +119,17 @@ def forecast(
         ahead = _Ahead.of(problem, there, fit)
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
-    covariance = np.linalg.inv(np.eye(shared.shape[1]) + shared.T @ shared)
+    # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
+    # the prior's 1, however well the campaign tells some numbers and not others.
+    precision, turn = np.linalg.eigh(np.eye(shared.shape[1]) + shared.T @ shared)
+    spread = turn / np.sqrt(np.maximum(precision, 1.0))
     residual = problem.residual - (0.0 if fit is None else fit.signature)
-    fitted = covariance @ (shared.T @ residual)
+    fitted = spread @ (spread.T @ (shared.T @ residual))
     own = problem.nuisances.columns.shape[1]
     kept = np.r_[np.arange(count), own + np.arange(ahead.columns.shape[1])]
     wide = there.nuisances.columns
     known = np.hstack((wide[:, :count], ahead.columns))
-    root = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
+    root = np.transpose(np.linalg.qr(spread[kept].T)[1])
     mean = ahead.signature + known @ fitted[kept]
     found = Forecast(mean, known @ root, wide[:, count:], np.zeros((len(mean), 0)))
     if fit is None:

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
-from analysis.gap.components import Component, GapRun, Layout, Observation, Part, Stack
+from analysis.gap.components import GapRun, Layout, Observation, Part, Stack
 from analysis.gap.observe import FORCES, observe
+from analysis.gap.powers import on_noise
 from analysis.gap.prefix import Solved
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.acting import Acting
@@ -113,7 +115,7 @@ class Simulator:
         if repeats.all():
             return steady
         alone, base = self._record(number, moving), self._record(number)
-        noisy = _on_noise(run.observed.components, alone, base, self._usual(number))
+        noisy = on_noise(run.observed.components, alone, base, self._usual(number))
         return np.where(repeats, steady, noisy)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
@@ -135,15 +137,21 @@ class Simulator:
 
     def state(self, run: GapRun, effects: Sequence[Effect]) -> SteadyState:
         """Return the steady state of a run that turns, with these effects and no others."""
-        rig, set_point = self._set(run, effects)
+        return self._state(*self._set(run, effects))
+
+    def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
         period = Period(set_point.frequency_hz, ORDERS, POINTS)
         return self.solved.steady_state(rig.chain(set_point), period)
 
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
-        if not run.turns:
-            return steady_at_rest(*self._set(run, effects), run)
-        state = self.state(run, effects)
-        return read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
+        rig, set_point = self._set(run, effects)
+        if run.turns:
+            state = self._state(rig, set_point)
+            steady = read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
+        else:
+            steady = steady_at_rest(rig, set_point, run)
+        middle_s = run.lead_s + 0.5 * run.periods / run.set_point.frequency_hz
+        return steady + _drifted(rig, run.observed, middle_s)
 
     def _set(self, run: GapRun, effects: Sequence[Effect]) -> tuple[SimulatedRig, SetPoint]:
         frequency_hz = run.set_point.frequency_hz * self.frequency_ratio
@@ -171,7 +179,8 @@ class Simulator:
             name=run.name,
         )
         record = replace(from_dataset(dataset), set_point=run.set_point)
-        found = observe(record, quiet=False)
+        phase = ReferenceChoice(channel=self.reference_channel)
+        found = observe(record, phase, wanted={one.part for one in run.observed.components})
         later_s = run.lead_s - found.lead_s
         return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
 
@@ -197,65 +206,16 @@ def _preloaded(
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:
     """Return what the forces' zeros drift by in some time, as a change of their means."""
     gauges = zip(FORCES, (rig.dynamometers.aft, rig.dynamometers.fore), strict=True)
-    drift = {name: gauge.zero_drift_n_s * later_s for name, gauge in gauges}
+    drift = {
+        name: (gauge.zero_drift_n_s + _stated_drift(rig, name)) * later_s for name, gauge in gauges
+    }
     means = [one.part is Part.MEAN for one in measured.components]
     return np.array([drift.get(one.channel, 0.0) for one in measured.components]) * means
 
 
-# What each of these is the logarithm of, to this power, adds up like powers do.
-_POWERS: Final = {
-    Part.BETWEEN: 1.0,
-    Part.LINE: 1.0,
-    Part.CYCLE_SCATTER: 2.0,
-    Part.PERIOD_SCATTER: 2.0,
-}
-
-
-def _powers(parts: Sequence[Component]) -> FloatArray:
-    return np.array([_POWERS.get(one.part, 0.0) for one in parts])
-
-
-def _logarithms(ratio: FloatArray, power: FloatArray) -> FloatArray:
-    """Return by how much components rise to which a share of their power is added."""
-    return np.asarray(np.log1p(ratio) / np.where(power, power, 1.0), np.float64)
-
-
-def grown(parts: Sequence[Component], change: FloatArray, share: float) -> FloatArray:
-    """Return what an effect of another size changes, by what it changes as it is.
-
-    Parameters
-    ----------
-    change
-        Of each component, shape ``(components,)``.
-    share
-        Of the effect's size: powers go with its square.
-    """
-    power = _powers(parts)
-    ratio = np.expm1(np.maximum(power * change, 0.0)) * share**2
-    logs = _logarithms(ratio, power)
-    return np.where((power > 0.0) & (change > 0.0), logs, share * change)
-
-
-def _on_noise(
-    parts: Sequence[Component], alone: FloatArray, base: FloatArray, usual: FloatArray
-) -> FloatArray:
-    """Return a record with an effect as it is on usual noise in place of its own draw.
-
-    Parameters
-    ----------
-    alone, base
-        With and without the effect on the same draw, shape ``(components,)``.
-    usual
-        Without it, at mean over the draws.
-    """
-    power = _powers(parts)
-    pulses = np.array([one.part is Part.PERIOD_SCATTER for one in parts])
-    # The same power on top of another one of the noise is the effect at another size. The pulses'
-    # deviates are scaled, not added to: what is odd about them is odd with the effect, too.
-    ratio = np.expm1(np.maximum(power * (alone - base), 0.0)) * np.exp(power * (base - usual))
-    on_usual = _logarithms(ratio, power)
-    adds = (power > 0.0) & (alone > base) & ~pulses
-    return usual + np.where(adds, on_usual, alone - base)
+def _stated_drift(rig: SimulatedRig, channel: str) -> float:
+    how = getattr(rig.acquisition, channel)
+    return 0.0 if how is None else float(how.drift_per_s)
 
 
 def align(simulated: Observation, measured: Observation) -> FloatArray:

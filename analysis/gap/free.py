@@ -17,6 +17,7 @@ from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
 from analysis.gap.observe import STRUTS
 from analysis.gap.priors import Priors
+from analysis.gap.spectrum import spread_about
 from hardware.description.channels import SHAFT_ANGLE
 from sim.effects.a3_photocell_angle import PhotocellAngle
 from sim.effects.effect import Effect
@@ -96,7 +97,8 @@ def _coefficients(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
 
 def _of_matrix(rig: SimulatedRig, term: str, priors: Priors) -> Iterator[Free]:
     matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
-    if not matrix.any() and rig.radiation is not None and term != "restoring":
+    # Where a table or nothing at all states what the water does, the body says what is much.
+    if not matrix.any() and term != "restoring":
         matrix = np.diag([rig.body.mass_kg, rig.body.inertia_kg_m2])
     for row in range(2):
         for column in range(2):
@@ -230,14 +232,36 @@ _LOUDNESS: Final = {
 _COLOUR: Final = {Part.BETWEEN: 1.0, Part.CYCLE_SCATTER: 0.5}
 
 
+# What a run's own level, a logarithm of power, adds to it.
+_PER_LEVEL: Final = {Part.BETWEEN: 1.0, Part.CYCLE_SCATTER: 0.5}
+
+
 def _noise_levels(stack: Stack) -> Iterator[FloatArray]:
     """Yield columns for each kind of noise of each channel: the same in all runs, and its colour.
 
-    What is compared lies at multiples of the shaft's frequency, and so moves with it.
+    What is compared lies at multiples of the shaft's frequency, and so moves with it. Where runs
+    are not equally loud between the harmonics, each has a level of its own besides.
     """
+    spreads = _spreads(stack)
     frequency = np.log([run.set_point.frequency_hz for run in stack.runs])[stack.run]
     for kind in dict.fromkeys(one for one in stack.components if one.part in _LOUDNESS):
         own = np.array([one == kind for one in stack.components]) / stack.uncertainty
         yield _LOUDNESS[kind.part] * own
         if kind.part in _COLOUR:
             yield _COLOUR[kind.part] * own * (frequency - frequency.mean())
+            # The cycles scatter as loud as it is among the harmonics: in the first band.
+            band = kind.order if kind.part is Part.BETWEEN else 1
+            spread = spreads.get((kind.channel, band), 0.0)
+            yield from _by_run(stack, _PER_LEVEL[kind.part] * spread * own) if spread else ()
+
+
+def _spreads(stack: Stack) -> dict[tuple[str, int], float]:
+    """Return by channel and band how much the runs' noise differs, as a logarithm of its power."""
+    frequency = np.log([run.set_point.frequency_hz for run in stack.runs])[stack.run]
+    found = {}
+    for kind in dict.fromkeys(one for one in stack.components if one.part is Part.BETWEEN):
+        rows = [at for at, one in enumerate(stack.components) if one == kind]
+        line = np.column_stack((np.ones(len(rows)), frequency[rows] - frequency.mean()))
+        weight = 1.0 / stack.uncertainty[rows] ** 2
+        found[kind.channel, kind.order] = spread_about(line, stack.values[rows], weight)
+    return found

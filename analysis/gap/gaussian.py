@@ -107,21 +107,29 @@ def any_size(
     """
     informs = found.precision @ found.mean
     told = found.precision - np.eye(len(informs))
-    scales = [
-        _scales(np.diagonal(told)[group], reach)
+    every = [
+        scales(np.diagonal(told)[group], reach)
         for group, reach in zip(groups, reaches, strict=True)
     ]
     each = [
         np.ones(len(told))
         + sum((width - 1.0) * group for width, group in zip(one, groups, strict=True))
-        for one in product(*scales)
+        for one in product(*every)
     ]
     logs = _under_priors(told, informs, np.array([np.ones(len(told)), *each]))
     return float(np.logaddexp.reduce(logs[1:]) - math.log(len(each)) - logs[0])
 
 
-def _scales(squares: FloatArray, reach: float) -> FloatArray:
-    """Return the widths of a mixture, by the squared signatures of a prior deviation."""
+def scales(squares: FloatArray, reach: float) -> FloatArray:
+    """Return the widths of a size's mixture of priors, in prior deviations.
+
+    Parameters
+    ----------
+    squares
+        Squared signatures of a prior deviation of the sizes that share their scale.
+    reach
+        Their largest plausible standard deviation.
+    """
     shown = math.sqrt(max(float(squares.max(initial=0.0)), 0.0))
     down, up = (math.log(max(one, 1.0)) / math.log(_APART) for one in (shown / _HARDLY, reach))
     return _APART ** np.arange(-min(int(down), _MOST_SCALES), int(up) + 1.0)

@@ -14,7 +14,7 @@ from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, left_over, misfit, null_evidence, posterior
 from analysis.gap.look import Looked
 from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.search import fitted, looked_at, paired
+from analysis.gap.search import Engine, fitted, looked_at, paired
 from analysis.gap.together import together
 from analysis.gap.unknown import Deviation, find_deviation
 from hardware.description.errors import PmmError
@@ -134,14 +134,13 @@ def weigh(
     kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
     traces = shown(problem)
     worth = [kind for kind in kinds if worth_a_look(kind, traces)]
-    progress(f"looking at {len(worth)} effects")
-    looked = looked_at(problem, worth, executor)
+    engine = Engine(executor, progress)
+    looked = looked_at(problem, worth, engine)
     none = null_evidence(problem.residual, problem.nuisances)
     seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
-    progress("fitting the best")
-    singles = _together(problem, free, fitted(problem, seen, none, executor))
-    progress("fitting pairs")
-    pairs = _together(problem, free, paired(problem, singles, seen, none, executor))
+    singles = _together(problem, free, fitted(problem, seen, none, engine))
+    pairs = _together(problem, free, paired(problem, singles, seen, none, engine))
+    progress("weighing")
     unknown = find_deviation(problem.simulator.stack, problem.residual, problem.nuisances)
     ones, twos = (_named_all(problem, fits, none) for fits in (singles, pairs))
     skipped = tuple(kind.name for kind in kinds if kind not in worth)
@@ -190,14 +189,25 @@ def with_remainder(problem: Problem, fit: Fit) -> Named:
     something beside is a deviation of no particular form. The better of the two counts.
     """
     formed = max((_in_own_form(problem, fit, share) for share in FORMS), key=_by_evidence)
+    return max((formed, _beside(problem, fit)), key=_by_evidence)
+
+
+def _beside(problem: Problem, fit: Fit) -> Named:
+    """Return a hypothesis with a deviation of no particular form beside it.
+
+    The parameters are free about where they were fitted, as widely as the prior that suits their
+    sizes; what they are there costs what that prior says of it. So a fit that went astray is worth
+    no more than the deviation alone, whatever its slopes promise elsewhere.
+    """
+    widths, share = fit.suited
     left = problem.residual - fit.signature
-    wider = Nuisances(np.hstack((problem.nuisances.columns, fit.columns)))
+    wider = Nuisances(np.hstack((problem.nuisances.columns, fit.columns * widths)))
     deviation = find_deviation(problem.simulator.stack, left, wider)
+    cost = 0.5 * float(np.sum((fit.units / widths) ** 2))
     own = left_over(fit.signature, problem.nuisances)
     size = left_over(deviation.mean, problem.nuisances)
-    gain = deviation.log_evidence - null_evidence(left, wider)
-    beside = Named(fit, fit.log_evidence + max(gain, 0.0), size / max(own, 1.0), deviation)
-    return max((formed, beside), key=_by_evidence)
+    log_evidence = deviation.log_evidence - cost + share
+    return Named(fit, log_evidence, size / max(own, 1.0), deviation)
 
 
 def _by_evidence(one: Named) -> float:

@@ -22,8 +22,8 @@ from analysis.gap.fit import (
     most_probable,
     moved,
 )
-from analysis.gap.forward import grown
 from analysis.gap.gaussian import left_over, misfit, null_evidence
+from analysis.gap.powers import grown
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 

@@ -2,8 +2,9 @@
 
 A run of six periods knows its own scatter to 30 %; taken at its word it calls small deviations
 large or large ones small. The noise of a channel is much the same in all runs, so each run's own
-variance is drawn towards what the lines between the harmonics of all runs say
-(:mod:`analysis.gap.spectrum`), or, where there are none, the scatter of all runs.
+variance is drawn towards what the lines between the harmonics of all runs say, at the run's own
+level where runs differ (:mod:`analysis.gap.spectrum`), or, where there are none, the scatter of all
+runs. No mean and no trend is known better than the zero's wander between records at rest allows.
 """
 
 import math
@@ -17,7 +18,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
 from analysis.gap.forward import DRAWS
-from analysis.gap.spectrum import Loudness, loudness
+from analysis.gap.spectrum import Loudness, levels, loudness
+from analysis.gap.wander import wander, wandered
 from hardware.description.channels import SHAFT_ANGLE
 from sim.acquisition import Digitiser
 from sim.rig import SimulatedRig
@@ -43,7 +45,40 @@ def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
     """
     usual = Usual.of(runs)
     encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
-    return tuple(_with(run, usual, encoder_rad) for run in runs)
+    wandering = wander(rig, runs)
+    return tuple(wandered(_with(run, usual, encoder_rad), wandering) for run in runs)
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelNoise:
+    """What lies between the harmonics of one channel.
+
+    Attributes
+    ----------
+    together
+        Of all runs.
+    own
+        By run, the logarithm of its power over what all runs say, and its variance.
+    """
+
+    together: Loudness
+    own: Mapping[str, tuple[float, float]]
+
+
+def channel_noise(runs: Sequence[GapRun]) -> dict[str, ChannelNoise]:
+    """Return what the lines of all runs say of each channel that has enough of them."""
+    names = dict.fromkeys(name for run in runs for name in run.observed.quiet)
+    found = {}
+    for name in names:
+        seen = [run for run in runs if name in run.observed.quiet]
+        lines = [run.observed.quiet[name] for run in seen]
+        together = loudness(lines)
+        if together is not None:
+            own = levels(lines, together)
+            each = zip(own.values, own.variances, strict=True)
+            by_run = dict(zip((run.name for run in seen), each, strict=True))
+            found[name] = ChannelNoise(together, by_run)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,23 +93,18 @@ class Usual:
         By channel and kind, from the scatter of the cycles: as a power density.
     """
 
-    loud: Mapping[str, Loudness]
+    loud: Mapping[str, ChannelNoise]
     scatter: Mapping[tuple[str, Part, int], float]
 
     @classmethod
     def of(cls, runs: Sequence[GapRun]) -> "Usual":
         """Ask all runs."""
-        names = dict.fromkeys(name for run in runs for name in run.observed.quiet)
-        levels = {
-            name: loudness(run.observed.quiet[name] for run in runs if name in run.observed.quiet)
-            for name in names
-        }
         densities: dict[tuple[str, Part, int], list[float]] = defaultdict(list)
         for run in runs:
             for key, density in _densities(run):
                 densities[key].append(density)
         return cls(
-            {name: level for name, level in levels.items() if level is not None},
+            channel_noise(runs),
             {key: float(np.median(values)) for key, values in densities.items()},
         )
 
@@ -84,9 +114,12 @@ class Usual:
         if one.channel in self.loud:
             # A trend is half a wave over the whole record.
             order = one.order or (0.5 / run.periods if one.part is Part.TREND else 0)
-            density = self.loud[one.channel].at(order * run.set_point.frequency_hz)
+            heard = self.loud[one.channel]
+            density = heard.together.at(order * run.set_point.frequency_hz)
             twice = one.part in _OF_HARMONICS
-            return density * share * (2.0 if twice else 1.0), _LINES_FREEDOM
+            level, variance = heard.own.get(run.name, (0.0, 0.0))
+            freedom = 1.0 / (1.0 / _LINES_FREEDOM + 0.5 * variance)
+            return density * math.exp(level) * share * (2.0 if twice else 1.0), freedom
         key = _kind(one)
         return (self.scatter[key] * share, _FREEDOM) if key in self.scatter else None
 

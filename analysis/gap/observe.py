@@ -5,22 +5,25 @@ mean and harmonics from the first cycles to the last, scatter of the photocell's
 the harmonics from cycle to cycle, and power between the harmonics.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Component, Observation, Part
-from analysis.gap.plateau import Plateau, plateau
+from analysis.gap.bands import band, free_of_harmonics
+from analysis.gap.components import TRENDS, Component, Observation, Part
+from analysis.gap.phase import choose_phase
+from analysis.gap.plateau import Plateau, plateau, steps_of
 from analysis.gap.shaft_angle import turns_per_period, unwrapped
 from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.analyse import Analysis, analyse
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
+from analysis.resolver.settings import Settings
 from hardware.description import channels
 from hardware.description.errors import DataError
 
@@ -40,10 +43,10 @@ CYCLED: Final = (1, 2)
 BANDS: Final = {1: (0.0, ORDERS + 0.8), 2: (ORDERS + 1.2, np.inf)}
 # Of the carriage's speed, which has no harmonics: waves of the whole tank, rails, wheels.
 SURGES_HZ: Final = (0.0, 3.0)
-_BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
-_ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_PERIODS = 3
-_FEW_LINES = 12
+_TRENDS: Final = frozenset(TRENDS)
+_SCATTERS: Final = frozenset({Part.PERIOD_SCATTER, Part.CYCLE_SCATTER})
+_BETWEEN: Final = frozenset({Part.BETWEEN, Part.LINE})
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,24 +64,30 @@ class Observed:
 
     @property
     def reference_channel(self) -> str | None:
-        """The channel whose fundamental is phase 0; ``None`` with a photocell."""
-        reference = self.analysis.reference
-        return None if reference.source is ReferenceSource.PHOTOCELL else reference.channel
+        """The channel whose fundamental is phase 0; ``None`` where pulses or the like tell it."""
+        channel = self.analysis.reference.channel
+        return channel if channel in COMPARED else None
 
 
-def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True) -> Observed:
+def observe(
+    recording: Recording,
+    told: ReferenceChoice = ReferenceChoice(),
+    window: Settings = Settings(),
+    *,
+    wanted: Set[Part] | None = None,
+) -> Observed:
     """Return what a recording shows.
-
-    The photocell is the reference where there is one; else the aft strut's displacement, else the
-    aft strut's force.
 
     Parameters
     ----------
-    latency_s
-        Known delay of the photocell.
-    quiet
-        Whether to look between the harmonics for the noise of each channel, and for what a
-        recording of a rig may have wrong.
+    told
+        What tells the phase (:func:`analysis.gap.phase.choose_phase`).
+    window
+        Where the gate opens and for how long, how steady it has to be; channels, orders and the
+        gates' length are the diagnosis' own.
+    wanted
+        What will be compared, beside means and harmonics; the rest need not be looked for. ``None``
+        for all, and for the noise of each channel and what a recording of a rig may have wrong.
 
     Raises
     ------
@@ -90,26 +99,44 @@ def observe(recording: Recording, latency_s: float = 0.0, *, quiet: bool = True)
         raise DataError(
             f"{recording.name}: no channel {' or '.join(FORCES)}; the diagnosis compares forces"
         )
-    choice = _choice(recording, latency_s)
+    whole = unwrapped(recording)
+    phased, choice = choose_phase(whole, told)
     kept = tuple(one for one in names if one != choice.channel or one in FORCES)
-    settings = Settings(channels=kept, harmonics=_orders(recording))
-    analysis = analyse(unwrapped(recording), choice, settings)
+    settings = replace(window, channels=kept, harmonics=_orders(recording), gate_periods=None)
+    analysis = analyse(phased, choice, settings)
     _check_periods(analysis)
     found = [*_harmonics(analysis), *_frequency(analysis, recording)]
-    found += _pulses(recording)
+    timed = phased is whole and analysis.reference.source is ReferenceSource.PHOTOCELL
+    found += _pulses(recording) if timed else ()
     if analysis.stretch.period_count >= _FEW_PERIODS:
-        found += [*_trends(analysis), *_scatter(analysis), *_between(analysis), *_surges(analysis)]
+        makers = (
+            (_TRENDS, _trends(analysis)),
+            (_SCATTERS, _scatter(analysis, timed=timed)),
+            (_BETWEEN, _between(analysis)),
+            (_BETWEEN, _surges(analysis)),
+        )
+        for parts_made, made in makers:
+            found += made if wanted is None or wanted & parts_made else ()
     # Cycles with missing samples have no trend and no scatter, and records with some no spectrum.
     parts, values, uncertainty = zip(*(one for one in found if np.isfinite(one[1])), strict=True)
     seen = Observation(parts, np.array(values), np.array(uncertainty))
-    if quiet:
+    if wanted is None:
+        steady, frequency_hz = _steady(analysis, recording), analysis.readings[0].frequency_hz
         seen = replace(
             seen,
+            steps=steps_of(steady),
             quiet=_quiet(analysis),
-            plateaus=_plateaus(analysis, recording),
-            turns_per_period=turns_per_period(recording, analysis.readings[0].frequency_hz),
+            plateaus=_plateaus(steady),
+            turns_per_period=turns_per_period(steady, frequency_hz),
         )
     return Observed(seen, analysis)
+
+
+def _moving(analysis: Analysis) -> tuple[str, ...]:
+    """Return the channels that move; of the others the mean is all that there is."""
+    part = _steady(analysis)
+    ranges = {name: part.values(name) for name in analysis.readings[0].channel_names}
+    return tuple(name for name, own in ranges.items() if np.nanmax(own) > np.nanmin(own))
 
 
 def _check_periods(analysis: Analysis) -> None:
@@ -119,16 +146,6 @@ def _check_periods(analysis: Analysis) -> None:
             f"{analysis.recording.name}: {whole} of {count} whole periods have no missing samples; "
             f"{_FEW_PERIODS} are needed"
         )
-
-
-def _choice(recording: Recording, latency_s: float) -> ReferenceChoice:
-    edges = recording.photocell_edges_s
-    if edges is not None and len(edges) > 1:
-        return ReferenceChoice(latency_s=latency_s)
-    for name in (STRUTS[0], FORCES[0], FORCES[1]):
-        if name in recording.channel_names:
-            return ReferenceChoice(channel=name)
-    raise DataError(f"{recording.name}: nothing in it tells the phase")
 
 
 def _orders(recording: Recording) -> int:
@@ -143,11 +160,13 @@ def _orders(recording: Recording) -> int:
 def _harmonics(analysis: Analysis) -> Found:
     reading = analysis.readings[0]
     deviation = reading.standard_uncertainty
+    moving = _moving(analysis)
     for row, name in enumerate(reading.channel_names):
         values, own = reading.coefficients[row], deviation[row]
         if name != channels.SHAFT_ANGLE.name:  # its mean is a matter of counting turns
             yield Component(name, Part.MEAN), values[0], own[0]
-        if name == SPEED:  # it does not go with the shaft; what varies shows among the lines
+        # The carriage does not go with the shaft; what varies shows among the lines.
+        if name == SPEED or name not in moving:
             continue
         for order in range(1, reading.order + 1):
             for part, at in ((Part.IN_PHASE, 2 * order - 1), (Part.QUADRATURE, 2 * order)):
@@ -174,13 +193,18 @@ def _pulses(recording: Recording) -> Found:
 def _trends(analysis: Analysis) -> Found:
     """Yield how means and harmonics change from the first cycles to the last."""
     solved = solve_periods(analysis.steady_sums).coefficients
+    moving = {*FORCES} & {*_moving(analysis)}
     for row, name in enumerate(analysis.steady_sums.channel_names):
-        if name in FORCES:
+        if name in moving:
             yield Component(name, Part.TREND), *_slope(solved[:, row, 0])
-            for order in CYCLED:
+            for order in _cycled(analysis):
                 at = 2 * order - 1
                 yield Component(name, Part.TREND_IN_PHASE, order), *_slope(solved[:, row, at])
                 yield Component(name, Part.TREND_QUADRATURE, order), *_slope(solved[:, row, at + 1])
+
+
+def _cycled(analysis: Analysis) -> list[int]:
+    return [order for order in CYCLED if order <= analysis.readings[0].order]
 
 
 def _slope(values: FloatArray) -> tuple[float, float]:
@@ -194,20 +218,21 @@ def _slope(values: FloatArray) -> tuple[float, float]:
     return slope, float(spread * np.sqrt(weight @ weight))
 
 
-def _scatter(analysis: Analysis) -> Found:
+def _scatter(analysis: Analysis, *, timed: bool) -> Found:
     sums = analysis.steady_sums
     freedom = max(sums.period_count - 2, 1)
     sure = float(np.sqrt(0.5 / freedom))
-    if analysis.reference.source is ReferenceSource.PHOTOCELL:
+    if timed:
         intervals = sums.closed_s - sums.opened_s
         spread = float(np.std(intervals, ddof=1) / np.mean(intervals))
         # Neighbours share a pulse: their spread is known as if by two thirds of their number.
         own = sure * np.sqrt(1.5)
         yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), float(own)
     solved = solve_periods(sums).coefficients
+    moving = {*FORCES} & {*_moving(analysis)}
     for row, name in enumerate(sums.channel_names):
-        if name in FORCES:
-            for order in CYCLED:
+        if name in moving:
+            for order in _cycled(analysis):
                 parts = solved[:, row, 2 * order - 1 : 2 * order + 1]
                 power = float(np.var(parts, axis=0, ddof=1).sum())
                 part = Component(name, Part.CYCLE_SCATTER, order)
@@ -226,22 +251,21 @@ def _between(analysis: Analysis) -> Found:
     count = part.sample_count
     taper = np.hanning(count)
     lines_hz = np.arange(count // 2 + 1) * rate_hz / count
-    free = _free_of_harmonics(lines_hz, frequency, rate_hz / count)
+    free = free_of_harmonics(lines_hz, frequency, rate_hz / count)
     repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
-    for name in FORCES:
-        if name in part.channel_names:
+    for name in _moving(analysis):
+        if name in FORCES:
             values = part.values(name)
             values = values - repeats @ (repeats.T @ values)
             power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
             for number, (low, high) in BANDS.items():
                 inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
                 inside[0] = False
-                yield from _band(name, number, power[inside])
+                yield from band(name, number, power[inside])
 
 
-def _plateaus(analysis: Analysis, recording: Recording) -> dict[str, Plateau]:
+def _plateaus(part: Recording) -> dict[str, Plateau]:
     """Return what is cut off struts and forces, also of the channel that tells the phase."""
-    part = _steady(analysis, recording)
     names = [one for one in (*STRUTS, *FORCES) if one in part.channel_names]
     return {name: plateau(part.values(name)) for name in names}
 
@@ -249,7 +273,8 @@ def _plateaus(analysis: Analysis, recording: Recording) -> dict[str, Plateau]:
 def _quiet(analysis: Analysis) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     part, reading = _steady(analysis), analysis.readings[0]
-    names = [one for one in reading.channel_names if np.isfinite(part.values(one)).all()]
+    moving = _moving(analysis)
+    names = [one for one in moving if np.isfinite(part.values(one)).all()]
     if not names:
         return {}
     values = np.stack([part.values(name) for name in names])
@@ -259,41 +284,11 @@ def _quiet(analysis: Analysis) -> dict[str, Lines]:
 
 def _surges(analysis: Analysis) -> Found:
     part = _steady(analysis)
-    if SPEED not in part.channel_names:
+    if SPEED not in _moving(analysis):
         return
     values, taper = part.values(SPEED), np.hanning(part.sample_count)
     power = np.abs(np.fft.rfft((values - values.mean()) * taper)) ** 2 / np.sum(taper**2)
     lines_hz = np.arange(len(power)) * part.sample_rate_hz / part.sample_count
     low, high = SURGES_HZ
     inside = (lines_hz > low) & (lines_hz < high)
-    yield from _band(SPEED, 0, power[inside] / len(lines_hz))
-
-
-def _free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> NDArray[np.bool_]:
-    nearest = np.round(lines_hz / frequency) * frequency
-    return np.asarray(np.abs(lines_hz - nearest) > _BESIDE * bin_hz)
-
-
-def _band(name: str, number: int, power: FloatArray) -> Found:
-    if power.size < _FEW_LINES or not power.any():
-        return
-    # Noise makes exponentially distributed powers; under a Hann taper two lines in three count.
-    count = 0.66 * power.size
-    middle = float(np.median(power)) / np.log(2.0) + 1e-15
-    yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
-    highest = np.log(count) + np.euler_gamma
-    # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    strongest = float(np.log((power / _about(power)).max() / highest))
-    yield (
-        Component(name, Part.LINE, number),
-        strongest,
-        float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count))),
-    )
-
-
-def _about(power: FloatArray) -> FloatArray:
-    """Return the mean power of the noise about each line, by the median of its neighbours."""
-    from scipy.ndimage import median_filter
-
-    width = min(_ABOUT, power.size)
-    return np.asarray(median_filter(power, width, mode="reflect") / np.log(2.0) + 1e-15)
+    yield from band(SPEED, 0, power[inside] / len(lines_hz))

@@ -101,7 +101,7 @@ def _spread(values: Sequence[float]) -> float:
 
 def _middle_turn(ratios: Sequence[complex]) -> complex:
     """Return the unit phasor about which most ratios lie; one that is opposite does not count."""
-    unit = np.array([one / max(abs(one), 1e-300) for one in ratios])
+    unit = np.array([one / abs(one) for one in ratios if one] or [1.0 + 0.0j])
     return complex(unit[np.argmin([np.median(np.abs(unit - one)) for one in unit])])
 
 

@@ -32,6 +32,7 @@ def of_records(runs: Sequence[GapRun]) -> Iterator[Doubt]:
     yield from _of_shaft_angle(runs)
     yield from _of_speed(runs)
     for channel in (*STRUTS, *FORCES):
+        yield from _of_standing(runs, channel)
         yield from _of_plateaus(runs, channel)
 
 
@@ -91,6 +92,18 @@ def _of_speed(runs: Sequence[GapRun]) -> Iterator[Doubt]:
             yield Doubt(name, SPEED, f"{ratio:.3g} times what was told: {meant or 'its sign'}?")
             if not name:
                 return
+
+
+def _of_standing(runs: Sequence[GapRun], channel: str) -> Iterator[Doubt]:
+    """Yield doubts of runs in which a channel stands while the shaft turns."""
+    looked = [run for run in runs if run.turns and channel in run.observed.steps]
+    still = [run.name for run in looked if math.isnan(run.observed.steps[channel])]
+    if still and 2 * len(still) > len(looked):
+        text = "it does not move in most runs: leave it out of the columns"
+        yield Doubt("", channel, text)
+        return
+    for name in still:
+        yield Doubt(name, channel, "it does not move")
 
 
 def _of_plateaus(runs: Sequence[GapRun], channel: str) -> Iterator[Doubt]:

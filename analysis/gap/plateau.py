@@ -1,11 +1,13 @@
-"""Samples that stand at a channel's extreme: a range that ended before the signal did."""
+"""What the values of a channel show by themselves: where they are cut off, and their steps."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.readers.conditioning import flat_top
+from analysis.recording import Recording
 
 FloatArray = NDArray[np.float64]
 
@@ -32,3 +34,13 @@ def plateau(values: FloatArray) -> Plateau:
     counts = {sign: flat_top(sign * known) for sign in (1.0, -1.0)}
     levels = tuple(sign * float((sign * known).max()) for sign, count in counts.items() if count)
     return Plateau(sum(counts.values()) / len(values), levels)
+
+
+def steps_of(recording: Recording) -> dict[str, float]:
+    """Return the smallest step of each channel's values; NaN where it does not move."""
+    found = {}
+    for name in recording.channel_names:
+        levels = np.unique(recording.values(name))
+        steps = np.diff(levels[np.isfinite(levels)])
+        found[name] = float(steps.min()) if steps.size else math.nan
+    return found

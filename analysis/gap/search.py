@@ -4,7 +4,7 @@ The first look is linear. Only what could still win is fitted in full: it costs 
 much as a look, and a campaign without a gap has nothing that promises to beat "no gap".
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Final, TypeVar
@@ -38,16 +38,38 @@ _EXCHANGES: Final = 4  # and how often, the first time counted
 _STEPS_IN_TIME: Final = 3
 
 
-def looked_at(
-    problem: Problem, kinds: Sequence[type[Effect]], executor: Executor | None
-) -> list[Looked]:
+@dataclass(frozen=True)
+class Engine:
+    """Who does the work, and who is told how far it is.
+
+    Attributes
+    ----------
+    executor
+        Where effects are looked at side by side; ``None`` does them one by one.
+    progress
+        Told what is being done, and how much of it is.
+    """
+
+    executor: Executor | None = None
+    progress: Callable[[str], None] = lambda _: None
+
+    def each(
+        self, what: str, work: Callable[[Problem, T], R], problem: Problem, items: Sequence[T]
+    ) -> Iterator[R]:
+        """Yield what the work makes of each item, in their order."""
+        self.progress(what)
+        mapped = map if self.executor is None else self.executor.map
+        for number, one in enumerate(mapped(work, [problem] * len(items), items), start=1):
+            self.progress(f"{what}: {number} of {len(items)}")
+            yield one
+
+
+def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -> list[Looked]:
     """Look at each effect."""
-    return list(_each(executor, look, problem, kinds))
+    return list(engine.each("looking at effects", look, problem, kinds))
 
 
-def fitted(
-    problem: Problem, seen: Sequence[Looked], none: float, executor: Executor | None
-) -> list[Fit]:
+def fitted(problem: Problem, seen: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
     """Fit the leading effects in full; the most probable comes first.
 
     Parameters
@@ -62,7 +84,7 @@ def fitted(
         if one.fit is not None
         and (number < _LEAST or one.expected > none + _least(one.fit, ranked[0].expected - none))
     ]
-    found = _each(executor, _refined, problem, leaders)
+    found = engine.each("fitting the best", _refined, problem, leaders)
     return sorted(found, key=lambda one: -one.log_evidence)
 
 
@@ -71,7 +93,7 @@ def paired(
     singles: Sequence[Fit],
     seen: Sequence[Looked],
     none: float,
-    executor: Executor | None,
+    engine: Engine,
 ) -> list[Fit]:
     """Put effects together in pairs by what they promise beside each other, by linear steps.
 
@@ -90,7 +112,7 @@ def paired(
         members = {name for one in _promising(chances, least)[:_LED] for name in one.fit.names}
         firsts = [one for one in partners if one.names[0] in members - tried]
     worth = _affordable(_promising(chances, least))[:PARTNERS]
-    found = _each(executor, _refined_pair, problem, worth)
+    found = engine.each("fitting pairs", _refined_pair, problem, worth)
     return sorted(found, key=lambda one: -one.log_evidence)
 
 
@@ -139,17 +161,6 @@ def _least(fit: Fit, most: float) -> float:
 def _dearer(pair: Fit) -> float:
     """Return what a pair has to promise more than others, for what it costs to refine it."""
     return _WORSE + _TWICE if pair.is_costly else 0.0
-
-
-def _each(
-    executor: Executor | None,
-    work: Callable[[Problem, T], R],
-    problem: Problem,
-    items: Sequence[T],
-) -> Iterable[R]:
-    if executor is None:
-        return [work(problem, one) for one in items]
-    return executor.map(work, [problem] * len(items), items)
 
 
 def _refined(problem: Problem, fit: Fit) -> Fit:

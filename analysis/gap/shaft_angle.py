@@ -16,10 +16,11 @@ def unwrapped(recording: Recording) -> Recording:
     if SHAFT_ANGLE.name not in recording.channel_names:
         return recording
     angle = recording.values(SHAFT_ANGLE.name)
-    if not float(np.abs(np.diff(angle)).max(initial=0.0)) > np.pi:
+    there = np.isfinite(angle)
+    if not float(np.abs(np.diff(angle[there])).max(initial=0.0)) > np.pi:
         return recording
     samples = np.array(recording.samples[:, 0 : recording.sample_count])
-    samples[recording.index(SHAFT_ANGLE.name)] = np.unwrap(angle)
+    samples[recording.index(SHAFT_ANGLE.name), there] = np.unwrap(angle[there])
     return replace(recording, samples=samples)
 
 

@@ -6,7 +6,8 @@ same for all channels and left free by itself. Between the harmonics of all runs
 hundred lines, in a time that no pulse defines.
 """
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,12 +15,14 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+_ALIKE = 1e-10  # of the largest: squared size from which a direction is more than rounding
 _BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
 _FEWEST = 30  # lines
 _CORNERS = 9
 _SWEEPS = 5
 _LOUD = 9.0  # times its density, which one line of noise in ten thousand reaches
 _LEAST = 1e-3  # of the usual density
+_COUNTED = 0.66  # lines under a Hann taper that tell something of their own
 _MEDIAN = float(np.log(2.0))  # of a line's power over its mean, for Gaussian noise
 
 
@@ -56,8 +59,9 @@ def quiet_lines(
     count, step_s = len(time_s), float(time_s[1] - time_s[0])
     basis = repeating(2.0 * np.pi * frequency_hz * (time_s - time_s[0]), 2 * orders)
     taper = np.hanning(count)
+    weight = max(float(np.sum(taper**2)), np.finfo(float).tiny)  # of two samples nothing is left
     left = (values - (values @ basis) @ basis.T) * taper
-    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / np.sum(taper**2) * step_s
+    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / weight * step_s
     lines_hz = np.arange(power.shape[1]) / (count * step_s)
     beside_hz = np.abs(lines_hz - np.round(lines_hz / frequency_hz) * frequency_hz)
     quiet = (beside_hz > _BESIDE * lines_hz[1]) & (lines_hz < (orders + 1) * frequency_hz)
@@ -67,11 +71,20 @@ def quiet_lines(
 def repeating(angle_rad: FloatArray, orders: int) -> FloatArray:
     """Return an orthonormal basis of what repeats with an angle, and of a trend.
 
-    Shape ``(samples, 2 + 2 orders)``.
+    Shape ``(samples, 2 + 2 orders)``, with fewer columns where the sampling folds some onto others.
     """
-    turn = np.linspace(-1.0, 1.0, len(angle_rad))
-    waves = [wave(n * angle_rad) for n in range(1, orders + 1) for wave in (np.sin, np.cos)]
-    return np.asarray(np.linalg.qr(np.column_stack((np.ones_like(turn), turn, *waves)))[0])
+    count = len(angle_rad)
+    columns = np.empty((2 + 2 * orders, count))
+    columns[0], columns[1] = 1.0, np.linspace(-1.0, 1.0, count)
+    turned = np.ones(count, dtype=np.complex128)
+    first = np.exp(1j * angle_rad)
+    for order in range(orders):
+        turned *= first
+        columns[2 + 2 * order], columns[3 + 2 * order] = turned.imag, turned.real
+    # Columns that the sampling cannot tell apart are one: their difference is rounding.
+    squares, ways = np.linalg.eigh(columns @ columns.T)
+    apart = squares > _ALIKE * squares[-1]
+    return np.asarray(columns.T @ (ways[:, apart] / np.sqrt(squares[apart])))
 
 
 @dataclass(frozen=True)
@@ -114,6 +127,69 @@ def loudness(records: Iterable[Lines]) -> Loudness | None:
     found = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
     one = min(found, key=lambda pair: pair[0])[1]
     return Loudness(usual * one.white, usual * one.coloured, one.corner_hz)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """How loud single records are against what all say together, as logarithms of the power.
+
+    Attributes
+    ----------
+    spread
+        Standard deviation between the records, beyond what their few lines make of themselves.
+    values, variances
+        Of each record: drawn towards the usual level as far as the spread allows.
+    """
+
+    spread: float
+    values: tuple[float, ...]
+    variances: tuple[float, ...]
+
+
+def levels(records: Sequence[Lines], usual: Loudness) -> Levels:
+    """Return each record's own level: an empirical Bayes estimate (DerSimonian and Laird 1986).
+
+    A record's median line over the usual density tells its level, with a variance of 1 / (n ln² 2)
+    for n lines that count (Gaussian noise: powers are exponentially distributed).
+    """
+    seen = np.zeros(len(records))
+    weight = np.zeros(len(records))
+    for at, one in enumerate(records):
+        if one.density.any():
+            ratio = one.density / np.array([usual.at(hz) for hz in one.frequency_hz])
+            seen[at] = math.log(float(np.median(ratio)) / _MEDIAN + _LEAST)
+            weight[at] = _COUNTED * one.density.size * _MEDIAN**2
+    if not weight.any():
+        return Levels(0.0, (0.0,) * len(records), (0.0,) * len(records))
+    middle = float(weight @ seen / weight.sum())
+    spread = spread_about(np.ones((len(seen), 1)), seen, weight) ** 2
+    drawn = spread * weight / (1.0 + spread * weight)
+    values = middle + drawn * (seen - middle)
+    variances = spread / (1.0 + spread * weight)
+    return Levels(math.sqrt(spread), tuple(values.tolist()), tuple(variances.tolist()))
+
+
+def spread_about(terms: FloatArray, values: FloatArray, weight: FloatArray) -> float:
+    """Return the standard deviation that values have about what fits them, beyond their own.
+
+    By moments, of weighted least squares (DerSimonian and Laird 1986).
+
+    Parameters
+    ----------
+    terms
+        What may fit them, shape ``(values, terms)``.
+    weight
+        Inverse variances of the values; 0 for one that is not known.
+    """
+    rooted = terms * np.sqrt(weight)[:, None]
+    freedom = np.count_nonzero(weight) - int(np.linalg.matrix_rank(rooted))
+    if freedom < 1:
+        return 0.0
+    basis = np.linalg.svd(rooted, full_matrices=False)[0][:, : np.linalg.matrix_rank(rooted)]
+    scaled = values * np.sqrt(weight)
+    left = scaled - basis @ (basis.T @ scaled)
+    told = float(weight.sum() - np.sum(weight[:, None] * basis**2))
+    return math.sqrt(max(0.0, float(left @ left) - freedom) / max(told, 1e-12))
 
 
 def _fitted(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[float, Loudness]:

@@ -13,7 +13,7 @@ from analysis.recording import FloatArray, Recording, Samples
 from hardware.description import dataset as schema
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
-from hardware.description.flags import Flag, Severity
+from hardware.description.flags import Flag
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import is_unit, unit
 
@@ -22,7 +22,7 @@ TIME_TOLERANCE = 1e-3
 
 # NetCDF's rule for names.
 _NAME = re.compile(r"[A-Za-z0-9_\u0080-\U0010ffff]([^/\x00-\x1f\x7f]*[^/\x00-\x20\x7f])?")
-_RESERVED = (schema.TIME, schema.EDGE, schema.EDGE_TIME)
+_RESERVED = (schema.TIME, schema.EDGE, schema.EDGE_TIME, schema.CHECKSUMS)
 
 
 def check_storable(recording: Recording) -> None:
@@ -152,7 +152,7 @@ def parse_run(
             start_s=start_s,
             photocell_edges_s=edges_s,
             set_point=_set_point(attributes.get(schema.ATTR_SET_POINT)),
-            provenance=json.loads(attributes.get(schema.ATTR_PROVENANCE, "{}")),
+            provenance=dict(json.loads(attributes.get(schema.ATTR_PROVENANCE, "{}")).items()),
             flags=_flags(attributes.get(schema.ATTR_FLAGS, "[]")),
         )
     except (ValueError, TypeError, KeyError, AttributeError) as error:
@@ -170,10 +170,7 @@ def _set_point(text: str | None) -> SetPoint | None:
 
 
 def _flags(text: str) -> tuple[Flag, ...]:
-    return tuple(
-        Flag(flag["code"], Severity(flag["severity"]), flag["message"], flag.get("channel"))
-        for flag in json.loads(text)
-    )
+    return tuple(map(Flag.read, json.loads(text)))
 
 
 def check_time(time_s: FloatArray, recording: Recording, first: int, where: str) -> None:

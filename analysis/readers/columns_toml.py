@@ -1,6 +1,5 @@
 """Column maps from TOML, with all errors of a file in one message."""
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -16,16 +15,19 @@ from analysis.readers.columns import (
 from analysis.readers.columns_options import parse_source
 from analysis.readers.toml_table import TomlTable, is_number
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import parse_toml
 
 
 def read_column_map(path: Path) -> ColumnMap:
     """Read a column map from a TOML file; see :meth:`ColumnMap.from_toml`."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        table = parse_toml(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such column map") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path}: {error}") from None
     # Messages name the whole path; provenance keeps the name, which means the same elsewhere.
     return replace(parse_column_map(table, str(path)), origin=path.name)
 

@@ -1,9 +1,14 @@
-"""Missing values and saturation: what is repaired, what is only said."""
+"""Missing values, spikes and saturation: what is repaired, what is only said."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.recording import FloatArray
+from analysis.readers.missing import empty_flag
+from analysis.recording import FloatArray, Recording, Samples
+from analysis.spikes import FEWEST_LEVELS, Spike, cubic, find_spikes
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -16,8 +21,79 @@ FLAT_RUN = 3
 FLAT_STEPS = 6.0
 FLAT_SHARE = 0.005
 FLAT_EXCESS = 1.25
-_FEWEST_LEVELS = 16
+_SOME = 4096  # values
 _ROUNDING = 1e-9  # of what the signal covers: values nearer to each other are the same
+
+_NAMED_SPIKES = 5  # of a channel, the largest; the others are counted
+
+
+@dataclass(frozen=True)
+class WithoutSpikes:
+    """Samples in whose spikes' place stands what the cubic puts there; their source is unaltered.
+
+    ``spikes`` has the spikes of each of the source's rows.
+    """
+
+    source: Samples
+    spikes: tuple[tuple[Spike, ...], ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """``(channels, samples)``."""
+        return self.source.shape
+
+    def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
+        """Return the values of some channels between two sample numbers."""
+        rows, when = key
+        values = np.array(self.source[rows, when])
+        numbers = np.arange(*when.indices(self.shape[1]))
+        spikes = self.spikes[rows] if isinstance(rows, slice) else [self.spikes[k] for k in rows]
+        for row, found in zip(values, spikes, strict=True):
+            for spike in found:
+                inside = (numbers >= spike.start) & (numbers < spike.stop)
+                row[inside] = spike.instead[numbers[inside] - spike.start]
+        return values
+
+
+def without_spikes(recording: Recording) -> Recording:
+    """Take the spikes out of a recording, and say of each channel when they were and how large.
+
+    What stands in their place is the cubic through the two samples on either side, or NaN where one
+    of these is missing. A recording without spikes is returned as it is.
+    """
+    found = find_spikes(recording.samples)
+    if not any(found):
+        return recording
+    flags = tuple(
+        spike_flag(channel, spikes, recording.time_s())
+        for channel, spikes in zip(recording.channels, found, strict=True)
+        if spikes
+    )
+    samples = WithoutSpikes(recording.samples, found)
+    return replace(recording, samples=samples, flags=recording.flags + flags)
+
+
+def spike_flag(channel: Channel, spikes: Sequence[Spike], time_s: FloatArray) -> Flag:
+    """Return the flag of a channel's spikes.
+
+    Parameters
+    ----------
+    time_s
+        Times of all samples that the spikes' numbers count, shape ``(samples,)``.
+    """
+    unit = f" {channel.unit}" if channel.unit else ""
+    largest = sorted(spikes, key=lambda one: -abs(one.size))[:_NAMED_SPIKES]
+    named = ", ".join(
+        f"{one.size:+.4g}{unit} at {time_s[one.start]:.6g} s"
+        + (f" ({one.stop - one.start} samples)" if one.stop - one.start > 1 else "")
+        for one in sorted(largest, key=lambda one: one.start)
+    )
+    more = f" and {len(spikes) - len(largest)} smaller" if len(spikes) > len(largest) else ""
+    message = (
+        f"{channel.name}: {len(spikes)} spike(s) were taken out and filled by a cubic through two "
+        f"samples on either side: {named}{more} off it; look for a loose connector or a disturbance"
+    )
+    return Flag("spike", Severity.WARNING, message, channel.name)
 
 
 def repair_missing(
@@ -43,17 +119,8 @@ def repair_missing(
         raise DataError(f"{where}: no channel has any value, all are missing ({names})")
     flags: list[Flag] = []
     for row, channel in zip(samples, channels, strict=True):
-        flags += _infinite(row, channel.name)
         flags += _repair(row, channel.name)
     return tuple(flags)
-
-
-def _infinite(row: FloatArray, name: str) -> list[Flag]:
-    infinite = np.isinf(row)
-    count = int(np.count_nonzero(infinite))
-    row[infinite] = np.nan
-    message = f"{name}: {count} sample(s) are infinite (overload?); they count as missing"
-    return [Flag("infinite", Severity.VOID, message, name)] if count else []
 
 
 def _repair(row: FloatArray, name: str) -> list[Flag]:
@@ -61,14 +128,14 @@ def _repair(row: FloatArray, name: str) -> list[Flag]:
     if not missing.any():
         return []
     if missing.all():
-        return [Flag("channel_empty", Severity.VOID, f"{name}: every sample is missing", name)]
+        return [empty_flag(name)]
     repaired = left = longest = 0
     for start, stop in runs(missing):
         length = stop - start
         around = np.array([start - 2, start - 1, stop, stop + 1])
         good = around[0] >= 0 and around[-1] < row.size and not missing[around].any()
         if good and length <= LONGEST_REPAIR:
-            row[start:stop] = _cubic(length) @ row[around]
+            row[start:stop] = cubic(length) @ row[around]
             repaired += length
         else:
             left, longest = left + length, max(longest, length)
@@ -90,17 +157,6 @@ def _missing_flags(name: str, repaired: int, left: int, longest: int) -> list[Fl
         )
         flags.append(Flag("missing", Severity.VOID, message, name))
     return flags
-
-
-def _cubic(length: int) -> FloatArray:
-    """Lagrange weights, shape ``(length, 4)``, of the two samples before and after a run."""
-    nodes = np.array([-2.0, -1.0, length, length + 1.0])
-    places = np.arange(length, dtype=np.float64)
-    weights = np.ones((length, 4))
-    for k in range(4):
-        for other in np.delete(nodes, k):
-            weights[:, k] *= (places - other) / (nodes[k] - other)
-    return weights
 
 
 def runs(condition: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -134,8 +190,10 @@ def _at_full_scale(row: FloatArray, channel: Channel, full_scale: float) -> list
 
 def _flat_tops(row: FloatArray, channel: Channel) -> list[Flag]:
     flags = []
-    for what, values in (("highest", row), ("lowest", -row)):
-        count = flat_top(values[np.isfinite(values)])
+    is_finite = np.isfinite(row)
+    finite = row if is_finite.all() else row[is_finite]
+    for what, sign in (("highest", 1.0), ("lowest", -1.0)):
+        count = flat_top(sign * finite) if _many_at_end(finite, sign) else 0
         if count:
             level = np.nanmax(row) if what == "highest" else np.nanmin(row)
             message = (
@@ -144,6 +202,19 @@ def _flat_tops(row: FloatArray, channel: Channel) -> list[Flag]:
             )
             flags.append(Flag("saturated", Severity.WARNING, message, channel.name))
     return flags
+
+
+def _many_at_end(values: FloatArray, sign: float) -> bool:
+    """Tell quickly of most channels that too few samples for a flat top are at their extreme.
+
+    The step between some of the values is no smaller than between all of them.
+    """
+    if not values.size:
+        return False
+    low, high = float(values.min()), float(values.max())
+    reach = 1.5 * _step(np.unique(values[:: 1 + values.size // _SOME]), high - low)
+    at_end = values > high - reach if sign > 0.0 else values < low + reach
+    return bool(np.count_nonzero(at_end) >= 2 * FLAT_RUN)
 
 
 def flat_top(values: FloatArray) -> int:
@@ -157,12 +228,15 @@ def flat_top(values: FloatArray) -> int:
     values
         Finite, shape ``(samples,)``.
     """
+    if not values.size:
+        return 0
+    highest = float(values.max())
+    extent = highest - float(values.min())
     levels = np.unique(values)
-    if levels.size < _FEWEST_LEVELS:
+    if levels.size < FEWEST_LEVELS:
         return 0  # a switch, or a display of a few digits
-    apart, extent = np.diff(levels), float(np.ptp(levels))
-    step = float(apart[apart > _ROUNDING * extent].min(initial=extent))
-    below = values.max() - values
+    step = _step(levels, extent)
+    below = highest - values
     at_top = below < 1.5 * step
     lengths = np.array([stop - start for start, stop in runs(at_top)], dtype=int)
     flat = lengths[lengths >= FLAT_RUN]
@@ -170,3 +244,9 @@ def flat_top(values: FloatArray) -> int:
         return 0
     near = np.count_nonzero(below < max(FLAT_STEPS * step, FLAT_SHARE * extent))
     return int(flat.sum()) if near < FLAT_EXCESS * np.count_nonzero(at_top) else 0
+
+
+def _step(levels: FloatArray, extent: float) -> float:
+    with np.errstate(over="ignore"):  # of numbers near the largest
+        apart = np.diff(levels)
+    return float(apart[apart > _ROUNDING * extent].min(initial=extent))

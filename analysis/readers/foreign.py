@@ -1,50 +1,41 @@
-"""Columns of numbers from a file that is no text: names, units, and a rate where it has one."""
+"""A recording of what a binary file of another program holds: columns, units, perhaps a rate."""
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
+from analysis.foreign.process import read_foreign
 from analysis.readers.columns import ColumnMap
 from analysis.readers.headers import Header, parse_header
 from analysis.readers.text_plan import plan_columns
 from analysis.readers.text_recording import Origin, from_columns
-from analysis.recording import FloatArray, Recording
-from hardware.description.errors import DataError
+from analysis.recording import Recording
+from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 
 
-@dataclass(frozen=True, eq=False)
-class ForeignColumns:
-    """What was found in a file.
-
-    Attributes
-    ----------
-    values
-        By name; they need not be of one length.
-    units
-        By name, where the file states one.
-    sample_rate_hz
-        Where the file states it; a time column goes before it.
-    """
-
-    values: Mapping[str, FloatArray]
-    units: Mapping[str, str]
-    sample_rate_hz: float | None = None
-
-
-def recording_of(
-    path: Path, columns: ColumnMap, name: str, reader: str, found: ForeignColumns
-) -> Recording:
+def recording_of(path: Path, columns: ColumnMap, name: str, kind: str) -> Recording:
     """Return a recording of the columns that are as long as most of the file is.
+
+    Parameters
+    ----------
+    kind
+        ``"mat"`` or ``"tdms"``.
 
     Raises
     ------
     DataError
-        If the file holds no column of numbers, or neither times nor a rate.
+        If the file cannot be read, holds no column of numbers, or neither times nor a rate.
     ConfigurationError
-        If the column map names what is not there.
+        If the column map names what is not there, or the extra that reads the file is missing.
     """
+    if kind == "tdms" and find_spec("nptdms") is None:
+        raise ConfigurationError(
+            f"{path}: reading TDMS needs the extra 'tdms': pip install 'pmm[tdms]'"
+        )
+    found = read_foreign(path, kind)
     if not found.values:
         raise DataError(
             f"{path}: no vector of numbers in it; there is nothing to take for a channel"
@@ -56,7 +47,8 @@ def recording_of(
     if columns.sample_rate_hz is None and not _has_time(headers, columns):
         columns = replace(columns, sample_rate_hz=found.sample_rate_hz)
     plan = plan_columns(headers, columns, str(path))
-    origin = Origin(path, name, reader, hashlib.sha256(path.read_bytes()).hexdigest())
+    with path.open("rb") as file:
+        origin = Origin(path, name, kind, hashlib.file_digest(file, "sha256").hexdigest())
     left = [key for key in found.values if key not in kept]
     return from_columns(plan, table, columns, origin, _left_out(left, length))
 

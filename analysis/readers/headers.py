@@ -11,6 +11,7 @@ from hardware.description.units import is_unit
 TIME_NAMES = ("time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd")
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
+_SEPARATORS = re.compile(r"\s+in\s+|\s*[,/]\s*|_|\s+")
 # "WP_1" and "x_-" are names, not dimensionless columns.
 _NO_SUFFIX = ("1", "-")
 
@@ -37,15 +38,20 @@ class Header:
 
 
 def parse_header(number: int, text: str) -> Header:
-    """Split ``Name [unit]``, ``Name (unit)``, or ``Name_unit`` where the unit is a known one."""
+    """Split a column's header into name and unit.
+
+    ``Name [unit]`` and ``Name (unit)`` state any unit. ``Name_unit``, ``Name unit``, ``Name/unit``,
+    ``Name, unit`` and ``Name in unit`` do where the unit is a known one.
+    """
     text = text.strip()
     match = _BRACKETS.match(text)
     if match:
         name, unit = match["name"].strip(), match["unit"].strip()
         return Header(number, text, name or f"column_{number}", unit or None)
-    name, _, suffix = text.rpartition("_")
-    if name and suffix not in _NO_SUFFIX and is_unit(suffix):
-        return Header(number, text, name, suffix, unit_is_suffix=True)
+    for found in _SEPARATORS.finditer(text):
+        name, suffix = text[: found.start()], text[found.end() :]
+        if name and suffix not in _NO_SUFFIX and is_unit(suffix):
+            return Header(number, text, name, suffix, unit_is_suffix=True)
     return Header(number, text, text or f"column_{number}", None)
 
 

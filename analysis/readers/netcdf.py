@@ -1,9 +1,8 @@
 """Recordings as NetCDF4 files: written whole, read a stretch at a time."""
 
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,85 +17,68 @@ from analysis.readers.attributes import (
     parse_run,
     run_attributes,
 )
+from analysis.readers.checksums import BLOCK_SAMPLES, KIND, Summing
+from analysis.readers.conditioning import without_spikes
+from analysis.readers.damage import Damage, find_damage
+from analysis.readers.declared import check_declared
+from analysis.readers.missing import with_missing_said
+from analysis.readers.reserved import reserved
+from analysis.readers.stored_samples import StoredSamples, identity, reading
 from analysis.recording import FloatArray, Recording
 from hardware.description import dataset as schema
 from hardware.description.errors import DataError
+from hardware.description.room import said
 
 # Half a megabyte of one channel: small beside any memory, large beside a disk's seek.
-CHUNK_SAMPLES = 65536
+CHUNK_SAMPLES = 64 * BLOCK_SAMPLES
 # Samples that are copied or checked at a time.
-BLOCK_SAMPLES = 2 * CHUNK_SAMPLES
-
-
-@dataclass(frozen=True)
-class StoredSamples:
-    """Samples that stay in their file until a stretch of them is asked for.
-
-    The file is open only while it is read, so there is nothing to close.
-
-    Attributes
-    ----------
-    variables
-        The file's variables, one per row.
-    identity
-        Size and time of the file as it was opened: a file that changed since is refused.
-    """
-
-    path: Path
-    variables: tuple[str, ...]
-    sample_count: int
-    identity: tuple[int, int]
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """``(channels, samples)``."""
-        return (len(self.variables), self.sample_count)
-
-    def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
-        """Read some rows between two sample numbers, shape ``(rows, samples)``.
-
-        Raises
-        ------
-        DataError
-            If the file has changed, gone, or is damaged.
-        """
-        import h5py
-
-        rows, when = key
-        names = self.variables[rows] if isinstance(rows, slice) else self._named(rows)
-        start, stop, step = when.indices(self.sample_count)
-        if step < 1:
-            raise ValueError(f"samples are read forwards, not by steps of {step}")
-        values = np.empty((len(names), len(range(start, stop, step))))
-        with _reading(self.path):
-            if _identity(self.path) != self.identity:
-                raise DataError(f"{self.path}: the file has changed since it was opened")
-            with h5py.File(self.path, "r") as file:
-                for row, name in zip(values, names, strict=True):
-                    if row.size:
-                        file[name].read_direct(row, np.s_[start:stop:step])
-        return values
-
-    def _named(self, rows: Sequence[int]) -> tuple[str, ...]:
-        return tuple(self.variables[row] for row in rows)
+STRETCH_SAMPLES = 2 * CHUNK_SAMPLES
+_BOOKS_BYTES = 32768  # what HDF5 keeps beside the samples of a variable: measured 2 to 8 kB
 
 
 def read_netcdf(path: Path) -> Recording:
-    """Open a recording; its samples stay on disk. See :func:`analysis.readers.read_recording`."""
+    """Open a recording; its samples stay on disk, but for the few in the place of spikes.
+
+    See :func:`analysis.readers.read_recording`.
+    """
     import h5netcdf
 
     where = str(path)
-    with _reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
+    with reading(path):
+        check_declared(path)
+    with reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
         variables = dict(file.variables)
         dimensions = {name: tuple(variable.dimensions) for name, variable in variables.items()}
         names = channel_names(dimensions, where)
         channels = tuple(parse_channel(name, variables[name].attrs, where) for name in names)
+        damage = find_damage(path, names)
         time, edges = variables[schema.TIME], variables.get(schema.EDGE_TIME)
-        samples = StoredSamples(path, names, int(time.shape[0]), _identity(path))
-        start_s = float(time[0]) if samples.sample_count else 0.0
-        edges_s = None if edges is None else np.asarray(edges[:], dtype=np.float64)
-        recording = parse_run(file.attrs, channels, samples, start_s, edges_s, where)
-        for start, stop in _blocks(samples.sample_count):
+        bad = tuple(damage.blocks.get(name) for name in names)
+        samples = StoredSamples(path, names, int(time.shape[0]), identity(path), bad)
+        edges_s = None if edges is None else _edges_s(edges, damage)
+        recording = parse_run(file.attrs, channels, samples, 0.0, edges_s, where)
+        recording = _timed(recording, time, damage, where)
+        flags = damage.all_flags(recording, 0 if edges is None else int(edges.shape[0]))
+        recording = replace(recording, flags=(*recording.flags, *flags))
+    return without_spikes(with_missing_said(recording))
+
+
+def _edges_s(edges: Any, damage: Damage) -> FloatArray:
+    """Read the photocell's pulses but for the damaged ones."""
+    kept = [
+        np.asarray(edges[a:b], dtype=np.float64)
+        for a, b in damage.good(schema.EDGE_TIME, int(edges.shape[0]))
+    ]
+    return np.concatenate([np.empty(0), *kept])
+
+
+def _timed(recording: Recording, time: Any, damage: Damage, where: str) -> Recording:
+    """Return the recording at its time, which is checked where it is not damaged."""
+    good = damage.good(schema.TIME, recording.sample_count)
+    first = good[0][0]
+    recording = replace(recording, start_s=float(time[first]) - first / recording.sample_rate_hz)
+    for a, b in good:
+        for start, stop in _stretches(a, b):
             check_time(np.asarray(time[start:stop], np.float64), recording, start, where)
     return recording
 
@@ -124,7 +106,7 @@ def write_recording(recording: Recording, path: str | Path, *, overwrite: bool =
         _refuse_existing(path, overwrite)
         part.replace(path)
     except OSError as error:
-        raise DataError(f"{path}: cannot write the recording: {error}") from None
+        raise DataError(f"{said(error, path)}; the recording is not written") from None
     finally:
         part.unlink(missing_ok=True)
     return path
@@ -139,27 +121,40 @@ def _write(recording: Recording, path: Path) -> None:
     import h5netcdf
 
     count, edges = recording.sample_count, recording.photocell_edges_s
-    with h5netcdf.File(path, "w") as file:
+    most = _most_bytes(recording)
+    with reserved(path, most) as room, h5netcdf.File(room.file, "w") as file:
+        room.take()
         file.dimensions[schema.TIME] = count
-        file.attrs.update(run_attributes(recording))
-        time = _variable(file, schema.TIME, {schema.UNITS: "s"}, count)
-        variables = [
+        file.attrs.update(run_attributes(recording) | {schema.ATTR_CHECKSUMS: KIND})
+        variables = [_variable(file, schema.TIME, {schema.UNITS: "s"}, count)] + [
             _variable(file, channel.name, channel_attributes(channel), count)
             for channel in recording.channels
         ]
-        for start, stop in _blocks(count):
-            time[start:stop] = recording.time_s(start, stop)
-            values = recording.samples[:, start:stop]
+        sums = Summing()
+        for start, stop in _stretches(0, count):
+            values = np.vstack([recording.time_s(start, stop), recording.samples[:, start:stop]])
             for variable, row in zip(variables, values, strict=True):
                 variable[start:stop] = row
+                sums.take(variable, row)
         if edges is not None:
             file.dimensions[schema.EDGE] = len(edges)
             stored = file.create_variable(schema.EDGE_TIME, (schema.EDGE,), np.float64)
             stored.attrs[schema.UNITS] = "s"
             if len(edges):
                 stored[:] = edges
-    with path.open("rb+") as file:
-        os.fsync(file.fileno())
+            sums.take(stored, edges)
+        sums.finish(file)
+
+
+def _most_bytes(recording: Recording) -> int:
+    """Return what the file takes at most: whole chunks, attributes, and HDF5's own books."""
+    count, rows = recording.sample_count, len(recording.channels) + 1
+    chunk = max(1, min(count, CHUNK_SAMPLES))
+    edges = recording.photocell_edges_s
+    sums = rows * -(-count // BLOCK_SAMPLES)
+    values = rows * -(-count // chunk) * chunk + sums + (0 if edges is None else 2 * len(edges))
+    texts = sum(len(str(one).encode()) for one in run_attributes(recording).values())
+    return 8 * values + 2 * texts + 2 * (rows + 2) * _BOOKS_BYTES
 
 
 def _variable(file: Any, name: str, attributes: dict[str, str | float], count: int) -> Any:
@@ -170,37 +165,6 @@ def _variable(file: Any, name: str, attributes: dict[str, str | float], count: i
     return variable
 
 
-def _blocks(count: int) -> Iterator[tuple[int, int]]:
-    for start in range(0, count, BLOCK_SAMPLES):
-        yield start, min(start + BLOCK_SAMPLES, count)
-
-
-def _identity(path: Path) -> tuple[int, int]:
-    status = path.stat()
-    return status.st_size, status.st_mtime_ns
-
-
-@contextmanager
-def _reading(path: Path) -> Iterator[None]:
-    """Turn what the libraries say of a bad file into one clear word."""
-    try:
-        yield
-    except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
-        raise DataError(f"{path}: {_what_is_wrong(path, str(error))}") from None
-
-
-def _what_is_wrong(path: Path, message: str) -> str:
-    try:
-        with path.open("rb") as file:
-            head = file.read(8)
-    except OSError as error:
-        return f"cannot be read: {error.strerror}"
-    if not head:
-        return "the file is empty"
-    if head.startswith(b"CDF"):
-        return "an older NetCDF 3 file; convert it with 'nccopy -k nc4'"
-    if head != b"\x89HDF\r\n\x1a\n":
-        return "not a NetCDF file"
-    if "truncated" in message:
-        return "the NetCDF file is cut short; copy it again"
-    return f"the NetCDF file is damaged: {message}"
+def _stretches(first: int, end: int) -> Iterator[tuple[int, int]]:
+    for start in range(first, end, STRETCH_SAMPLES):
+        yield start, min(start + STRETCH_SAMPLES, end)

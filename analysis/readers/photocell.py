@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from analysis.readers.columns import Edge, TextLayout
 from analysis.readers.headers import Header
 from analysis.readers.text_layout import find_layout
-from analysis.readers.text_table import read_bytes, read_numbers, unpack
+from analysis.readers.text_source import TextSource
+from analysis.readers.text_table import read_numbers
 from analysis.recording import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
@@ -70,12 +71,12 @@ def read_edges(path: Path) -> FloatArray:
     DataError
         If the file is missing, has no such column, or the times do not increase.
     """
-    text = unpack(read_bytes(path), path)
-    layout = find_layout(text, TextLayout(), str(path))
+    source = TextSource(path)
+    layout = find_layout(source, TextLayout())
     header = _time_header(layout.headers, path)
-    values, _ = read_numbers(text, layout, [header], str(path))
+    numbers = read_numbers(source, layout, [header])
     factor = unit(header.unit).factor if header.unit else 1.0
-    return check_edges(values[0] * factor, str(path))
+    return check_edges(numbers.columns[header] * factor, str(path))
 
 
 def _time_header(headers: tuple[Header, ...], path: Path) -> Header:

@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from analysis.readers.columns import ColumnMap
-from analysis.readers.mat import read_mat
+from analysis.readers.foreign import recording_of
 from analysis.readers.netcdf import read_netcdf
-from analysis.readers.tdms import read_tdms
 from analysis.readers.text_recording import read_text_recording
+from analysis.readers.text_source import Progress
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
 
@@ -19,7 +19,11 @@ TDMS_SUFFIX = ".tdms"
 
 
 def read_recording(
-    path: str | Path, columns: ColumnMap | None = None, *, sample_rate_hz: float | None = None
+    path: str | Path,
+    columns: ColumnMap | None = None,
+    *,
+    sample_rate_hz: float | None = None,
+    progress: Progress = lambda _: None,
 ) -> Recording:
     """Read a recording: ``.nc`` as this project writes it, text, plain or gzip, MAT or TDMS.
 
@@ -33,6 +37,8 @@ def read_recording(
         believes its headers.
     sample_rate_hz
         Rate of these files' samples, in place of their time column, if they have one.
+    progress
+        Told which part of a text file has been read, from 0 to 1.
 
     Raises
     ------
@@ -58,11 +64,9 @@ def read_recording(
     rate = columns.sample_rate_hz
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise ConfigurationError(f"{path}: a sample rate of {rate:g} Hz; it should be above 0")
-    if kind == MAT_SUFFIX:
-        return read_mat(path, columns, name)
-    if kind == TDMS_SUFFIX:
-        return read_tdms(path, columns, name)
-    return read_text_recording(path, columns, name)
+    if kind in (MAT_SUFFIX, TDMS_SUFFIX):
+        return recording_of(path, columns, name, kind.removeprefix("."))
+    return read_text_recording(path, columns, name, progress)
 
 
 def _kind(path: Path) -> tuple[str, str]:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from analysis.limits import LONGEST_LINE, MOST_COLUMNS
 from analysis.readers.columns import TextLayout
 from analysis.readers.headers import Header, parse_header
+from analysis.readers.text_source import TextSource
 from hardware.description.errors import DataError
 from hardware.description.units import is_unit
 
@@ -71,8 +73,8 @@ def split_line(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in row]
 
 
-def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
-    """Find the header and the data of a text file.
+def find_layout(source: TextSource, layout: TextLayout) -> FoundLayout:
+    """Find the header and the data of a text file by its first lines.
 
     Lines that are blank or begin with ``#`` or ``%`` before the header are passed over; where
     numbers follow at once, the last such line is the header (as ``numpy.savetxt`` writes), and
@@ -82,9 +84,10 @@ def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
     Raises
     ------
     DataError
-        If there is no data at all, or none after ``skip_rows``.
+        If there is no data at all, or none after ``skip_rows``; as :meth:`TextSource.head` does.
     """
-    numbered = list(islice(enumerate(io.StringIO(text), 1), layout.skip_rows + _LARGEST_PREAMBLE))
+    where, most = str(source.path), layout.skip_rows + _LARGEST_PREAMBLE
+    numbered = list(islice(enumerate(io.StringIO(source.head(most)), 1), most))
     lines = [(n, line.strip("\n")) for n, line in numbered[layout.skip_rows :] if line.strip()]
     comments = [(n, line.lstrip()[1:]) for n, line in lines if line.lstrip()[0] in "#%"]
     body = [(n, line) for n, line in lines if line.lstrip()[0] not in "#%"]
@@ -96,7 +99,7 @@ def find_layout(text: str, layout: TextLayout, where: str) -> FoundLayout:
     bare = FoundLayout((), separator, decimal, 0, missing)
     first = bare.cells(body[0][1])
     if _is_data(bare, first):
-        return _headless(bare, first, comments, body[0][0] - 1)
+        return _headless(bare, first, comments, body[0][0] - 1, where)
     return _with_header(bare, body, where)
 
 
@@ -117,12 +120,16 @@ def too_few_cells(where: str, line: int, cells: int, columns: int) -> DataError:
 
 
 def _headless(
-    bare: FoundLayout, first: list[str], comments: list[tuple[int, str]], first_line: int
+    bare: FoundLayout,
+    first: list[str],
+    comments: list[tuple[int, str]],
+    first_line: int,
+    where: str,
 ) -> FoundLayout:
     names = _header_cells(comments[-1][1], bare.separator) if comments else []
     if len(names) != len(first):
         names = [""] * len(first)
-    return _headed(bare, names, first_line)
+    return _headed(bare, names, first_line, where)
 
 
 def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
@@ -139,10 +146,12 @@ def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> 
         names.append("")  # every row ends with a separator
     if len(cells) > len(names):
         raise too_many_cells(where, first_number, len(cells), len(names))
-    return _headed(bare, names, last_line)
+    return _headed(bare, names, last_line, where)
 
 
-def _headed(bare: FoundLayout, names: Sequence[str], first_line: int) -> FoundLayout:
+def _headed(bare: FoundLayout, names: Sequence[str], first_line: int, where: str) -> FoundLayout:
+    if len(names) > MOST_COLUMNS:
+        raise DataError(f"{where}: {len(names)} columns; the limit is {MOST_COLUMNS}")
     headers = tuple(parse_header(number, name) for number, name in enumerate(names, 1))
     return FoundLayout(headers, bare.separator, bare.decimal, first_line, bare.missing)
 
@@ -182,9 +191,10 @@ def _separator(lines: list[str], layout: TextLayout, missing: tuple[str, ...]) -
         if layout.decimal in (None, decimal) and layout.separator is None
     ] or [(layout.separator or ",", decimal) for decimal in (layout.decimal or ".,")]
     best, best_score = choices[0], (-1, -1)
+    lines = lines[: max(1, min(_SAMPLE_LINES, LONGEST_LINE // max(map(len, lines))))]
     for separator, decimal in choices:
         trial = FoundLayout((), separator, decimal, 0, missing)
-        rows = [trial.cells(line) for line in lines[:_SAMPLE_LINES]]
+        rows = [trial.cells(line) for line in lines]
         numeric = sum(_is_data(trial, row) for row in rows)
         score = (numeric, len(rows[-1]))
         if score > best_score:

@@ -1,6 +1,5 @@
 """A recording from text: columns to channels in SI units on an even grid."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,12 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.columns import ColumnMap, PhotocellColumn
-from analysis.readers.conditioning import repair_missing, saturation_flags
+from analysis.readers.conditioning import repair_missing, saturation_flags, without_spikes
 from analysis.readers.headers import Header
+from analysis.readers.missing import without_beyond
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
 from analysis.readers.text_layout import find_layout
 from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, without_idle
-from analysis.readers.text_table import read_bytes, read_numbers, unpack
+from analysis.readers.text_source import Progress, TextSource
+from analysis.readers.text_table import read_numbers
 from analysis.readers.time_base import TimeBase, fit_time_base
 from analysis.recording import FloatArray, Recording
 from hardware.description.flags import Flag
@@ -43,16 +44,14 @@ class Origin:
     sha256: str
 
 
-def read_text_recording(path: Path, columns: ColumnMap, name: str) -> Recording:
+def read_text_recording(path: Path, columns: ColumnMap, name: str, progress: Progress) -> Recording:
     """Read a recording from a text file; see :func:`analysis.readers.read_recording`."""
-    data, where = read_bytes(path), str(path)
-    text = unpack(data, path)
-    layout = find_layout(text, columns.layout, where)
-    plan = plan_columns(layout.headers, columns, where)
-    values, text_flags = read_numbers(text, layout, plan.wanted, where)
-    table = dict(zip(plan.wanted, values, strict=True))
-    origin = Origin(path, name, READER, hashlib.sha256(data).hexdigest())
-    return from_columns(plan, table, columns, origin, text_flags)
+    source = TextSource(path, progress)
+    layout = find_layout(source, columns.layout)
+    plan = plan_columns(layout.headers, columns, str(path))
+    numbers = read_numbers(source, layout, plan.wanted)
+    origin = Origin(path, name, READER, numbers.sha256)
+    return from_columns(plan, numbers.columns, columns, origin, numbers.flags)
 
 
 def from_columns(
@@ -83,27 +82,36 @@ def from_columns(
     channels = tuple(channel for channel, _, _ in resolved)
     samples = np.empty((len(channels), base.sample_count))
     for row, part, (_, factor, _) in zip(samples, plan.channels, resolved, strict=True):
-        row[:] = _on_grid(table[part.header], base) * factor
+        np.multiply(_on_grid(table[part.header], base), factor, out=row)
     edges, edges_flags = _edges(columns.photocell, plan, table, base, path, origin.name)
-    repair_flags = repair_missing(samples, channels, where)
-    return Recording(
-        name=origin.name,
-        channels=channels,
-        samples=samples,
-        sample_rate_hz=base.sample_rate_hz,
-        start_s=base.start_s,
-        photocell_edges_s=edges,
-        provenance=_provenance(origin, columns),
-        flags=(
-            *noticed,
-            *plan.flags,
-            *base.flags,
-            *(flag for _, _, flags in resolved for flag in flags),
-            *edges_flags,
-            *repair_flags,
-            *saturation_flags(samples, channels),
-        ),
+    recording = without_spikes(
+        without_beyond(
+            Recording(
+                name=origin.name,
+                channels=channels,
+                samples=samples,
+                sample_rate_hz=base.sample_rate_hz,
+                start_s=base.start_s,
+                photocell_edges_s=edges,
+                provenance=_provenance(origin, columns),
+                flags=(
+                    *noticed,
+                    *plan.flags,
+                    *base.flags,
+                    *(flag for _, _, flags in resolved for flag in flags),
+                    *edges_flags,
+                ),
+            )
+        )
     )
+    for number, row in enumerate(samples):
+        row[:] = recording.samples[number : number + 1, 0 : base.sample_count][0]
+    flags = (
+        *recording.flags,
+        *repair_missing(samples, channels, where),
+        *saturation_flags(samples, channels),
+    )
+    return replace(recording, samples=samples, flags=flags)
 
 
 def _time_base(plan: ColumnPlan, table: Table, columns: ColumnMap, where: str) -> TimeBase:

@@ -1,83 +1,70 @@
-"""The numbers of a text file."""
+"""The numbers of a text file, read a stretch at a time: nothing of the text is kept."""
 
-import gzip
-import io
-import zlib
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from analysis.limits import limits
 from analysis.readers.headers import Header
 from analysis.readers.text_layout import FoundLayout, too_few_cells, too_many_cells
+from analysis.readers.text_source import LineStream, TextSource, decoded
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
-_GZIP_MARK = b"\x1f\x8b"
+_LINE_END = ord("\n")
 
 
-def read_bytes(path: Path) -> bytes:
-    """Return a file's content.
+class Columns(Mapping[Header, FloatArray]):
+    """Columns of numbers in the pieces they were read in; each is joined when it is asked for."""
 
-    Raises
-    ------
-    DataError
-        If it is not there or may not be read.
-    """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read: {error.strerror}") from None
+    def __init__(self, headers: Sequence[Header]) -> None:
+        self._pieces: dict[Header, list[FloatArray]] = {header: [] for header in headers}
 
+    def add(self, columns: Iterable[Iterable[FloatArray]]) -> None:
+        """Add rows: pieces of each column, in the order of the headers."""
+        for pieces, more in zip(self._pieces.values(), columns, strict=True):
+            pieces.extend(more)
 
-def unpack(data: bytes, path: Path) -> str:
-    """Turn a file's bytes into text: gzip, UTF-8 (with or without mark), UTF-16 or Latin-1.
+    def __getitem__(self, header: Header) -> FloatArray:
+        return np.concatenate([np.empty(0), *self._pieces[header]])
 
-    Raises
-    ------
-    DataError
-        If the file is empty, its gzip stream is cut short or damaged, or it is not text.
-    """
-    if path.suffix.lower() == ".gz":
-        try:
-            data = gzip.decompress(data) if data else data
-        except EOFError:
-            raise DataError(f"{path}: the gzip file is cut short; copy it again") from None
-        except (gzip.BadGzipFile, zlib.error) as error:
-            if not data.startswith(_GZIP_MARK):
-                raise DataError(f"{path}: not a gzip file, whatever its name says") from None
-            raise DataError(f"{path}: not a sound gzip file ({error}); copy it again") from None
-    if not data.strip():
-        raise DataError(f"{path}: the file is empty")
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        text = data.decode("utf-16", errors="replace")
-    elif b"\0" in data:
-        raise DataError(f"{path}: not a text file (it holds zero bytes)")
-    else:
-        text = _decode(data)
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    def __iter__(self) -> Iterator[Header]:
+        return iter(self._pieces)
+
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    @property
+    def rows(self) -> int:
+        """Rows so far."""
+        return sum(map(len, next(iter(self._pieces.values()), [])))
 
 
-def _decode(data: bytes) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """Some columns of a text file.
 
-
-def read_numbers(
-    text: str, layout: FoundLayout, wanted: Sequence[Header], where: str
-) -> tuple[FloatArray, tuple[Flag, ...]]:
-    """Read some columns of a text.
-
-    Returns
-    -------
-    values
-        Shape ``(wanted columns, rows)``; NaN where a cell is missing.
+    Attributes
+    ----------
+    columns
+        By header, shape ``(rows,)``; NaN where a cell is missing.
+    sha256
+        Of the whole file.
     flags
         ``row_cut`` where the file ends within a row, which is left out; ``no_final_newline`` where
         its last number may have lost digits.
+    """
+
+    columns: Columns
+    sha256: str
+    flags: tuple[Flag, ...]
+
+
+def read_numbers(source: TextSource, layout: FoundLayout, wanted: Sequence[Header]) -> Numbers:
+    """Read some columns of a text.
 
     Raises
     ------
@@ -85,84 +72,107 @@ def read_numbers(
         For text where numbers belong (with line, column and the text), rows with more or fewer
         cells than the header, and a file without rows.
     """
-    body, flags = _complete_rows(_after_line(text, layout.first_line), layout)
-    if not body.strip():
+    where, columns, allowed = str(source.path), Columns(wanted), limits()
+    stream = source.lines(layout.first_line)
+    try:
+        line = layout.first_line + 1
+        while text := stream.read():
+            columns.add(_read(text, line, layout, wanted, where))
+            line += int(np.count_nonzero(np.frombuffer(text, np.uint8) == _LINE_END))
+            allowed.check_rows(columns.rows, len(wanted), where)
+        last, flags = _last_row(stream, layout)
+        columns.add(_read(last, line, layout, wanted, where))
+    finally:
+        stream.close()
+    if not columns.rows:
         raise DataError(f"{where}: there are no rows of data under the header")
-    values = _read_fast(body, layout, wanted)
-    if values is None:
-        values = _read_carefully(body, layout, wanted, where)
-    return values, flags
+    return Numbers(columns, stream.sha256, flags)
 
 
-def _after_line(text: str, line: int) -> str:
-    start = 0
-    for _ in range(line):
-        end = text.find("\n", start)
-        start = end + 1 if end >= 0 else len(text)
-    return text[start:]
-
-
-def _complete_rows(body: str, layout: FoundLayout) -> tuple[str, tuple[Flag, ...]]:
-    """Leave out a last row that has fewer cells than the header."""
-    stripped = body.rstrip("\n")
-    start = stripped.rfind("\n") + 1
-    cells = layout.cells(stripped[start:])
-    if stripped.strip() and len(cells) < layout.fewest_cells:
+def _last_row(stream: LineStream, layout: FoundLayout) -> tuple[bytes, tuple[Flag, ...]]:
+    """Return the last row, which is left out if it has fewer cells than the header."""
+    row = stream.last_row
+    if not row.strip():
+        return b"", ()
+    cells = len(layout.cells(decoded(row)))
+    if cells < layout.fewest_cells:
         message = (
-            f"the file ends within a row ({len(cells)} of {len(layout.headers)} cells); "
+            f"the file ends within a row ({cells} of {len(layout.headers)} cells); "
             "that row is left out"
         )
-        return stripped[:start], (Flag("row_cut", Severity.WARNING, message),)
-    if stripped and not body.endswith("\n"):
-        message = "the file does not end with a line end: its last number may have lost digits"
-        return body, (Flag("no_final_newline", Severity.NOTE, message),)
-    return body, ()
+        return b"", (Flag("row_cut", Severity.WARNING, message),)
+    if stream.line_end:
+        return row, ()
+    message = "the file does not end with a line end: its last number may have lost digits"
+    return row, (Flag("no_final_newline", Severity.NOTE, message),)
 
 
-def _read_fast(body: str, layout: FoundLayout, wanted: Sequence[Header]) -> FloatArray | None:
-    """Read with pandas; ``None`` where it finds anything odd, whatever that is."""
-    import pandas as pd
+def _read(
+    text: bytes, line: int, layout: FoundLayout, wanted: Sequence[Header], where: str
+) -> Iterable[Iterable[FloatArray]]:
+    """Read whole lines, the first of which is line ``line`` of the file."""
+    if not text.strip():
+        return [[]] * len(wanted)
+    columns = _read_fast(text, layout, wanted)
+    if columns is not None:
+        return columns
+    return [[column] for column in _read_carefully(text, line, layout, wanted, where)]
 
-    count = len(layout.headers)
-    first_row = next(line for line in io.StringIO(body) if line.strip())
-    if len(layout.cells(first_row)) != count:
-        return None
-    columns = {header.number - 1 for header in wanted}
+
+def _read_fast(
+    text: bytes, layout: FoundLayout, wanted: Sequence[Header]
+) -> list[list[FloatArray]] | None:
+    """Read with Arrow; ``None`` where it finds anything odd, whatever that is."""
+    import pyarrow as pa
+    from pyarrow import csv
+
+    asked = [str(header.number) for header in wanted]
     try:
-        frame = pd.read_csv(
-            io.StringIO(body),
-            sep=r"\s+" if layout.separator == " " else layout.separator,
-            decimal=layout.decimal,
-            header=None,
-            names=list(range(count)),
-            index_col=False,
-            dtype={column: np.float64 if column in columns else str for column in range(count)},
-            na_values=list(layout.missing),
-            keep_default_na=False,
-            skipinitialspace=True,
+        table = csv.read_csv(
+            pa.BufferReader(_one_blank(text) if layout.separator == " " else text),
+            csv.ReadOptions(
+                column_names=[str(header.number) for header in layout.headers],
+                use_threads=False,  # one block at a time is the least work
+            ),
+            csv.ParseOptions(delimiter=layout.separator),
+            csv.ConvertOptions(
+                column_types=dict.fromkeys(asked, pa.float64()),
+                include_columns=asked,
+                null_values=[*layout.missing, *(f" {cell}" for cell in layout.missing)],
+                decimal_point=layout.decimal,
+                check_utf8=False,
+            ),
         )
-    except (ValueError, pd.errors.ParserError):
+    except pa.ArrowInvalid:
         return None
-    if frame[layout.fewest_cells - 1].isna().any() and _any_short(body, layout):
-        return None
-    return np.array([frame[header.number - 1].to_numpy() for header in wanted], dtype=np.float64)
+    return [[_array(chunk) for chunk in column.chunks if len(chunk)] for column in table.columns]
 
 
-def _any_short(body: str, layout: FoundLayout) -> bool:
-    """Whether a row has too few cells; pandas fills them up without a word."""
-    fewest, separator = layout.fewest_cells, layout.separator
-    rows = (line for line in io.StringIO(body) if line.strip())
-    if separator == " " or '"' in body:
-        return any(len(layout.cells(line)) < fewest for line in rows)
-    return any(line.count(separator) < fewest - 1 for line in rows)
+def _array(chunk: Any) -> FloatArray:
+    """Return Arrow's numbers, NaN for what is missing; Arrow's own way would load pandas for it."""
+    present, numbers = chunk.buffers()
+    inside = slice(chunk.offset, chunk.offset + len(chunk))
+    values = np.frombuffer(numbers, np.float64)[inside]
+    if not chunk.null_count:
+        return values
+    bits = np.unpackbits(np.frombuffer(present, np.uint8), bitorder="little")
+    return np.where(bits[inside], values, np.nan)
+
+
+def _one_blank(text: bytes) -> bytes:
+    """Leave one blank between cells, and none beside a line end."""
+    text = text.replace(b"\t", b" ")
+    while b"  " in text:
+        text = text.replace(b"  ", b" ")
+    return text.replace(b" \n", b"\n").replace(b"\n ", b"\n").strip(b" ")
 
 
 def _read_carefully(
-    body: str, layout: FoundLayout, wanted: Sequence[Header], where: str
+    text: bytes, first: int, layout: FoundLayout, wanted: Sequence[Header], where: str
 ) -> FloatArray:
     """Read cell by cell, and say where the first thing wrong is."""
     rows = []
-    for number, line in enumerate(io.StringIO(body), layout.first_line + 1):
+    for number, line in enumerate(decoded(text).split("\n"), first):
         if not line.strip():
             continue
         cells = layout.cells(line)
@@ -174,7 +184,7 @@ def _read_carefully(
         rows.append(
             [_number(cells, header, layout, f"{where}: line {number}") for header in wanted]
         )
-    return np.array(rows, dtype=np.float64).T.copy()
+    return np.array(rows, dtype=np.float64).reshape(-1, len(wanted)).T
 
 
 def _number(cells: list[str], header: Header, layout: FoundLayout, where: str) -> float:

@@ -13,11 +13,12 @@ from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
 from analysis.resolver.opening import check_opening, with_own_gate
-from analysis.resolver.reference import PhaseReference
+from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
 from analysis.resolver.saturation import saturation_flags
 from analysis.resolver.set_point import set_point_flags
 from analysis.resolver.settings import Settings as Settings
 from analysis.resolver.settings import check_settings
+from analysis.resolver.signal_reference import JUMP_CYCLES
 from analysis.resolver.steady import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from analysis.resolver.turning import frequency_flags
@@ -73,11 +74,12 @@ def analyse(
         or longer than the steady stretch, harmonics beyond the sampling.
     """
     check_settings(settings)
-    settings = with_own_gate(recording, settings)
+    asked, settings = settings, with_own_gate(recording, settings)
     check_opening(recording, settings)
-    reference = choose_reference(recording, choice, settings.opens_s)
+    fixed = asked is settings
+    reference = _reference(recording, choice, settings, fixed=fixed)
     chosen = recording.select(settings.channels or _default_channels(recording, reference))
-    edges = _edges(chosen, reference, settings)
+    edges = _edges(chosen, reference, settings, fixed=fixed)
     sums = period_sums(chosen, reference, settings.harmonics, edges_cycles=edges)
     values = solve_periods(sums)
     stretch, flags = _stretch(chosen, values, settings)
@@ -118,13 +120,43 @@ def _default_channels(recording: Recording, reference: PhaseReference) -> tuple[
     return names
 
 
-def _edges(recording: Recording, reference: PhaseReference, settings: Settings) -> FloatArray:
+def _reference(
+    recording: Recording, choice: ReferenceChoice, settings: Settings, *, fixed: bool
+) -> PhaseReference:
+    """Return what tells the phase; a signal does so by what it shows within a given gate.
+
+    Before and after the gate the shaft may start, stop or run at another speed.
+    """
+    reference = choose_reference(recording, choice, settings.opens_s)
+    if settings.opens_s is None or reference.source is not ReferenceSource.SIGNAL:
+        return reference
+    edges_s = reference.times_at(_edges(recording, reference, settings, fixed=fixed))
+    within = recording.between(float(edges_s[0]), float(edges_s[-1]))
+    try:
+        found = choose_reference(within, choice)
+    except NoReferenceError:  # too few periods to be sure of by themselves
+        return reference
+    ends = found.cycles_at(edges_s[[0, -1]]) + np.array([-JUMP_CYCLES, JUMP_CYCLES])
+    cycles = np.unique(np.concatenate((ends, found.cycles)))  # straight on to the gate's ends
+    times_s = found.times_at(cycles)
+    return replace(found, times_s=times_s, cycles=cycles, flags=reference.flags)
+
+
+def _edges(
+    recording: Recording, reference: PhaseReference, settings: Settings, *, fixed: bool
+) -> FloatArray:
+    """Return where periods begin and end; those of run control's own gate as far as they fit.
+
+    That gate was counted with the phase that run control had; with another one a period more or
+    less lies in it.
+    """
     if settings.opens_s is None:
         return whole_periods(recording, reference)
     first = float(reference.cycles_at(np.array([settings.opens_s]))[0])
     edges = whole_periods(recording, reference, first)
     edges = edges[edges >= first - 1e-9]
     count = len(edges) - 1 if settings.periods is None else settings.periods
+    count = count if fixed else min(count, len(edges) - 1)
     if not 1 <= count < len(edges):
         raise ConfigurationError(
             f"{recording.name}: {max(len(edges) - 1, 0)} whole periods follow "

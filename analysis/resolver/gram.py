@@ -15,19 +15,26 @@ ComplexArray = NDArray[np.complex128]
 
 def phasor_series(
     first_cycle: FloatArray, step: FloatArray, count: NDArray[np.int64], highest: int
-) -> ComplexArray:
+) -> tuple[ComplexArray, ComplexArray]:
     """Sum ``exp(i n theta)`` over ``count`` samples whose cycles are ``first_cycle + k * step``.
 
     Returns
     -------
-    numpy.ndarray
-        For n = 0 to ``highest``, shape ``(periods, highest + 1)``.
+    sums, moments
+        For n = 0 to ``highest``, shape ``(periods, highest + 1)``: of the phasors, and of the
+        phasors times the samples' distance from the middle one.
     """
     orders = np.arange(1, highest + 1)
     middle = (first_cycle + step * (count - 1) / 2.0)[:, None] * orders
+    turned = np.exp(2j * np.pi * (middle % 1.0))
     half = np.pi * step[:, None] * orders
-    sums = np.sin(count[:, None] * half) / np.sin(half) * np.exp(2j * np.pi * (middle % 1.0))
-    return np.concatenate((count[:, None].astype(np.complex128), sums), axis=1)
+    sine, whole = np.sin(half), count[:, None] * half
+    kernel = np.sin(whole) / sine
+    # Its derivative by the angle from one sample to the next.
+    slope = (count[:, None] * np.cos(whole) - kernel * np.cos(half)) / (2.0 * sine)
+    plain = count[:, None].astype(np.complex128)
+    sums = np.concatenate((plain, kernel * turned), axis=1)
+    return sums, np.concatenate((0.0 * plain, -1j * slope * turned), axis=1)
 
 
 def gram_of(sums: ComplexArray, harmonics: int) -> FloatArray:

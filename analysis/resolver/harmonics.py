@@ -126,8 +126,9 @@ class Harmonics:
         blocks = self.phasor_covariance()
         along = np.sqrt(np.einsum("cni,cnij,cnj->cn", direction, blocks, direction))
         sideways = np.sqrt(np.einsum("cni,cnij,cnj->cn", across, blocks, across))
-        with np.errstate(divide="ignore"):
-            return along, np.minimum(sideways / self.amplitude, np.pi)
+        anywhere = np.full_like(sideways, np.pi)  # the phase of nothing
+        turned = np.divide(sideways, self.amplitude, out=anywhere, where=self.amplitude > 0.0)
+        return along, np.minimum(turned, np.pi)
 
     def phasor_covariance(self) -> FloatArray:
         """Return the covariance of ``(S_n, C_n)``, shape ``(channels, N, 2, 2)``."""

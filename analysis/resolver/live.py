@@ -1,8 +1,9 @@
 """The resolver at the carriage: blocks of samples and photocell pulses in, readings out.
 
 Between pulses a reading is provisional, from the phase that the last period predicts. When the
-pulse has come, and with it the few samples that the gate's edge needs, the period is summed as a
-batch would sum it, by the same function from the same samples; only such readings are final.
+pulse has come, and with it the few samples that the gate's edge and the search for spikes need, the
+period is summed as a batch would sum it, by the same function from the same samples; only such
+readings are final. Spikes are taken out as a recording's reader does, judged by the run so far.
 """
 
 from collections import deque
@@ -17,16 +18,19 @@ from analysis.resolver.estimate import resolve
 from analysis.resolver.general import sum_any
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.photocell import EARLY, LATE
+from analysis.resolver.spike_watch import LiveSpike, SpikeWatch
 from analysis.resolver.straight import Gates, Sums, sum_straight
 from analysis.resolver.sums import PeriodSums
-from analysis.resolver.template import straight_template
+from analysis.resolver.template import template
 from analysis.resolver.weights import REACH
+from analysis.spikes import AROUND
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 
 FloatArray = NDArray[np.float64]
 
 _NEIGHBOURS = 7  # periods whose median is the present one
+_AHEAD = REACH + AROUND  # samples after a period's edge that show whether one of its is a spike
 _SLACK = 1e-6  # samples: a pulse on the very first or last one is stamped so near it
 
 
@@ -90,6 +94,8 @@ class LiveResolver:
         self._done: deque[_Period] = deque(maxlen=periods)
         self._partial: Sums | None = None
         self._partial_to = 0
+        self._watch = SpikeWatch(len(channels))
+        self._spikes: list[LiveSpike] = []
 
     def push(self, samples: FloatArray) -> list[Harmonics]:
         """Take a block, shape ``(channels, samples)``; return the readings it made final.
@@ -191,7 +197,12 @@ class LiveResolver:
         turns = 1 if interval < LATE * usual else round(interval / usual)
         return [last + interval * k / turns for k in range(1, turns + 1)]
 
-    def _close_periods(self, reach: int = REACH) -> list[Harmonics]:
+    def spikes(self) -> list[LiveSpike]:
+        """Return the spikes that were taken out since this was last asked, in their order."""
+        taken, self._spikes = self._spikes, []
+        return taken
+
+    def _close_periods(self, reach: int = _AHEAD) -> list[Harmonics]:
         readings = []
         while (
             len(self._pulses) > 1
@@ -218,12 +229,14 @@ class LiveResolver:
         rate = self._run.sample_rate_hz
         held = self._buffer[:, : self._count - self._first]
         edges = np.array([self._number(time) - self._first for time in (opened_s, closed_s)])
+        held = held[:, : int(edges[1]) + _AHEAD + 1]
+        self._spikes += self._watch.take_out(held, self._first)
         edges = np.clip(edges, 0.0, held.shape[1] - 1.0)
         gate = Gates(*np.array([*edges, self._cycle, self._cycle + 1.0])[:, None])
         if edges[0] < REACH - 1 or edges[1] >= held.shape[1] - REACH:  # a run's very ends
             gram, moment, ramp = sum_any(held, gate, gate.cycles_of_first, self._orders)
         else:
-            sums = sum_straight(held, gate, len(self._orders), compiled=False)
+            sums = sum_straight(held, gate, len(self._orders))
             gram, moment, ramp = (part[0] for part in sums)
         ramp = (ramp + gram[0] * self._first) / rate
         return _Period(opened_s, closed_s, self._cycle, (gram, moment, ramp))
@@ -262,8 +275,8 @@ class LiveResolver:
         if start >= self._count:
             return
         step = 1.0 / (self._run.sample_rate_hz * (last.closed_s - last.opened_s))
-        first_cycle = self._cycle + (start - opening) * step
-        basis = straight_template(first_cycle, step, self._count - start, len(self._orders))
+        cycles = self._cycle + step * (np.arange(start, self._count, dtype=np.float64) - opening)
+        basis = template(cycles, self._orders)
         values = self._buffer[:, start - self._first : self._count - self._first]
         gram, moment = basis @ basis.T, values @ basis.T
         if self._partial is not None:

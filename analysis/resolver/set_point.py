@@ -1,6 +1,8 @@
 """What a run was told to do, against what was found in its recording."""
 
-from collections.abc import Iterator
+import cmath
+import math
+from collections.abc import Iterator, Mapping
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
@@ -13,6 +15,7 @@ from hardware.description.flags import Flag, Severity
 
 _FREQUENCY = 0.01  # relative: a drive without a controller slips as far
 _ECCENTRICITY = 0.05  # relative: a scale read a notch off
+_STRUT_PHASE_RAD = 0.05  # moves a strut as far as that part of its amplitude
 
 
 def set_point_flags(
@@ -20,8 +23,8 @@ def set_point_flags(
 ) -> tuple[Flag, ...]:
     """Return ``set_point_differs`` for what is not as the set-point says.
 
-    Compared are the frequency over the first gate, and the amplitudes of the struts' displacements
-    where they are recorded, as the reference or otherwise.
+    Compared are the frequency over the first gate, and amplitudes and phase of the struts'
+    displacements where they are recorded, as the reference or otherwise.
 
     Parameters
     ----------
@@ -37,38 +40,60 @@ def set_point_flags(
     if abs(reading.frequency_hz - told) > _FREQUENCY * told:
         flags.append(_flag("frequency", told, reading.frequency_hz, "Hz", _FREQUENCY, None))
     eccentricity_m = recording.set_point.eccentricity_m
-    for name, found_m in _amplitudes(recording, reference, gate, reading):
+    moved = dict(_phasors(recording, reference, gate, reading))
+    for name, phasor_m in moved.items():
+        found_m = abs(phasor_m)
         if abs(found_m - eccentricity_m) > _ECCENTRICITY * eccentricity_m:
             told_mm, found_mm = 1e3 * eccentricity_m, 1e3 * found_m
             flags.append(_flag("eccentricity", told_mm, found_mm, "mm", _ECCENTRICITY, name))
-    return tuple(flags)
+    return (*flags, *_phase_flags(recording.set_point.strut_phase_rad, moved))
 
 
-def _amplitudes(
+def _phase_flags(told_rad: float, moved: Mapping[str, complex]) -> Iterator[Flag]:
+    """Compare the fore strut's phase ahead of the aft one's, where both were recorded and moved."""
+    aft, fore = (moved.get(strut.name, 0j) for strut in (DISPLACEMENT_AFT, DISPLACEMENT_FORE))
+    if not (abs(aft) > 0.0 and abs(fore) > 0.0):
+        return
+    off_rad = cmath.phase(fore / aft * cmath.exp(-1j * told_rad))
+    if abs(off_rad) > _STRUT_PHASE_RAD:
+        found, told = math.degrees(told_rad + off_rad), math.degrees(told_rad)
+        text = (
+            f"the set-point's strut phase is {told:.4g} deg, found are {found:.5g} deg (limit "
+            f"{math.degrees(_STRUT_PHASE_RAD):.2g} deg off): is this the recording of that run, "
+            "and has each displacement its sign?"
+        )
+        yield Flag("set_point_differs", Severity.WARNING, text)
+
+
+def _phasors(
     recording: Recording, reference: PhaseReference, gate: PeriodSums, reading: Harmonics
-) -> Iterator[tuple[str, float]]:
-    """Amplitudes of the first harmonics of the displacements that are there, in metres."""
+) -> Iterator[tuple[str, complex]]:
+    """Phasors of the first harmonics of the displacements that are there, in metres."""
     for strut in (DISPLACEMENT_AFT, DISPLACEMENT_FORE):
         name = strut.name
         if name in reading.channel_names:
             row = reading.channel_names.index(name)
-            unit, amplitude = reading.units[row], float(reading.amplitude[row, 0])
+            unit, phasor = reading.units[row], _phasor(reading, row)
         elif name in recording.channel_names:
             unit = recording.channels[recording.index(name)].unit
-            amplitude = _amplitude(recording.select([name]), reference, gate)
+            phasor = _resolved(recording.select([name]), reference, gate)
         else:
             continue
-        if unit == strut.unit and amplitude == amplitude:
-            yield name, amplitude
+        if unit == strut.unit and not cmath.isnan(phasor):
+            yield name, phasor
 
 
-def _amplitude(recording: Recording, reference: PhaseReference, gate: PeriodSums) -> float:
-    """Amplitude over a gate; NaN where it has no period without missing samples."""
+def _phasor(reading: Harmonics, row: int) -> complex:
+    return complex(*reading.coefficients[row, 1:3])
+
+
+def _resolved(recording: Recording, reference: PhaseReference, gate: PeriodSums) -> complex:
+    """Phasor over a gate; NaN where it has no period without missing samples."""
     sums = period_sums(recording, reference, 1, edges_cycles=gate.edges_cycles)
     try:
-        return float(resolve(recording, sums).amplitude[0, 0])
+        return _phasor(resolve(recording, sums), 0)
     except DataError:
-        return float("nan")
+        return complex("nan")
 
 
 def _flag(

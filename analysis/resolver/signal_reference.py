@@ -24,7 +24,7 @@ ComplexArray = NDArray[np.complex128]
 _COARSE_SAMPLES = 1 << 20  # enough for the first look at the frequency of a record of any length
 _FASTEST = 0.9  # of the Nyquist frequency: beyond it a period has too few samples to follow
 _MOVING = 0.5  # of the usual amplitude: below it the signal is starting, stopping or at rest
-_JUMP_CYCLES = 0.1  # from one period to the next: noise, not a motion
+JUMP_CYCLES = 0.1  # from one period to the next: noise, not a motion
 _BY_CHANCE = 0.1  # periods of noise alone that would keep time so well: more is no motion
 _FEW_PERIODS = 5  # that keep time: fewer may be noise that happens to
 _ROUNDING = 1e-12  # of the largest value: a spectrum as small is that of a constant or a ramp
@@ -145,7 +145,7 @@ def _longest_motion(phasor: ComplexArray) -> slice:
     amplitude = np.abs(phasor)
     moving = amplitude > _MOVING * np.quantile(amplitude, 0.9)
     turn = np.angle(phasor[1:] * phasor[:-1].conj()) / (2.0 * np.pi)
-    joined = moving[1:] & moving[:-1] & (np.abs(turn) < _JUMP_CYCLES)
+    joined = moving[1:] & moving[:-1] & (np.abs(turn) < JUMP_CYCLES)
     breaks = np.flatnonzero(np.concatenate(([True], ~joined, [True])))
     longest = int(np.argmax(np.diff(breaks)))
     return slice(int(breaks[longest]), int(breaks[longest + 1]))

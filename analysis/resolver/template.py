@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-
-_FINE = 128  # samples that share one coarse phasor
+ComplexArray = NDArray[np.complex128]
 
 
 def template(cycles: FloatArray, orders: FloatArray) -> FloatArray:
@@ -19,35 +18,27 @@ def template(cycles: FloatArray, orders: FloatArray) -> FloatArray:
     return basis
 
 
-def straight_template(first_cycle: float, step: float, count: int, harmonics: int) -> FloatArray:
-    """Return the basis where the phase runs straight, shape ``(2 * harmonics + 1, samples)``.
+def phasors(cycles: FloatArray, highest: int) -> ComplexArray:
+    """Return ``exp(i n theta)`` for n = 0 to ``highest``, shape ``(*cycles.shape, highest + 1)``.
 
-    The phase of sample ``k`` is ``first_cycle + k * step``, in cycles. A fine and a coarse row of
-    phasors are multiplied (angle sums), so that sines are taken of a few samples only.
+    A sine and a cosine are taken of each phase, the orders above the first are their powers.
     """
-    rows = -(-count // _FINE)
-    fine = 2.0 * np.pi * (np.arange(_FINE) * step)
-    coarse = 2.0 * np.pi * ((first_cycle + np.arange(rows) * (_FINE * step)) % 1.0)
-    basis = np.empty((2 * harmonics + 1, rows, _FINE))
-    basis[0] = 1.0
-    sine, cosine = np.sin(coarse)[:, None], np.cos(coarse)[:, None]
-    _angle_sum(sine, cosine, np.sin(fine), np.cos(fine), basis[1], basis[2])
-    for n in range(2, harmonics + 1):
-        below, here = 2 * n - 3, 2 * n - 1
-        _angle_sum(basis[below], basis[below + 1], basis[1], basis[2], basis[here], basis[here + 1])
-    return basis.reshape(2 * harmonics + 1, rows * _FINE)[:, :count]
+    angle = 2.0 * np.pi * (cycles % 1.0)
+    found = np.ones((*cycles.shape, highest + 1), dtype=np.complex128)
+    if highest > 0:
+        found.real[..., 1], found.imag[..., 1] = np.cos(angle), np.sin(angle)
+    for n in range(2, highest + 1):
+        np.multiply(found[..., n - 1], found[..., 1], out=found[..., n])
+    return found
 
 
-def _angle_sum(
-    sine: FloatArray,
-    cosine: FloatArray,
-    other_sine: FloatArray,
-    other_cosine: FloatArray,
-    sum_sine: FloatArray,
-    sum_cosine: FloatArray,
-) -> None:
-    """Write the sine and cosine of the sum of two angles."""
-    np.multiply(sine, other_cosine, out=sum_sine)
-    sum_sine += cosine * other_sine
-    np.multiply(cosine, other_cosine, out=sum_cosine)
-    sum_cosine -= sine * other_sine
+def basis_of(turned: ComplexArray) -> FloatArray:
+    """Turn phasors of orders 0 to N into the basis: shape ``(..., N + 1)`` to ``(..., 2 N + 1)``.
+
+    Sums of phasors become sums of the basis.
+    """
+    basis = np.empty((*turned.shape[:-1], 2 * turned.shape[-1] - 1))
+    basis[..., 0] = turned[..., 0].real
+    basis[..., 1::2] = turned[..., 1:].imag
+    basis[..., 2::2] = turned[..., 1:].real
+    return basis

@@ -9,6 +9,9 @@ A run is an :class:`xarray.Dataset` with
   one per pulse, not tied to the samples;
 * the attributes below.
 
+A file also has the group ``checksums``, which says what each variable and attribute was when it was
+written (:mod:`analysis.readers.checksums`).
+
 ``docs/formats.md`` describes the same for people.
 """
 
@@ -30,6 +33,9 @@ ATTR_SAMPLE_RATE: Final = "sample_rate_hz"
 ATTR_SET_POINT: Final = "set_point"  # JSON of a SetPoint
 ATTR_PROVENANCE: Final = "provenance"  # JSON, text to text
 ATTR_FLAGS: Final = "flags"  # JSON, a list of flags
+ATTR_CHECKSUMS: Final = "checksums"  # of a file: what kind of checksums its group holds
+
+CHECKSUMS: Final = "checksums"  # the group
 
 # Keys of the provenance that run control writes: the gate that the photocell opened and closed.
 GATE_OPENED: Final = "gate_opened_s"

@@ -1,7 +1,11 @@
 """What was noticed about a recording or a result, kept with it."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any, Final
+
+DAMAGED: Final = "damaged"  # a file is not what was written
 
 
 class Severity(StrEnum):
@@ -14,9 +18,31 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True)
 class Flag:
-    """One finding: a stable ``code``, how much it matters, and a message with value and limit."""
+    """One finding: a stable ``code``, how much it matters, and a message with value and limit.
+
+    Attributes
+    ----------
+    runs
+        Names of the runs that it is about, where several are at hand.
+    """
 
     code: str
     severity: Severity
     message: str
     channel: str | None = None
+    runs: tuple[str, ...] = ()
+
+    @property
+    def damaged(self) -> bool:
+        """Whether it says that a file is not what was written."""
+        return self.code == DAMAGED
+
+    @classmethod
+    def read(cls, table: Mapping[str, Any]) -> "Flag":
+        """Return a flag that a file holds as a table of its fields; older files name no runs."""
+        told = {"runs": (), **table}
+        return cls(**{**told, "severity": Severity(told["severity"]), "runs": tuple(told["runs"])})
+
+    def of(self, *runs: str) -> "Flag":
+        """Return the flag with its runs named; one that names its own keeps them."""
+        return self if self.runs else replace(self, runs=runs)

@@ -1,7 +1,10 @@
 """The oscillator: its plane, its struts and its limits."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
 
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
@@ -62,4 +65,8 @@ HORIZONTAL_1963 = Oscillator(
     frequency_hz=Range(0.01, 2.0),
     eccentricity_m=Range(0.0, 0.300),
     force_per_strut_n=50.0 * STANDARD_GRAVITY_M_S2,
+)
+
+PRESETS: Final[Mapping[str, Oscillator]] = MappingProxyType(
+    {"vertical-1963": VERTICAL_1963, "horizontal-1963": HORIZONTAL_1963}
 )

@@ -1,12 +1,15 @@
 """The command line: ``pmm COMMAND``, each command imported when it is asked for."""
 
+import os
 import sys
 from importlib import import_module
 from typing import Any
 
 import click
 
+from analysis.limits import MEMORY_SETTING
 from hardware.description.errors import DataError, PmmError
+from hardware.description.room import said
 from pmm.cli.group import NamingGroup
 
 # Command -> module with a click command of the same name. These modules import nothing heavy at
@@ -60,7 +63,7 @@ class Commands(NamingGroup):
         except BrokenPipeError:
             raise
         except OSError as error:
-            named = DataError(f"{error.filename}: {error.strerror}" if error.filename else error)
+            named = DataError(said(error))
             _show(named.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
             ctx.exit(named.exit_status)
         except KeyboardInterrupt:
@@ -87,6 +90,12 @@ def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool)
         ctx.exit()
 
 
+def _set_memory(ctx: click.Context, parameter: click.Parameter, gigabytes: float | None) -> None:  # noqa: ARG001
+    """Set the limit for this process and those that it starts."""
+    if gigabytes is not None:
+        os.environ[MEMORY_SETTING] = repr(gigabytes)
+
+
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @click.option(
@@ -96,6 +105,15 @@ def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool)
     expose_value=False,
     callback=_print_version,
     help="Show the version, and what it runs on.",
+)
+@click.option(
+    "--read-memory",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="GB",
+    expose_value=False,
+    callback=_set_memory,
+    help="Memory that reading one recording may take; PMM_READ_MEMORY_GB does the same."
+    "  [default: 1]",
 )
 def cli(debug: bool) -> None:
     """Planar motion mechanism: simulate runs and resolve recordings into harmonics.
@@ -108,4 +126,14 @@ def main() -> None:
     """Run the command line of this process."""
     from pmm.cli.hints import pasted
 
+    _hold_standard_numbers()
     cli.main(args=sys.argv[1:], prog_name=pasted(), complete_var="_PMM_COMPLETE")
+
+
+def _hold_standard_numbers() -> None:
+    """Keep the numbers of closed standard streams from files: a message would end in one."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest that is free

@@ -1,8 +1,9 @@
 """What ``pmm analyse`` does: read, resolve, then print, plot and save."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,19 +13,23 @@ from analysis.readers import write_recording
 from analysis.resolver.analyse import Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import NoReferenceError
+from analysis.threads import cores
 from hardware.description.errors import ConfigurationError, DataError, PmmError
+from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.request import Request
-from pmm.cli.screen import error_line, messages, output, print_flags, show_progress
+from pmm.cli.screen import busy, error_line, messages, output, print_flags
+from pmm.parallel import open_executor
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
     from analysis.plausibility import Seen
     from analysis.readers import ColumnMap
+    from analysis.readers.text_source import Progress
     from analysis.recording import Recording
     from hardware.description.flags import Flag
 
@@ -63,10 +68,7 @@ def run(request: Request) -> None:
     columns = chosen_columns(request.column_map, request.columns)
     done: list[Analysed] = []
     failed: list[Failure] = []
-    # The tables of one run after the other tell how far it is; a document comes at the end.
-    sources = show_progress(found.sources, "analysing") if request.as_json else found.sources
-    for source in sources:
-        one = _try_source(source, request, columns)
+    for one in _each(found.sources, request, columns):
         if isinstance(one, Failure):
             failed.append(one)
             _report(one)
@@ -82,8 +84,34 @@ def run(request: Request) -> None:
         _print_doubts(doubts)
     for path in found.not_recorded:
         messages().print(f"not recorded yet: {path}")
-    if failed:
-        click.get_current_context().exit(min(failure.exit_status for failure in failed))
+    tell_unchecked(one.source.path for one in done)
+    statuses = tell_damaged((one.rows.file, one.rows.flags) for one in done)
+    if statuses := statuses + [failure.exit_status for failure in failed]:
+        click.get_current_context().exit(min(statuses))
+
+
+def _each(
+    sources: Sequence[Source], request: Request, columns: "ColumnMap | None"
+) -> Iterator[Analysed | Failure]:
+    """Analyse one run after the other; said on a terminal while it lasts.
+
+    Figures take a hundred times as long as the numbers, so several runs' are drawn by a process
+    for each core.
+    """
+    doing, jobs = "analysing", 1
+    if request.plot is not None:
+        doing, jobs = "analysing and plotting", min(cores(), len(sources))
+    with open_executor(max(1, jobs)) as executor:
+        # Of the run at hand; another process has no screen.
+        shown: list[Callable[[float], None]] = [_untold]
+        tell = _untold if jobs > 1 else lambda part: shown[-1](part)
+        work = partial(_try_source, request=request, columns=columns, progress=tell)
+        results = executor.map(work, sources)
+        for number, source in enumerate(sources, 1):
+            with busy(f"{doing} {source.stem}, {number} of {len(sources)}") as told:
+                shown.append(told)
+                one = next(results)
+            yield one
 
 
 def _check(request: Request, found: Found) -> None:
@@ -130,7 +158,7 @@ def _check_not_there(folder: Path, found: Found) -> None:
 
 def _doubts(done: "Sequence[Analysed]") -> "Iterator[tuple[Path, tuple[Flag, ...]]]":
     """Say of each campaign which units and signs look wrong in all its runs."""
-    from analysis.plausibility import plausibility_flags
+    from pmm.implausible import implausible
 
     sources = {one.source.campaign_path: one.source for one in done}
     for path, source in sources.items():
@@ -138,10 +166,7 @@ def _doubts(done: "Sequence[Analysed]") -> "Iterator[tuple[Path, tuple[Flag, ...
         if path is None or campaign is None:
             continue
         seen = [one.seen for one in done if one.source.campaign_path == path and one.seen]
-        oscillator = campaign.oscillator
-        half_spacing_m = oscillator.half_spacing_m if oscillator is not None else None
-        flags = plausibility_flags(seen, campaign.model, half_spacing_m)
-        if flags:
+        if flags := implausible(campaign, seen):
             yield path, flags
 
 
@@ -151,8 +176,12 @@ def _print_doubts(doubts: "Sequence[tuple[Path, tuple[Flag, ...]]]") -> None:
         print_flags(output(), flags)
 
 
+def _untold(_part: float) -> None:
+    """Tell nobody how far it is."""
+
+
 def _try_source(
-    source: Source, request: Request, columns: "ColumnMap | None"
+    source: Source, request: Request, columns: "ColumnMap | None", progress: "Progress"
 ) -> Analysed | Failure:
     """Read and analyse one recording; what the reader noticed is kept whatever happens then."""
     flags: tuple[Flag, ...] = ()
@@ -163,6 +192,7 @@ def _try_source(
             sample_rate_hz=request.sample_rate,
             edges=request.edges,
             calibration=request.calibration,
+            progress=progress,
         )
         flags = recording.flags
         return _analyse_recording(recording, source, request, columns)
@@ -176,7 +206,7 @@ def _analyse_recording(
 ) -> Analysed:
     from analysis.first_harmonics import seen_in
 
-    campaign = source.campaign
+    campaign = source.as_recorded
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else Settings())
     _check_channels(recording, (*settings.channels, choice.channel), columns)

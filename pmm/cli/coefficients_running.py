@@ -11,7 +11,9 @@ import click
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign import CAMPAIGN_FILE
+from pmm.cli.being_written import tell_writers
 from pmm.cli.coefficients import DEFAULT_TRIALS
+from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.coefficients.provenance import provenance
@@ -29,6 +31,7 @@ from pmm.coefficients.solving import Progress
 from pmm.coefficients.systems import check_dimensions, in_system
 from pmm.coefficients.workflow import Outcome, coefficients_of
 from pmm.parallel import open_executor
+from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
     from rich.progress import TaskID
@@ -61,14 +64,16 @@ def run(options: Mapping[str, Any]) -> None:
 
 
 def finish(outcome: Outcome) -> None:
-    """Name the runs that could not be used, and end with the status that they ask for."""
+    """Name the runs that could not be used or are damaged; end with the status they ask for."""
     for name in outcome.not_recorded:
         messages().print(f"not recorded yet: {name}")
     for one in outcome.failed:
         shown = one.message if one.name in one.message else f"{one.name}: {one.message}"
         error_line(shown)
-    if outcome.failed:
-        click.get_current_context().exit(min(one.exit_status for one in outcome.failed))
+    tell_unchecked(one.file for one in outcome.runs)
+    statuses = tell_damaged((one.file, one.flags) for one in outcome.runs)
+    if statuses := statuses + [one.exit_status for one in outcome.failed]:
+        click.get_current_context().exit(min(statuses))
 
 
 def analysed(
@@ -76,6 +81,7 @@ def analysed(
 ) -> tuple[Outcome, tuple[Path, ...]]:
     """Analyse the campaigns of a command; return the files that were read beside recordings."""
     folders = [_folder(text) for text in options["campaigns"]]
+    tell_writers(folders)
     base, path = settings_of(folders[0], options["settings"])
     settings = merged(base, options)
     check_trials(settings.trials)
@@ -185,7 +191,7 @@ def _written(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:
 
         path = Path(options["csv_file"])
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(csv_text(outcome.result), encoding="utf-8")
+        write_whole(path, csv_text(outcome.result))
         yield str(path)
     if options["netcdf"] is not None:
         from pmm.coefficients.document import write_netcdf

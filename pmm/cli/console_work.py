@@ -21,21 +21,30 @@ from hardware.rig import Rig
 from pmm.cli.folders import check_folder
 from pmm.cli.run_console import Interrupts
 from pmm.cli.screen import messages
+from pmm.cli.terminal import Terminal
 from pmm.console.app_settings import Settings
 from pmm.console.asking import Answers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
 from pmm.console.plans import is_plan
-from pmm.console.priority import ADVICE, Priority, before_others, step_back
+from pmm.console.quick_stop import QuickStop
 from pmm.console.security import LOCAL, Door
 from pmm.console.station import Station
 from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
+from pmm.real_time import Priority, before_others, step_back
 from pmm.run.journal import Taps
+from pmm.run.rehearsal import rehearse
 from pmm.run.states import Command, RunStateError
 
 _LEAST_TOKEN: Final = 16
 _WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
 _JOIN_S: Final = 10.0
+_PLAIN: Final = (
+    "warning: --host {host} without --certificate: whoever is on the network between reads the "
+    "token and may send commands of their own. Give --certificate and --key (docs/console.md: how "
+    "to make them), or leave --host out and come by a tunnel from the other machine: "
+    "ssh -L {port}:127.0.0.1:{port} USER@THIS-MACHINE"
+)
 
 
 @dataclass(frozen=True)
@@ -67,17 +76,20 @@ def work(request: Request) -> None:
     rig_file = read_rig_file(request.rig)
     _check(request, rig_file)
     interrupts = Interrupts()
-    with ExitStack() as stack:
+    # The terminal is waited for last: the rig is left by then.
+    with ExitStack() as shown, ExitStack() as stack:
         stack.enter_context(interrupts.counted())
         listening = stack.enter_context(_listening(request))
-        connection = stack.enter_context(_server(request, rig_file, listening))
-        station = stack.enter_context(_station(request, rig_file, connection))
-        _loop(station, interrupts)
+        quick_stop = QuickStop()
+        connection = stack.enter_context(_server(request, rig_file, listening, quick_stop))
+        station = stack.enter_context(_station(request, rig_file, connection, quick_stop))
+        terminal = shown.enter_context(Terminal())
+        _loop(station, interrupts, terminal)
         if station.control.fault is not None:
-            messages().print(f"fault: {station.control.fault}")
+            terminal.say(f"fault: {station.control.fault}")
 
 
-def _loop(station: Station, interrupts: Interrupts) -> None:
+def _loop(station: Station, interrupts: Interrupts, terminal: Terminal) -> None:
     """Step until Ctrl-C, and then until everything rests."""
     heard, told = 0, False
     while True:
@@ -91,7 +103,7 @@ def _loop(station: Station, interrupts: Interrupts) -> None:
             return
         if station.deserted and not told:
             told = True
-            messages().print("the web server has ended; the rig runs on. Ctrl-C stops it")
+            terminal.say("the web server has ended; the rig runs on. Ctrl-C stops it")
 
 
 def _check(request: Request, rig_file: RigFile) -> None:
@@ -200,7 +212,9 @@ def _not_listening(error: OSError) -> str:
 
 
 @contextmanager
-def _server(request: Request, rig_file: RigFile, listening: socket) -> Iterator[Connection]:
+def _server(
+    request: Request, rig_file: RigFile, listening: socket, quick_stop: QuickStop
+) -> Iterator[Connection]:
     """Start the server's process; end it when the loop has ended."""
     from pmm.console.server import serve
 
@@ -209,13 +223,15 @@ def _server(request: Request, rig_file: RigFile, listening: socket) -> Iterator[
     ours, theirs = context.Pipe()
     files = [None if one is None else Path(one) for one in (request.certificate, request.key)]
     process = context.Process(
-        target=serve, args=(settings, listening, theirs, *files), name="console server"
+        target=serve, args=(settings, listening, theirs, quick_stop, *files), name="console server"
     )
     process.start()
     theirs.close()
     scheme = "https" if settings.door.tls else "http"
     host = f"[{request.host}]" if ":" in request.host else request.host
     messages().print(f"console of {rig_file.name}: {scheme}://{host}:{settings.door.port}/")
+    if not settings.door.tls and request.host not in LOCAL:
+        messages().print(_PLAIN.format(host=request.host, port=settings.door.port))
     try:
         yield ours
     finally:
@@ -240,7 +256,9 @@ def _settings(request: Request, rig_file: RigFile, port: int) -> Settings:
 
 
 @contextmanager
-def _station(request: Request, rig_file: RigFile, connection: Connection) -> Iterator[Station]:
+def _station(
+    request: Request, rig_file: RigFile, connection: Connection, quick_stop: QuickStop
+) -> Iterator[Station]:
     from importlib.metadata import version
 
     period_s = 1.0 / rig_file.sample_rate_hz / request.speed
@@ -265,8 +283,10 @@ def _station(request: Request, rig_file: RigFile, connection: Connection) -> Ite
             )
         )
         rig.prepare()
+        for note in rig.notes:
+            messages().print(f"note: {note}")
         station = Station(
-            rig, rig_file, link, answers, pacer, taps, time.monotonic, _utc,
+            rig, rig_file, link, quick_stop, answers, pacer, taps, time.monotonic, _utc,
             {"program": f"pmm {version('pmm')}"}, executor, request.speed,
         )  # fmt: skip
         link.tell(replace(station.hello(), priority=str(priority)))
@@ -279,10 +299,11 @@ def _priority(stack: ExitStack, speed: float) -> Priority:
     """Put the loop first; one that runs faster than the clock would leave nothing to others."""
     if speed != 1.0:
         return Priority.ORDINARY
+    rehearse()
     found = stack.enter_context(before_others())
-    if found is not Priority.REAL_TIME:
-        messages().print(ADVICE.format(found))
-    return found
+    if found.advice:
+        messages().print(found.advice)
+    return found.priority
 
 
 def _utc() -> str:

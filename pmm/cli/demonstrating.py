@@ -60,7 +60,7 @@ def _campaign(name: str, folder: Path) -> list[Shown]:
     rig = folder.with_name(f"{name}-rig")
     with as_file(files("pmm.cli") / "demo_rigs" / name) as shipped:
         shutil.copytree(shipped, rig, dirs_exist_ok=True)
-    work(Request(str(rig / "plan.toml"), (), False, str(folder), False, False, False))
+    work(Request(str(rig / "plan.toml"), output=str(folder)))
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     paths = [one.recording_path(folder) for one in campaign.runs]
     return [

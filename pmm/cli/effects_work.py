@@ -220,8 +220,7 @@ def _described_pendulum(kind: type[Any]) -> dict[str, Any]:
 
 def _parameters(kind: type[Effect]) -> str:
     return "\n".join(
-        f"{one.name} = {one.typical:g} ({one.low:g} to {one.high:g}) {one.unit}"
-        for one in kind.parameters()
+        f"{one.name} = {one.typical:g} ({one.plausible}) {one.unit}" for one in kind.parameters()
     )
 
 
@@ -236,7 +235,8 @@ def _print(console: "Console", shown: Shown) -> None:
     for heading in ("parameter", "value", "typical", "plausible", "unit", "meaning"):
         table.add_column(heading, justify="right" if heading in ("value", "typical") else "left")
     for one in effect.parameters():
-        value, wide = f"{getattr(effect, one.name):g}", f"{one.low:g} to {one.high:g}"
-        table.add_row(one.name, value, f"{one.typical:g}", wide, one.unit, one.meaning)
+        meaning = f"{one.meaning} ({one.one_sign})" if one.one_sign else one.meaning
+        value = f"{getattr(effect, one.name):g}"
+        table.add_row(one.name, value, f"{one.typical:g}", one.plausible, one.unit, meaning)
     console.print(table)
     print_signature(console, shown)

@@ -16,7 +16,7 @@ from pmm.cli.gap_options import looks
     help="Fit and add this effect.  [default: the one that is found]",
 )
 @looks
-@jobs_option("1")
+@jobs_option("one for each core")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
 def add(**options: Any) -> None:
     """Write an effect with its fitted parameters into the campaign file.
@@ -27,6 +27,9 @@ def add(**options: Any) -> None:
 
     Exit status: 0 added; 1 no effect is found; 2 the request was wrong.
     """
+    from pmm.parallel import one_thread
+
+    one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.gap_add_work import Request, run
 
     run(Request(**options))

@@ -4,7 +4,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.settle import Settled
 from hardware.description.errors import DataError
 from pmm.cli.gap_adding import add_and_say, check_appendable
@@ -12,8 +11,10 @@ from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
 from pmm.gap.appending import Added, refuse_twice
+from pmm.gap.pendulum_conclusion import conclusion_of
 from pmm.gap.pendulum_examine import Options, examine_pendulum, fitted_causes
 from pmm.gap.pendulum_file import read_case
+from pmm.gap.pendulum_words import what_is_wrong
 
 JSON_SCHEMA = "pmm-gap-add-pendulum-1"
 
@@ -59,8 +60,10 @@ def _settled(request: Request, path: Path) -> Settled:
         return fitted_causes(path, request.causes, options)
     with progress() as shown:
         found = examine_pendulum(path, options, shown).diagnosis
-    if not found.told:
-        raise DataError(f"{path.stem}: {said(found)[0]}; nothing to add")
+    concluded = conclusion_of(found)
+    if not concluded.adds:
+        said = what_is_wrong(found, concluded)
+        raise DataError(f"{path.stem}: {said} So there is nothing to add")
     return found.settled
 
 

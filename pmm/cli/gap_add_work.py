@@ -7,14 +7,13 @@ from pathlib import Path
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE
 from pmm.cli.gap_adding import add_and_say, check_appendable
-from pmm.cli.gap_diagnose_work import progress
+from pmm.cli.gap_diagnose_work import engine, progress
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.gap.appending import Added, refuse_twice
 from pmm.gap.examine import Examined, examine
 from pmm.gap.load import campaign_of
-from pmm.gap.report import gap_report
-from pmm.parallel import open_executor
+from pmm.gap.words import what_is_wrong
 from sim.effects.effect import Effect
 
 JSON_SCHEMA = "pmm-gap-add-1"
@@ -57,12 +56,11 @@ def run(request: Request) -> None:
 
 
 def _examined(request: Request, path: Path) -> Examined:
-    request.check_alone(request.jobs)
-    options, jobs = request.options, request.jobs or 1
+    options = request.options
     if request.effect is not None:
         options = replace(options, effects=(request.effect, *request.files))
-    with progress() as told, open_executor(jobs) as executor:
-        return examine(path, options, None if jobs == 1 else executor, told)
+    with progress() as told, engine(request, request.jobs) as executor:
+        return examine(path, options, executor, told)
 
 
 def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
@@ -74,10 +72,12 @@ def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
             reason = found.weighed.refused.get(request.effect, "these runs do not show it")
             raise DataError(f"{request.effect}: cannot be fitted: {reason}")
         return fits[0].effects
-    report = gap_report(examined)
-    if report.verdict != "effect" or found.best is None:
-        raise DataError(f"{examined.campaign.name}: {report.sentence}; nothing to add")
-    return found.best.fit.effects
+    if examined.cause is None:
+        raise DataError(
+            f"{examined.campaign.name}: {what_is_wrong(examined.conclusion)} So there "
+            "is nothing to add; --effect NAME adds one all the same"
+        )
+    return examined.cause.effects
 
 
 def _refuse_twice(path: Path, names: Sequence[str]) -> None:

@@ -13,6 +13,7 @@ from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import error_line, messages
 from pmm.parallel import as_done, check_seen, open_executor
+from pmm.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def _answered(request: Request, tasks: Sequence[Task], target: Path) -> list[str
         if one.failed:
             failed.append(one.failed)
         else:
-            _write(target / f"{one.case}.json", one.text)
+            write_whole(target / f"{one.case}.json", one.text)
     return sorted(failed)
 
 
@@ -141,13 +142,6 @@ def answer_one(task: Task) -> Answered:
     except (PmmError, OSError) as error:
         return Answered(task.case.name, failed=f"{task.case.name}: {error}")
     return Answered(task.case.name, json.dumps(found, indent=1, allow_nan=False) + "\n")
-
-
-def _write(target: Path, text: str) -> None:
-    """Write a file that is whole whenever it is there."""
-    written = target.with_suffix(".part")
-    written.write_text(text, encoding="utf-8")
-    written.replace(target)
 
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -2,12 +2,17 @@
 
 import json
 from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from analysis.threads import cores
+from pmm.cli.being_written import tell_writers
+from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.folders import check_files
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
@@ -17,6 +22,10 @@ from pmm.gap.examine import Examined, examine
 from pmm.gap.prepare import campaign_file
 from pmm.gap.report import PROPOSED, gap_report
 from pmm.parallel import open_executor
+from pmm.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from pmm.campaign import AtRest, Run
 
 
 @dataclass(frozen=True)
@@ -50,7 +59,7 @@ def run(request: Request) -> None:
         from pmm.cli.gap_diagnose_print import print_report
 
         print_report(output(), report)
-        if report.verdict == "effect":
+        if report.conclusion.adds:
             added = pasted("gap", "add", request.campaign, *request.words())
             output().print(added, soft_wrap=True)
     if request.page is not None:
@@ -61,6 +70,17 @@ def run(request: Request) -> None:
         messages().print(f"page: {request.page}")
     if request.plan is not None:
         _write_plan(found, Path(request.plan))
+    tell_unchecked(_read_files(found, campaign_file(Path(request.campaign)).parent))
+    if tell_damaged(found.ready.damaged.items()):
+        click.get_current_context().exit(1)
+
+
+def _read_files(found: Examined, folder: Path) -> Iterator[Path]:
+    every: tuple[Run | AtRest, ...] = (*found.campaign.runs, *found.campaign.at_rest)
+    for one in every:
+        path = one.recording_path(folder)
+        if one.name not in found.left_out and path.exists():
+            yield path
 
 
 def _check_files(request: Request) -> None:
@@ -74,17 +94,31 @@ def _write_plan(found: Examined, path: Path) -> None:
 
     proposed = found.diagnosis.proposals[:PROPOSED]
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(plan_text(f"{found.campaign.name}-next", proposed), encoding="utf-8")
+    write_whole(path, plan_text(f"{found.campaign.name}-next", proposed))
     messages().print(f"plan: {path}; put the rig's {RIG_FILE} beside it, then: pmm plan check")
 
 
 def examined(request: Request) -> Examined:
     """Examine the campaign that is asked for, with progress on a terminal."""
-    request.check_alone(request.jobs, request.scheduler)
-    jobs = request.jobs if request.scheduler is not None else request.jobs or 1
-    with progress() as told, open_executor(jobs, request.scheduler) as executor:
-        alone = jobs == 1 and request.scheduler is None
-        return examine(Path(request.campaign), request.options, None if alone else executor, told)
+    tell_writers([Path(request.campaign)])
+    with progress() as told, engine(request, request.jobs, request.scheduler) as executor:
+        return examine(Path(request.campaign), request.options, executor, told)
+
+
+@contextmanager
+def engine(
+    looks: Looks, jobs: int | None, scheduler: str | None = None
+) -> Iterator[Executor | None]:
+    """Open what effects are looked at by: as asked for, or a process for each core.
+
+    ``None``, for this process, with effects of the user's own: no other one knows them.
+    """
+    looks.check_alone(jobs, scheduler)
+    if scheduler is None and (jobs == 1 or looks.files or cores() == 1):
+        yield None
+        return
+    with open_executor(jobs, scheduler) as executor:
+        yield executor
 
 
 @contextmanager

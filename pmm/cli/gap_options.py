@@ -3,13 +3,14 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.gap.examine import Options
-from pmm.gap.own_effects import files_among
+
+if TYPE_CHECKING:
+    from pmm.gap.examine import Options
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -24,6 +25,8 @@ class Chosen:
     @property
     def files(self) -> tuple[str, ...]:
         """Files with effects of the user's own."""
+        from pmm.gap.own_effects import files_among
+
         return files_among(self.effects)
 
     @property
@@ -61,8 +64,10 @@ class Looks(Chosen):
     hold_out: tuple[str, ...]
 
     @property
-    def options(self) -> Options:
+    def options(self) -> "Options":
         """What the diagnosis is told."""
+        from pmm.gap.examine import Options
+
         names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
         return Options(self.effects, self.without, names, self.hold_out)
 

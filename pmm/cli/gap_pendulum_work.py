@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING
 import click
 
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.said import said
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.gap.pendulum_document import document, parameters
-from pmm.gap.pendulum_examine import Options, examine_pendulum
-from pmm.gap.pendulum_tables import Rows, percent, tables
+from pmm.cli.sections import print_sections
+from pmm.gap.pendulum_conclusion import conclusion_of
+from pmm.gap.pendulum_document import document
+from pmm.gap.pendulum_examine import Examined, Options, examine_pendulum
+from pmm.gap.pendulum_sections import sections
+from pmm.gap.pendulum_words import sentences
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -50,16 +52,15 @@ def run(request: Request) -> None:
     check_files({"--page": request.page}, [("FILE.toml", path), *request.read])
     if request.plot is not None:
         check_folder(Path(request.plot), "--plot")
-    with progress() as told:
-        examined = examine_pendulum(path, request.options, told)
+    with progress() as shown:
+        examined = examine_pendulum(path, request.options, shown)
     found = examined.diagnosis
     if request.as_json:
-        click.echo(json.dumps(document(path.stem, examined), indent=1, allow_nan=False))
+        told = document(path.stem, examined, sentences(found))
+        click.echo(json.dumps(told, indent=1, allow_nan=False))
     else:
-        _print(output(), found)
-        for note in examined.notes:
-            output().print(f"\nNOTE  {note}", soft_wrap=True)
-        if found.told:
+        _print(output(), examined)
+        if conclusion_of(found).adds:
             added = pasted("gap", "add-pendulum", request.file, *request.words())
             output().print(f"\n{added}", soft_wrap=True)
     if request.plot is not None:
@@ -82,27 +83,10 @@ def _draw(found: Diagnosis, folder: Path) -> None:
             messages().print(str(path), soft_wrap=True)
 
 
-def _print(console: "Console", found: Diagnosis) -> None:
-    for line in said(found):
+def _print(console: "Console", examined: Examined) -> None:
+    found = examined.diagnosis
+    for line in sentences(found):
         console.print(line, style="bold", soft_wrap=True)
-    best = ", ".join(found.verdict.best) or "none: no gap beyond u"
-    console.print(f"most probable  {best} ({percent(next(iter(found.verdict.by_set.values())))})")
-    for name, values in parameters(found.settled.best).items():
-        for key, one in values.items():
-            console.print(f"  {name}: {key} = {one['value']:.4g} ± {one['uncertainty']:.2g}")
-    for rows in tables(found):
-        _table(console, rows)
-
-
-def _table(console: "Console", rows: Rows) -> None:
-    from rich.table import Table
-
-    if not rows.rows:
-        return
-    table = Table(box=None, padding=(0, 2), pad_edge=False)
-    for at, heading in enumerate(rows.headings):
-        table.add_column(heading, justify="left" if at < rows.words else "right")
-    for row in rows.rows:
-        table.add_row(*row)
-    console.print()
-    console.print(table)
+    for note in examined.notes:
+        console.print(f"NOTE  {note}", soft_wrap=True)
+    print_sections(console, sections(found))

@@ -48,6 +48,13 @@ def _job(name: str) -> Callable[[Callable[..., None]], click.Command]:
     return make
 
 
+_fits = click.option(
+    "--fits",
+    is_flag=True,
+    help="Fit each record by the forms F1 to F4 too, and show their periods.",
+)
+
+
 def _run(name: str, options: dict[str, Any]) -> None:
     from pmm.cli.inertia_running import Request, run
 
@@ -55,18 +62,21 @@ def _run(name: str, options: dict[str, Any]) -> None:
 
 
 @_job("swing")
+@_fits
 def swing(**options: Any) -> None:
     """Swing: alone, with the model, and its checks."""
     _run("swing", options)
 
 
 @_job("bifilar")
+@_fits
 def bifilar(**options: Any) -> None:
     """Bifilar suspension: yaw, pitch or roll, depth, principal axes."""
     _run("bifilar", options)
 
 
 @_job("pendulum")
+@_fits
 def pendulum(**options: Any) -> None:
     """Compound pendulum: about one axis, or two (Lamboley)."""
     _run("pendulum", options)

@@ -1,9 +1,12 @@
 """An inertia job's outcome as tables for people."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from analysis.inertia.forms import SwingForm
 from pmm.cli.screen import print_flags
+from pmm.inertia.fits import FormFit
 from pmm.inertia.outcome import Finding, Outcome
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.rounding import rounded
@@ -17,17 +20,24 @@ if TYPE_CHECKING:
 
 _NOTHING = 1e-9  # metres, kilograms: what rounding leaves of zero
 _MOST_LINES = 8  # of a budget; the rest together
+_FORMS = {
+    SwingForm.F1: "undamped",
+    SwingForm.F2: "damped",
+    SwingForm.F3: "damped, whole periods",
+    SwingForm.F4: "damped, with an offset",
+}
 _STYLES = {"pass": "green", "fail": "bold red", "undecided": "yellow"}
 
 
-def print_outcome(console: "Console", outcome: Outcome) -> None:
-    """Print everything about one outcome."""
+def print_outcome(console: "Console", outcome: Outcome, fits: Sequence[FormFit] = ()) -> None:
+    """Print everything about one outcome, and the fits by form that were asked for."""
     from rich.rule import Rule
     from rich.text import Text
 
     title = Text(f"{outcome.job}: {outcome.name}", style="bold")
     console.print(Rule(title, align="left", style="dim"))
     _print_periods(console, outcome.periods)
+    _print_fits(console, fits)
     _print_findings(console, outcome.findings)
     _print_budgets(console, outcome)
     _print_model(console, outcome)
@@ -77,6 +87,26 @@ def _print_periods(console: "Console", periods: tuple[PeriodRuns, ...]) -> None:
             )
             text = f"used {run.part.series.name}: {run.part.because}; {decays}"
             console.print(text, style="dim", soft_wrap=True)
+    console.print()
+
+
+def _print_fits(console: "Console", fits: Sequence[FormFit]) -> None:
+    if not fits:
+        return
+    table = _table(
+        "fit of", "form", "T ± u of this fit [s]", "decay [1/s]", "offset", "residual", left=2
+    )
+    for one in fits:
+        first = one.form is SwingForm.F1
+        table.add_row(
+            one.record if first else "",
+            f"{one.form} {_FORMS[one.form]}",
+            rounded(one.period_s, one.period_uncertainty_s),
+            f"{one.decay_1_s:.3g}",
+            f"{one.offset:.3g}",
+            f"{one.residual:.3g}",
+        )
+    console.print(table)
     console.print()
 
 

@@ -11,8 +11,10 @@ import click
 from pmm.cli.inertia_printing import print_outcome
 from pmm.cli.screen import busy, messages, output
 from pmm.inertia.document import document
+from pmm.inertia.fits import form_fits
 from pmm.inertia.model_file import check_output, model_section
 from pmm.inertia.outcome import Outcome
+from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,6 +41,7 @@ class Request:
     output: str | None
     overwrite: bool
     plot: str | None
+    fits: bool = False
 
 
 def run(request: Request) -> None:
@@ -57,14 +60,15 @@ def run(request: Request) -> None:
     job: Callable[[str], Outcome] = getattr(import_module(f"pmm.inertia.{module}"), function)
     with busy(f"{request.job}: {request.file}"):
         outcome = job(request.file)
+        fits = form_fits(outcome) if request.fits else ()
     if request.as_json:
-        click.echo(json.dumps(document(outcome), indent=1, allow_nan=False))
+        click.echo(json.dumps(document(outcome, fits), indent=1, allow_nan=False))
     else:
-        print_outcome(output(), outcome)
+        print_outcome(output(), outcome, fits)
     if request.plot is not None:
         _plot(outcome, Path(request.plot), Path(request.file).stem)
     if target is not None:
-        target.write_text(model_section(outcome), encoding="utf-8")
+        write_whole(target, model_section(outcome))
         messages().print(f"written: {target}")
     if outcome.said_no:
         click.get_current_context().exit(1)

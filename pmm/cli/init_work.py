@@ -42,8 +42,11 @@ def run(job: str, options: dict[str, Any]) -> None:
     check_folder(folder, "--output")
     check_free(folder, FILES[job], force=options["force"])
     given = answers(job, options, _default if options["yes"] else _asked)
-    for path in write(Task(job, given, folder, recordings), force=options["force"]):
+    done = write(Task(job, given, folder, recordings), force=options["force"])
+    for path in done.paths:
         messages().print(f"written: {path}")
+    for note in done.notes:
+        messages().print(note, soft_wrap=True, markup=False)
     kind = "recordings" if job == "campaign" and recordings else job
     for words in _NEXT[kind]:
         place = folder.as_posix()

@@ -6,16 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
-from hardware.description.setpoint import SetPoint
 from pmm.campaign import CAMPAIGN_FILE, RUN_FILE, Campaign
 from pmm.campaign_file import read_campaign
+from pmm.campaign_recording import RAW, RecordingSource, open_recording
+from pmm.cli.being_written import tell_writers
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
+    from analysis.readers.text_source import Progress
     from analysis.recording import Recording
-
-
-RAW = "none"  # no calibration is applied: readings stay as the gauges gave them
 
 
 @dataclass(frozen=True)
@@ -26,14 +25,21 @@ class Source:
     ----------
     campaign, campaign_path
         What its campaign file says, and where that lies; ``None`` for a file of its own.
-    set_point
-        Of the campaign's run; a recording that knows its own keeps that.
     """
 
-    path: Path
+    recording: RecordingSource
     campaign: Campaign | None = None
-    set_point: SetPoint | None = None
     campaign_path: Path | None = None
+
+    @property
+    def as_recorded(self) -> Campaign | None:
+        """The campaign with the tables that the run was recorded with."""
+        return self.campaign and self.campaign.as_recorded(self.recording.name or "")
+
+    @property
+    def path(self) -> Path:
+        """Where the recording lies."""
+        return self.recording.path
 
     @property
     def stem(self) -> str:
@@ -83,11 +89,12 @@ def _find(path: Path) -> Found:
             )
         path = path / CAMPAIGN_FILE
     if path.suffix != ".toml":
-        return Found((Source(path),))
+        return Found((Source(RecordingSource(path)),))
     return _find_in_campaign(path)
 
 
 def _find_in_campaign(path: Path) -> Found:
+    tell_writers([path])
     campaign = read_campaign(path)
     if not campaign.runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
@@ -97,7 +104,8 @@ def _find_in_campaign(path: Path) -> Found:
         if run.file is None and not recording.exists():
             not_recorded.append(recording)
         else:
-            sources.append(Source(recording, campaign, run.set_point, path))
+            own = RecordingSource.of(campaign, run, path.parent)
+            sources.append(Source(own, campaign, path))
     if not sources:
         raise DataError(
             f"{path}: none of its {len(campaign.runs)} runs is recorded yet; the first would be "
@@ -130,6 +138,7 @@ def read_source(
     sample_rate_hz: float | None = None,
     edges: str | None = None,
     calibration: str | None = None,
+    progress: "Progress" = lambda _: None,
 ) -> "Recording":
     """Read one recording.
 
@@ -140,43 +149,24 @@ def read_source(
     edges
         File of the photocell's edge times; ``{stem}`` in it stands for the recording's name.
     calibration
-        File of the gauges' calibration; :data:`RAW` for none; by default the recording's own.
+        File of the gauges' calibration; :data:`pmm.campaign_recording.RAW` for none; by default
+        the recording's own.
+    progress
+        Told which part of a text file has been read, from 0 to 1.
 
     Raises
     ------
-    ConfigurationError
-        If there is no such file.
     DataError, ConfigurationError
-        As :func:`analysis.readers.read_recording` does.
+        As :func:`pmm.campaign_recording.open_recording` does.
     """
-    from analysis.readers import read_recording
-    from analysis.readers.photocell import read_edges
-
-    _check_there(source.path)
-    if columns is None and source.campaign and source.path.suffix != ".nc":
-        columns = source.campaign.columns
-    recording = read_recording(source.path, columns, sample_rate_hz=sample_rate_hz)
-    recording = _in_newtons(recording, calibration)
-    if recording.set_point is None and source.set_point is not None:
-        recording = replace(recording, set_point=source.set_point)
-    if edges is None:
-        return recording
-    edges_file = Path(edges.replace("{stem}", source.stem))
-    _check_there(edges_file)
-    return replace(recording, photocell_edges_s=read_edges(edges_file))
-
-
-def _in_newtons(recording: "Recording", calibration: str | None) -> "Recording":
-    """Make forces of the gauges' readings, as asked or by what the recording carries."""
-    from pmm.calibrated import calibrated
     from pmm.calibration import read_calibration
 
-    if calibration == RAW:
-        return recording
-    return calibrated(recording, read_calibration(Path(calibration)) if calibration else None)
-
-
-def _check_there(path: Path) -> None:
-    if not path.exists():
-        what = "file" if path.suffix else "file or folder"
-        raise ConfigurationError(f"{path}: no such {what}")
+    asked = replace(source.recording, sample_rate_hz=sample_rate_hz)
+    if columns is not None:
+        asked = replace(asked, columns=columns)
+    if edges is not None:
+        asked = replace(asked, edges_file=Path(edges.replace("{stem}", source.stem)))
+    if calibration is not None:
+        given = RAW if calibration == RAW else read_calibration(Path(calibration))
+        asked = replace(asked, calibration=given)
+    return open_recording(asked, partial=True, progress=progress)

@@ -18,8 +18,9 @@ from pmm.cli.printing import counted
 from pmm.cli.screen import output
 from pmm.plan.checks import Finding, Verdict, check_plan
 from pmm.plan.duration import duration_rows, tank_length_m
+from pmm.plan.force_estimate import force_peak_n
 from pmm.plan.kinds import RunKind
-from pmm.plan.motion_peaks import acceleration_peak_m_s2, force_peak_n, velocity_peak_m_s
+from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan

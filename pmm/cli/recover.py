@@ -13,7 +13,8 @@ def recover(**options: Any) -> None:
 
     FOLDER is the folder of a run or of a campaign. Each run that was not closed gets its run.nc, up
     to the last sample that is whole. Nothing that is there is changed or removed; doing it again
-    does nothing. Exit status 1 if a run has nothing to recover.
+    does nothing. What is not what was written is named, and made again where the run's other
+    files tell how. Exit status 1 if there was such, or if a run has nothing to recover.
     """
     from pmm.cli.recovering import run
 

@@ -20,6 +20,7 @@ class _Result:
     folder: Path
     run: "RecoveredRun | None"
     error: str = ""
+    empty: str = ""
 
 
 def run(places: Sequence[str], *, as_json: bool) -> None:
@@ -43,20 +44,29 @@ def run(places: Sequence[str], *, as_json: bool) -> None:
         click.echo(json.dumps([_document(one) for one in results], indent=1))
     else:
         _print(results)
-    if any(one.error for one in results):
+    changed = [one for one in results if one.run is not None and one.run.changed]
+    for one in changed:
+        if one.run is not None:
+            names = ", ".join(one.run.changed)
+            error_line(f"{one.folder}: {names}: not what was written, see its flags")
+    if changed or any(one.error for one in results):
         click.get_current_context().exit(1)
 
 
 def _recover(folder: Path) -> _Result:
-    from pmm.recorder.recovery import recover
+    from pmm.recorder.recovery import NothingWrittenError, recover
 
     try:
         return _Result(folder, recover(folder))
+    except NothingWrittenError as error:
+        return _Result(folder, None, empty=str(error))
     except PmmError as error:
         return _Result(folder, None, str(error))
 
 
 def _document(result: _Result) -> dict[str, Any]:
+    if result.empty:
+        return {"folder": str(result.folder), "nothing_written": result.empty}
     if result.run is None:
         return {"folder": str(result.folder), "error": result.error}
     return {"folder": str(result.folder), **asdict(result.run), "path": str(result.run.path)}
@@ -70,7 +80,7 @@ def _print(results: Sequence[_Result]) -> None:
     for name in ("run", "samples", "missing", "frames", "bytes not whole", "what was done"):
         table.add_column(name, justify="left" if name in ("run", "what was done") else "right")
     for one in results:
-        if one.run is not None:
+        if not one.error:
             table.add_row(one.folder.name, *_cells(one.run))
     if table.row_count:
         console.print(table)
@@ -82,7 +92,9 @@ def _print(results: Sequence[_Result]) -> None:
             error_line(one.error)
 
 
-def _cells(run: "RecoveredRun") -> tuple[str, ...]:
+def _cells(run: "RecoveredRun | None") -> tuple[str, ...]:
+    if run is None:
+        return ("0", "0", "0", "0", "nothing: the program ended before anything was written")
     numbers = (run.samples, run.missing, run.frames, sum(run.lost_tail_bytes.values()))
     done = "nothing: it was closed" if run.was_whole else f"{run.path.name} is there"
     return (*map(str, numbers), done)

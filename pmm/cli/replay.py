@@ -13,7 +13,8 @@ def replay(**options: Any) -> None:
 
     RUN is the folder of a run. The frames of bus.blf and the lines of lines.jsonl are decoded by
     the rig that the run's header names; samples and pulses have to be the recorded ones bit by bit,
-    and the harmonics of its gates the same. Exit status 1 if they are not.
+    and the harmonics of its gates the same. Exit status 1 if they are not, or if a file of the run
+    is not what was written.
     """
     from pmm.cli.replaying import run
 

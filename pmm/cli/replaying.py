@@ -36,8 +36,12 @@ def run(folder: str, *, as_json: bool) -> None:
         click.echo(json.dumps(_document(found), indent=1))
     else:
         _print(output(), found)
+    wrong = [f"{folder}: {name} was changed: {words}" for name, words in found.changed.items()]
     if not found.same:
-        error_line(f"{folder}: the replay differs from the recording")
+        wrong.append(f"{folder}: the replay differs from the recording")
+    for one in wrong:
+        error_line(one)
+    if wrong:
         click.get_current_context().exit(1)
 
 
@@ -52,6 +56,7 @@ def _document(found: "Replay") -> dict[str, Any]:
         "recorded_readings": [one["coefficients"] for one in found.recorded_readings],
         "largest_difference": found.difference,
         "faults": list(found.faults),
+        "changed": dict(found.changed),
     }
 
 

@@ -10,6 +10,11 @@ import click
 @click.option("--only", multiple=True, metavar="RUN", help="Make this run only; repeatable.")
 @click.option("--resume", is_flag=True, help="Go on: make the runs that are not complete yet.")
 @click.option(
+    "--accept-changes",
+    is_flag=True,
+    help="Go on although plan, rig, model or calibration changed; each run keeps its own.",
+)
+@click.option(
     "--output",
     metavar="FOLDER",
     help="Record there.  [default: the plan's name, in the folder that the rig's file names]",

@@ -4,12 +4,15 @@ import queue
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 from typing import Final, TextIO
 
-_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+_STOPS: Final = ("SIGINT", "SIGTERM")
+_HANGS_UP: Final = ("SIGHUP",)  # a terminal that is closed; twice by the shell and the system
+# Ctrl-Z, and reading or writing in the background: a program that is halted watches no drive.
+_HALTS: Final = ("SIGTSTP", "SIGTTIN", "SIGTTOU")
 
 
 class Answers:
@@ -58,7 +61,11 @@ class Answers:
 
 
 class Interrupts:
-    """Counts Ctrl-C and SIGTERM; the loop looks at the count, so that nothing is torn apart."""
+    """Counts what asks for a stop; the loop looks at the count, so that nothing is torn apart.
+
+    Ctrl-C and SIGTERM count each time; a terminal that is closed counts as one of them, unless
+    ``nohup`` has it ignored. Nothing halts the program meanwhile: Ctrl-Z is ignored.
+    """
 
     def __init__(self) -> None:
         self.count = 0
@@ -66,15 +73,30 @@ class Interrupts:
     def _take(self, _number: int, _frame: FrameType | None) -> None:
         self.count += 1
 
+    def _hang_up(self, _number: int, _frame: FrameType | None) -> None:
+        self.count = max(self.count, 1)
+
     @contextmanager
     def counted(self) -> Iterator[None]:
         """Count them for as long as the context lasts."""
-        before = {one: signal.signal(one, self._take) for one in _SIGNALS}
+        handlers: dict[signal.Signals, Callable[..., None] | signal.Handlers] = {
+            **dict.fromkeys(_known(_STOPS), self._take),
+            **dict.fromkeys(_known(_HALTS), signal.SIG_IGN),
+        }
+        for one in _known(_HANGS_UP):
+            if signal.getsignal(one) is not signal.SIG_IGN:
+                handlers[one] = self._hang_up
+        before = {one: signal.signal(one, handler) for one, handler in handlers.items()}
         try:
             yield
         finally:
             for one, handler in before.items():
                 signal.signal(one, handler)
+
+
+def _known(names: Sequence[str]) -> list[signal.Signals]:
+    """Return the signals of these names that the system has."""
+    return [signal.Signals[one] for one in names if one in signal.Signals.__members__]
 
 
 def standard_input() -> Answers:

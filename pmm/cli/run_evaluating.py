@@ -13,6 +13,8 @@ import click
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
 from pmm.campaign import CAMPAIGN_FILE
+from pmm.campaign_owner import own_campaign
+from pmm.cli.being_written import tell_writers
 from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.run_evaluate_printing import print_evaluation
@@ -28,6 +30,7 @@ from pmm.run.rig_tests import (
     rung_modes,
     zero_drifts,
 )
+from pmm.whole_file import write_whole
 
 JSON_SCHEMA: Final = "pmm-evaluation-1"
 MODES_FILE: Final = "modes.toml"
@@ -52,15 +55,17 @@ def evaluate_campaign(request: Request) -> None:
     ConfigurationError
         If there is no such folder, or the figures cannot be written there.
     DataError
-        If it holds no complete run.
+        If it holds no complete run, or another process is writing into it and there is something
+        to be written.
     """
     folder = Path(request.folder)
     if not folder.is_dir():
         raise ConfigurationError(f"{folder}: no such folder")
     if request.plot is not None:
         check_folder(Path(request.plot), "--plot")
+    tell_writers([folder])
     found = _evaluate(folder, read_results(folder), request.valid_days)
-    found = replace(found, files=(*_write(found, folder), *_draw(found, request.plot)))
+    found = replace(found, files=(*_keep(found, folder), *_draw(found, request.plot)))
     if request.as_json:
         click.echo(json.dumps(_document(found), indent=1, allow_nan=False))
     else:
@@ -135,13 +140,21 @@ def _half_spacing(folder: Path) -> float:
     return oscillator.half_spacing_m
 
 
+def _keep(found: Evaluation, folder: Path) -> list[Path]:
+    """Write what later runs use; a campaign that is being recorded may be looked at meanwhile."""
+    if found.calibration is None and not found.modes:
+        return []
+    with own_campaign(folder):
+        return _write(found, folder)
+
+
 def _write(found: Evaluation, folder: Path) -> list[Path]:
     written = []
     if found.calibration is not None:
         written.append(write_calibration(found.calibration, folder / CALIBRATION_FILE))
     if found.modes:
         path = folder / MODES_FILE
-        path.write_text(modes_text([one.as_table() for one in found.modes]), encoding="utf-8")
+        write_whole(path, modes_text([one.as_table() for one in found.modes]))
         written.append(path)
     return written
 

@@ -1,14 +1,13 @@
 """What ``pmm run`` shows while it runs: a live picture on a terminal, plain lines elsewhere."""
 
 import math
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 from hardware.description.channels import SHAFT_ANGLE
 from pmm.cli.printing import counted
-from pmm.cli.screen import messages
+from pmm.cli.terminal import Terminal
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
 from pmm.run.status import HarmonicRow, RunOutcome, Status
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 _EVERY_S: Final = 0.25
-_SWITCH_S: Final = 5e-4  # so that drawing, in its thread, does not make cycles late
 _GIGA: Final = 1e9
 _LABEL, _BAR = 28, 40  # columns
 _MOST_PLACES: Final = 6
@@ -67,41 +65,48 @@ class LiveView:
     questions alone are folded, so that nothing of them is lost.
     """
 
-    def __init__(self, clock: Callable[[], float], question: Callable[[], str]) -> None:
+    def __init__(
+        self, terminal: Terminal, clock: Callable[[], float], question: Callable[[], str]
+    ) -> None:
+        from rich.live import Live
+
         self._clock, self._due_s, self._asked = clock, -math.inf, question
+        self._terminal = terminal
         self._control: RunControl | None = None
         self._status: Status | None = None
         self._outcomes: tuple[RunOutcome, ...] = ()
+        console = terminal.console
+        console.soft_wrap = False  # alarms and questions are folded here, not cut
+        self._live = Live(
+            get_renderable=self.picture,
+            console=console,
+            auto_refresh=False,
+            redirect_stdout=False,
+            redirect_stderr=False,
+        )
 
     def show(self, control: RunControl) -> None:
-        """Take a new status when it is time."""
+        """Take a new status when it is time, and have it drawn unless the last one still is."""
         self._control = control
         now_s = self._clock()
         if now_s >= self._due_s:
             self._due_s = now_s + _EVERY_S
             self._take()
+            self._terminal.draw(self._live.refresh)
 
     def _take(self) -> None:
         if self._control is not None:
             self._status, self._outcomes = self._control.status(), tuple(self._control.outcomes)
 
     @contextmanager
-    def shown(self) -> Iterator[None]:
+    def shown(self) -> "Iterator[LiveView]":
         """Draw for as long as the context lasts; what stays on the terminal is the end."""
-        from rich.live import Live
-
-        before = sys.getswitchinterval()
-        sys.setswitchinterval(_SWITCH_S)
+        self._terminal.do(self._live.start)
         try:
-            console = messages()
-            console.soft_wrap = False  # alarms and questions are folded here, not cut
-            with Live(get_renderable=self.picture, console=console, refresh_per_second=4):
-                try:
-                    yield
-                finally:
-                    self._take()
+            yield self
         finally:
-            sys.setswitchinterval(before)
+            self._take()
+            self._terminal.do(self._live.stop)
 
     def picture(self) -> "Group":
         """Return what is to be seen now."""
@@ -131,19 +136,24 @@ def outcome_line(one: RunOutcome) -> str:
     where = f", {one.file}" if one.file else ""
     voids = sum(flag.code == "gate_void" for flag in one.flags)
     void = f", {voids} void gates" if voids else ""
-    return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{where}{reason}"
+    far = [flag.channel or "" for flag in one.flags if flag.code == "force_far"]
+    off = f", {' and '.join(far)} far from the plan's estimate" if far else ""
+    return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{off}{where}{reason}"
 
 
 def harmonics_table(rows: tuple[HarmonicRow, ...]) -> "Table":
     """Return mean and first harmonic of each channel; what is not final yet is dim.
 
-    As many places as the interval allows; lengths in mm, angles in degrees.
+    As many places as the interval allows; lengths in mm, angles in degrees. Where the plan has an
+    estimate of the amplitude it stands beside; red is far from it.
     """
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
     table.add_column("channel", no_wrap=True)
-    for heading in ("mean", "in phase", "quadrature", "amplitude", "95 %"):
+    headings = ["mean", "in phase", "quadrature", "amplitude", "95 %"]
+    planned = any(math.isfinite(one.expected) for one in rows)
+    for heading in [*headings, "plan"] if planned else headings:
         table.add_column(heading, justify="right", no_wrap=True)
     for one in rows:
         factor, unit = _SHOWN.get(one.unit, (1.0, one.unit))
@@ -152,7 +162,9 @@ def harmonics_table(rows: tuple[HarmonicRow, ...]) -> "Table":
         cells = [_places(factor * value, half_width) for value in values]
         width = "" if math.isnan(half_width) else f"± {half_width:.2g}"
         name = f"{one.channel} [{unit}]" if unit else one.channel
-        table.add_row(name, *cells, width, style="" if one.final else "dim")
+        plan = [f"{one.expected:.1f}"] if math.isfinite(one.expected) else [""]
+        style = "bold red" if one.far else "" if one.final else "dim"
+        table.add_row(name, *cells, width, *(plan if planned else ()), style=style)
     return table
 
 

@@ -3,35 +3,49 @@
 import json
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 import click
 
 from hardware.description.errors import DataError
+from hardware.description.room import is_full, said
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
+from pmm.campaign_owner import own_campaign
 from pmm.cli.findings import finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.run_console import Answers, Interrupts, standard_input
 from pmm.cli.run_view import LiveView, PlainView, outcome_line
 from pmm.cli.screen import messages, output
+from pmm.cli.terminal import Terminal
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.checks import require_possible
 from pmm.plan.findings import Finding
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.real_time import before_others, step_back
 from pmm.recorder.run_recorder import Outcome
-from pmm.run.campaign_folder import chosen_runs, finished_runs, folder_of, keep_sources
+from pmm.run.campaign_folder import (
+    check_names,
+    chosen_runs,
+    finished_runs,
+    folder_of,
+    keep_sources,
+    kept_runs,
+)
+from pmm.run.identity import change_lines
 from pmm.run.journal import Taps
 from pmm.run.recording import Recording
+from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError
 from pmm.run.status import RunOutcome
@@ -45,12 +59,13 @@ class Request:
     """The options of ``pmm run``, by their names there."""
 
     plan: str
-    only: tuple[str, ...]
-    resume: bool
-    output: str | None
-    dry_run: bool
-    real_time: bool
-    as_json: bool
+    only: tuple[str, ...] = ()
+    resume: bool = False
+    accept_changes: bool = False
+    output: str | None = None
+    dry_run: bool = False
+    real_time: bool = False
+    as_json: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +78,7 @@ class Job:
     runs: tuple[RunPlan, ...]
     findings: tuple[Finding, ...]
     real_time: bool
+    changes: tuple[str, ...]
 
 
 class RunFailedError(DataError):
@@ -76,21 +92,41 @@ def work(request: Request) -> None:
     ------
     ConfigurationError, PlanRefusedError
         If plan or rig are wrong or beyond a limit, or the folder holds runs already.
+    OwnedElsewhereError
+        If another process is writing into the folder.
     RunFailedError
         If the rig stopped in a fault.
     """
-    job = _job(request)
-    for line in finding_lines(job.findings):
-        messages().print(line, soft_wrap=True)
+    where = ("--output", request.output) if request.output else ()
+    resume = pasted("run", request.plan, "--resume", *where)
+    try:
+        _work(request, resume)
+    except OSError as error:
+        if not is_full(error):
+            raise
+        raise RunFailedError(
+            f"{said(error)}; what is recorded is kept\nwhen there is room: {resume}"
+        ) from error
+
+
+def _work(request: Request, resume: str) -> None:
+    """Do it, and say how to go on after a fault."""
     outcomes: list[RunOutcome] = []
     interrupted = False
     fault = ""
-    if not request.dry_run and job.runs:
-        outcomes, interrupted, fault = _carry_out(job, quiet=request.as_json)
+    # The terminal is waited for last: the rig is left by then, and the folder free.
+    with ExitStack() as shown, _job(request) as job:
+        for line in finding_lines(job.findings):
+            messages().print(line, soft_wrap=True)
+        for told in job.changes:
+            messages().print(f"keeps what it was recorded with: {told}", soft_wrap=True)
+        if not request.dry_run and job.runs:
+            if job.real_time:
+                _keep_time(shown)
+            terminal = shown.enter_context(Terminal())
+            outcomes, interrupted, fault = _carry_out(job, terminal, quiet=request.as_json)
     _report(request, job, outcomes, fault)
     if fault:
-        where = ("--output", request.output) if request.output else ()
-        resume = pasted("run", request.plan, "--resume", *where)
         raise RunFailedError(
             f"{fault}\nall axes are told to stop and the fault is latched; when its cause is "
             f"gone: {resume}"
@@ -99,28 +135,50 @@ def work(request: Request) -> None:
         sys.exit(_INTERRUPTED)
 
 
-def _job(request: Request) -> Job:
+@contextmanager
+def _job(request: Request) -> Iterator[Job]:
+    """Say what is to be done; the folder is owned from before it is read, but for a dry run."""
     plan, rig_file = read_plan_and_rig(request.plan)
     findings = require_possible(plan, rig_file, datetime.now(UTC).date())
     folder = folder_of(plan, rig_file.recorder.folder, request.output)
+    check_names(plan, request.only)
     check_folder(folder, "--output")
-    runs = chosen_runs(plan, folder, request.only, resume=request.resume)
-    real_time = rig_file.realtime or request.real_time
-    chosen = {"", *(one.name for one in runs)}
-    findings = tuple(one for one in findings if one.run in chosen)
-    return Job(plan, rig_file, folder, runs, findings, real_time)
+    with nullcontext() if request.dry_run else own_campaign(folder) as owned:
+        if owned is not None:
+            owned.count()  # now, and not in the loop
+        runs = chosen_runs(
+            plan,
+            rig_file,
+            folder,
+            request.only,
+            resume=request.resume,
+            accept_changes=request.accept_changes,
+        )
+        real_time = rig_file.realtime or request.real_time
+        chosen = {"", *(one.name for one in runs)}
+        findings = tuple(one for one in findings if one.run in chosen)
+        changes = tuple(change_lines(kept_runs(plan, rig_file, folder, runs)))
+        yield Job(plan, rig_file, folder, runs, findings, real_time, changes)
 
 
-def _carry_out(job: Job, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
+def _keep_time(stack: ExitStack) -> None:
+    """Put the loop, and what it starts from here on, before all that could make its cycles late."""
+    rehearse()
+    standing = stack.enter_context(before_others())
+    if standing.advice:
+        messages().print(standing.advice)
+
+
+def _carry_out(job: Job, terminal: Terminal, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
     """Run the loop; return the outcomes, whether Ctrl-C ended it, and the fault."""
-    job.folder.mkdir(parents=True, exist_ok=True)
     keep_sources(job.plan, job.folder)
     answers, interrupts = standard_input(), Interrupts()
     with ExitStack() as stack:
         stack.enter_context(interrupts.counted())
+        stack.callback(_write, job)  # at the end, when the rig is left; a failure is heard here
+        view = _view(stack, terminal, answers, quiet=quiet)
         taps = Taps()
         rig = stack.enter_context(_rig(job, answers, taps))
-        view = _view(stack, answers, quiet=quiet)
         executor = stack.enter_context(_executor(job.real_time))
         recording = stack.enter_context(
             Recording(rig, job.rig_file, job.plan, job.folder, _utc, taps, _provenance(job))
@@ -130,14 +188,21 @@ def _carry_out(job: Job, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
         )
         control.free_bytes = recording.free_bytes
         rig.prepare()
+        for note in rig.notes:
+            messages().print(f"note: {note}")
         control.request(Command.START)
-        _loop(control, rig, answers, interrupts, job)
+        write = partial(_write, job) if executor is None else partial(executor.submit, _write, job)
+        _loop(control, rig, answers, interrupts, write)
         fault = "" if control.fault is None else str(control.fault)
         return control.outcomes, interrupts.count > 0, fault
 
 
 def _loop(
-    control: RunControl, rig: Rig, answers: Answers, interrupts: Interrupts, job: Job
+    control: RunControl,
+    rig: Rig,
+    answers: Answers,
+    interrupts: Interrupts,
+    write: Callable[[], object],
 ) -> None:
     """Step until nothing more happens; hand Ctrl-C on, once and twice."""
     heard = written = 0
@@ -153,8 +218,7 @@ def _loop(
             raise RunFailedError(f"nobody answers: {answers.question}; the input has ended")
         if len(control.outcomes) > written:
             written = len(control.outcomes)
-            _write(job)
-    _write(job)
+            write()
 
 
 def _interrupt(control: RunControl, command: Command) -> None:
@@ -163,7 +227,8 @@ def _interrupt(control: RunControl, command: Command) -> None:
 
 
 def _write(job: Job) -> None:
-    write_campaign(job.folder, job.plan, job.rig_file, finished_runs(job.folder, job.plan.runs))
+    done = finished_runs(job.folder, job.plan, job.rig_file)
+    write_campaign(job.folder, job.plan, job.rig_file, done)
 
 
 @contextmanager
@@ -190,21 +255,19 @@ def _executor(real_time: bool) -> Iterator[Executor | None]:
     if not real_time:
         yield None
         return
-    with ThreadPoolExecutor(1, thread_name_prefix="closing") as executor:
+    with ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back) as executor:
         yield executor
 
 
-def _view(stack: ExitStack, answers: Answers, *, quiet: bool) -> LiveView | PlainView:
-    console = messages()
-
+def _view(
+    stack: ExitStack, terminal: Terminal, answers: Answers, *, quiet: bool
+) -> LiveView | PlainView:
     def question() -> str:
         return answers.question
 
-    if quiet or not console.is_terminal:
-        return PlainView(lambda line: console.print(line), question)
-    live = LiveView(time.monotonic, question)
-    stack.enter_context(live.shown())
-    return live
+    if quiet or not terminal.console.is_terminal:
+        return PlainView(terminal.say, question)
+    return stack.enter_context(LiveView(terminal, time.monotonic, question).shown())
 
 
 def _utc() -> str:
@@ -249,6 +312,7 @@ def _document(
         "dry_run": request.dry_run,
         "planned": [one.name for one in job.runs],
         "findings": [asdict(one) for one in job.findings],
+        "changes": list(job.changes),
         "fault": fault or None,
         "runs": [asdict(one) for one in outcomes],
     }

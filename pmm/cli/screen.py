@@ -1,8 +1,8 @@
 """What goes to the screen: results on the output, messages and progress on the error stream."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,11 +24,13 @@ def output() -> "Console":
     return console
 
 
-def messages() -> "Console":
-    """Return the console for everything that is not a result."""
+def messages(file: IO[str] | None = None) -> "Console":
+    """Return the console for everything that is not a result: standard error, or another file."""
     from rich.console import Console
 
-    return Console(stderr=True, highlight=False, emoji=False, markup=False, soft_wrap=True)
+    return Console(
+        file=file, stderr=True, highlight=False, emoji=False, markup=False, soft_wrap=True
+    )
 
 
 def error_line(message: str) -> None:
@@ -49,10 +51,18 @@ def show_progress(items: Sequence[T], what: str) -> Iterator[T]:
         yield from progress.track(items, description=what)
 
 
-def busy(what: str) -> AbstractContextManager[object]:
-    """Say that something is going on, on a terminal, for as long as the context lasts."""
+@contextmanager
+def busy(what: str) -> Iterator[Callable[[float], None]]:
+    """Say that something is going on, on a terminal, for as long as the context lasts.
+
+    What it gives may be told how much of that has been read, from 0 to 1.
+    """
     console = messages()
-    return console.status(what) if console.is_terminal else nullcontext()
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status(what) as status:
+        yield lambda part: status.update(f"{what}: {100.0 * part:.0f} % read")
 
 
 def flag_style(severity: "Severity") -> str:
@@ -60,20 +70,24 @@ def flag_style(severity: "Severity") -> str:
     return {"note": "cyan", "warning": "yellow", "void": "bold red"}[severity]
 
 
-def print_flags(console: "Console", flags: "Sequence[Flag]") -> None:
-    """Print flags, one a line: severity, channel, message, options that act on it, and code."""
+def print_flags(console: "Console", flags: "Iterable[Flag]", *, hints: bool = True) -> None:
+    """Print flags, equal ones in one line: severity, where, message, options for it, and code.
+
+    Parameters
+    ----------
+    hints
+        Whether the options of ``pmm analyse`` are the reader's to use.
+    """
     from rich.text import Text
 
     from pmm.cli.hints import FLAG_OPTIONS
+    from pmm.flag_lines import flag_lines
 
-    for flag in flags:
-        channel = f"{flag.channel}: " if flag.channel else ""
-        if flag.message.startswith(channel):
-            channel = ""
+    for one in flag_lines(flags):
         line = Text.assemble(
-            (f"{flag.severity.upper():8s}", flag_style(flag.severity)),
-            f"{channel}{flag.message}",
-            f" ({FLAG_OPTIONS[flag.code]})" if flag.code in FLAG_OPTIONS else "",
-            (f" [{flag.code}]", "dim"),
+            (f"{one.severity.upper():8s}", flag_style(one.severity)),
+            one.text,
+            f" ({FLAG_OPTIONS[one.code]})" if hints and one.code in FLAG_OPTIONS else "",
+            (f" [{one.code}]", "dim"),
         )
         console.print(line, soft_wrap=True)

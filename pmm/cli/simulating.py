@@ -16,11 +16,13 @@ from hardware.description.flags import Flag
 from pmm.campaign import CAMPAIGN_FILE, AtRest, Campaign, Run
 from pmm.campaign_file import read_campaign
 from pmm.campaign_order import place_in
+from pmm.campaign_owner import own_new_campaign
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
 from pmm.cli.screen import output, print_flags, show_progress
 from pmm.cli.simulating_zeros import simulate_zero, zero_runs
+from pmm.whole_file import write_whole
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, user_effects
 from sim.effects.effect import Effect
@@ -68,6 +70,8 @@ def run(request: Request) -> None:
     ConfigurationError
         If the campaign or an effect is wrong, a run is beyond the rig's limits, or a recording is
         there already.
+    OwnedElsewhereError
+        If another process is writing into the folder.
     """
     path = Path(request.campaign)
     path = path / CAMPAIGN_FILE if path.is_dir() else path
@@ -80,14 +84,12 @@ def run(request: Request) -> None:
     check_output(path, campaign, (*chosen, *zeros), folder, overwrite=request.overwrite)
     if request.plot is not None:
         check_folder(Path(request.plot), "--plot")
-    written = list(
-        simulate_runs(campaign, chosen, folder, seed, overwrite=request.overwrite, effects=effects)
-    )
-    at_rest = list(
-        simulate_zeros(campaign, zeros, folder, seed, overwrite=request.overwrite, effects=effects)
-    )
-    copy_campaign(path, folder)
-    copy_table(path, campaign, folder)
+    more: dict[str, Any] = {"overwrite": request.overwrite, "effects": effects}
+    with own_new_campaign(folder):
+        written = list(simulate_runs(campaign, chosen, folder, seed, **more))
+        at_rest = list(simulate_zeros(campaign, zeros, folder, seed, **more))
+        copy_campaign(path, folder)
+        copy_table(path, campaign, folder)
     figures = [] if request.plot is None else _draw(campaign, written, effects, Path(request.plot))
     if request.as_json:
         click.echo(json.dumps(_document(folder, written, effects, at_rest), indent=1))
@@ -163,7 +165,8 @@ def simulate_runs(
     rig = campaign.rig()
     for one in show_progress(runs, "simulating"):
         run_seed = seed_of(seed, one.name)
-        recording = simulate_recording(rig, campaign, one, run_seed, effects)
+        own = rig if one.recorded_with is None else campaign.as_recorded(one.name).rig()
+        recording = simulate_recording(own, campaign, one, run_seed, effects)
         folder.mkdir(parents=True, exist_ok=True)  # not before a run is known to be possible
         file = write_recording(recording, folder / f"{one.name}.nc", overwrite=overwrite)
         rate, count = recording.sample_rate_hz, recording.sample_count
@@ -230,7 +233,7 @@ def copy_campaign(path: Path, folder: Path) -> None:
     """Put the campaign file beside its recordings, unless it is there."""
     target = folder / CAMPAIGN_FILE
     if not (target.exists() and target.samefile(path)):
-        target.write_bytes(path.read_bytes())
+        write_whole(target, path.read_bytes())
 
 
 def copy_table(path: Path, campaign: Campaign, folder: Path) -> None:
@@ -243,7 +246,7 @@ def copy_table(path: Path, campaign: Campaign, folder: Path) -> None:
         target = folder / source.resolve().relative_to(own)
         if not (target.exists() and target.samefile(source)):
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(source.read_bytes())
+            write_whole(target, source.read_bytes())
 
 
 def _document(

@@ -12,6 +12,7 @@ from typing import Any, Final
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from pmm.coefficients.workflow import Outcome
+from pmm.whole_file import write_whole
 
 JSON_SCHEMA: Final = "pmm-coefficients-1"
 
@@ -24,6 +25,7 @@ def document(outcome: Outcome, *, with_budgets: bool = True) -> dict[str, Any]:
         {
             "schema": JSON_SCHEMA,
             "campaigns": list(outcome.names),
+            "recommended": [row for row in found.table() if row["recommended"]],
             "coefficients": found.to_dict(),
             "budgets": [asdict(budget(found, k)) for k in budgets],
             "stated": asdict(outcome.stated),
@@ -63,7 +65,8 @@ def write_netcdf(outcome: Outcome, path: Path, provenance: Mapping[str, str]) ->
     """Write the table, every input's contribution and all findings as NetCDF4."""
     dataset = outcome.result.to_dataset()
     dataset.attrs["provenance"] = json.dumps(dict(provenance))
-    dataset.to_netcdf(path, engine="h5netcdf")
+    # By way of memory: HDF5 does not outlive a disk that fills up under it.
+    write_whole(path, bytes(dataset.to_netcdf(engine="h5netcdf")))
 
 
 def _cell(value: Any) -> Any:

@@ -1,17 +1,20 @@
 """What a campaign's files say beside its recordings: inertia, restoring, chain, uncertainties."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.measured import FORCES
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED, Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Oscillator
 from pmm.calibration import Calibration, read_calibration
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
@@ -76,8 +79,8 @@ def _of_both(path: Path) -> Calibration:
 
 def body_of(
     campaign: Campaign, inertia: str | None, *, has_dry: bool
-) -> tuple[Body | None, ModelUncertainty | None]:
-    """Return the body that is taken off and its uncertainty; ``None`` where dry runs are.
+) -> tuple[Body | None, tuple[ModelUncertainty, ...]]:
+    """Return the body that is taken off, ``None`` where dry runs are, and what is uncertain of it.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def body_of(
                 f"campaign {campaign.name!r}: no dry run to take off; run the same set-points in "
                 'air (kind = "dry"), or give the inertia'
             )
-        return None, None
+        return None, ()
     if inertia is not None and inertia != MODEL:
         return _model_file(Path(inertia))
     if campaign.model is None:
@@ -99,10 +102,31 @@ def body_of(
             "... --output model.toml` (a swing or a bifilar test) into the campaign file, name "
             'that file with --inertia, or add a dry run (kind = "dry") at each set-point'
         )
-    return campaign.model, campaign.model_uncertainty
+    own = [campaign.as_recorded(one.name).model_uncertainty for one in campaign.runs]
+    known = [one for one in (campaign.model_uncertainty, *own) if one is not None]
+    return campaign.model, tuple(dict.fromkeys(known))
 
 
-def _model_file(path: Path) -> tuple[Body, ModelUncertainty | None]:
+def with_own_body(cycle: Cycle, campaign: Campaign, settings: Settings, body: Body | None) -> Cycle:
+    """Return a cycle with what is to be taken off: the body, or the one it was recorded with.
+
+    Parameters
+    ----------
+    body
+        Of the campaign; ``None`` where dry runs are taken off.
+    """
+    recorded = campaign.as_recorded(cycle.name)
+    restoring = restoring_of(recorded, settings)
+    own = recorded.model if settings.inertia in (None, MODEL) else body
+    if body is None or own is None or own == body:
+        return cycle.without(body, restoring)
+    text = f"the model that it was recorded with is taken off ({own.mass_kg:g} kg)"
+    flag = Flag(OWN_MODEL, Severity.NOTE, text, None, (cycle.name,))
+    found = cycle.without(own, restoring)
+    return replace(found, flags=(*found.flags, flag))
+
+
+def _model_file(path: Path) -> tuple[Body, tuple[ModelUncertainty, ...]]:
     original: dict[str, Any] = read_toml(path)
     table = dict(original)
     faults: list[Fault] = list(limit_faults(table))
@@ -114,7 +138,7 @@ def _model_file(path: Path) -> tuple[Body, ModelUncertainty | None]:
     body = validate(Body, model, faults)
     if body is None or faults:
         raise as_error(path, faults, original)
-    return body, uncertainty
+    return body, () if uncertainty is None else (uncertainty,)
 
 
 def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
@@ -126,7 +150,7 @@ def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
 def stated_of(
     campaign: Campaign,
     settings: Settings,
-    model: ModelUncertainty | None,
+    models: Sequence[ModelUncertainty],
     calibrations: Sequence[Calibration],
     *,
     motion_asked: bool,
@@ -135,17 +159,16 @@ def stated_of(
 
     Parameters
     ----------
-    calibrations
-        That made readings forces; of several the larger counts.
+    models, calibrations
+        Of the bodies that are taken off, and that made readings forces; of several the larger
+        counts.
     motion_asked
         Whether set-points stand in for displacements that were not measured: only then does it
         matter how well eccentricity and phase were set.
     """
-    by_files = Stated(
-        **({} if model is None else _of_model(model)),
-        **(_of_set_points(campaign.runs) if motion_asked else {}),
-    )
-    by_files = largest([by_files, *(_of_gauges(one) for one in calibrations)])
+    set_points = Stated(**(_of_set_points(campaign.runs) if motion_asked else {}))
+    known = [*(Stated(**_of_model(one)) for one in models), *map(_of_gauges, calibrations)]
+    by_files = largest([set_points, *known])
     own, other = settings.uncertainty, by_files
     freedom = (other if own.inertia_kg_m2 == 0.0 else own).inertia_degrees_of_freedom
     return _stated(np.where(own.vector == 0.0, other.vector, own.vector), freedom)
@@ -190,8 +213,8 @@ def _of_gauges(one: Calibration) -> Stated:
     )
 
 
-def without_dry(cycle: Cycle, dry: list[Cycle]) -> Cycle:
-    """Return a cycle less the dry run of its motion.
+def without_dry(cycle: Cycle, dry: Sequence[Cycle], campaign: Campaign) -> Cycle:
+    """Return a cycle less the dry run of its motion, made with its model.
 
     Raises
     ------
@@ -199,7 +222,8 @@ def without_dry(cycle: Cycle, dry: list[Cycle]) -> Cycle:
         If none of them has it; the message says which would do.
     """
     refused = []
-    for one in dry:
+    model = campaign.as_recorded(cycle.name).model
+    for one in (one for one in dry if campaign.as_recorded(one.name).model == model):
         try:
             return cycle.without_dry(one)
         except ConfigurationError as error:

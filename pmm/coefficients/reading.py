@@ -1,6 +1,7 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -17,17 +18,16 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.measured import DISPLACEMENTS, FORCES
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
-from analysis.readers import read_recording
+from analysis.first_harmonics import seen_in
 from analysis.recording import Recording
 from analysis.resolver.analyse import analyse
 from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from pmm.calibrated import applied, calibrated
+from pmm.calibrated import applied
+from pmm.campaign_recording import RAW, open_recording
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
-from pmm.recorder.files import EVENTS
-from pmm.recorder.texts import read_lines
 
 _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
@@ -36,36 +36,34 @@ _BLOCK = 1 << 20
 
 def read_zero(task: Task) -> Done | Failed:
     """Read what the gauges show at rest."""
-    try:
-        recording = _recording(task)
-        part = gated(recording, task.path)
-        zero = Zero(
-            task.name,
-            _utc_s(recording),
-            task.number,
-            zero_reading(part, 0.0, (*FORCES, *_surge(part))),
-        )
-        return _done(task, recording, None, zero)
-    except PmmError as error:
-        return _failed(task, error)
+    return _tried(task, _at_rest)
 
 
 def read_cycle(task: Task) -> Done | Failed:
     """Read a run and return motion and loads of the model, zeros taken off."""
+    return _tried(task, _turning if task.kind.oscillates else _towed)
+
+
+def _tried(task: Task, work: Callable[[Task, Recording], Done]) -> Done | Failed:
+    """Read a recording and do the work; if that fails, what is damaged of the file is named."""
+    damaged: list[str] = []
     try:
         recording = _recording(task)
-        if task.kind.oscillates:
-            return _turning(task, recording)
-        return _towed(task, recording)
+        damaged += [flag.message for flag in recording.flags if flag.damaged]
+        return work(task, recording)
     except PmmError as error:
-        return _failed(task, error)
+        message = "; ".join([str(error), *damaged])
+        return Failed(task.name, str(task.source.path), message, error.exit_status)
 
 
 def _recording(task: Task) -> Recording:
     """Read a recording, in newtons by its own calibration unless the settings give another."""
-    recording = replace(read_recording(task.path, task.columns), name=task.name)
-    if task.chain.matrix is None:
-        return calibrated(recording, task.chain.calibration)
+    chain = task.chain
+    given = chain.calibration if chain.matrix is None else RAW
+    recording = open_recording(replace(task.source, calibration=given))
+    _check_forces(recording)
+    if chain.matrix is None:
+        return recording
     if applied(recording) is not None:
         raise DataError(
             f"{task.name}: a calibration was applied to it already; take calibration_matrix out of "
@@ -74,15 +72,26 @@ def _recording(task: Task) -> Recording:
     return recording
 
 
+def _check_forces(recording: Recording) -> None:
+    missing = [name for name in FORCES if name not in recording.channel_names]
+    if missing:
+        alone = "; with one force, pmm analyse and pmm gap still work" if len(missing) == 1 else ""
+        raise DataError(
+            f"{recording.name}: no channel {' or '.join(missing)}; coefficients need the forces at "
+            f"both struts (channels: {', '.join(recording.channel_names)}). Name the columns in "
+            f"[columns] of the campaign file{alone}"
+        )
+
+
+def _at_rest(task: Task, recording: Recording) -> Done:
+    reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
+    zero = Zero(task.name, _utc_s(recording), task.number, reading)
+    return _done(task, recording, None, zero)
+
+
 def _turning(task: Task, recording: Recording) -> Done:
     wanted = (*_USED, *_surge(recording))
     channels = tuple(name for name in wanted if name in recording.channel_names)
-    missing = [name for name in FORCES if name not in channels]
-    if missing:
-        raise DataError(
-            f"no channel {' or '.join(missing)} (channels: {', '.join(recording.channel_names)}); "
-            "name the columns in [columns] of the campaign file"
-        )
     if not all(name in channels for name in DISPLACEMENTS):
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
     analysis = analyse(recording, task.choice, replace(task.settings, channels=channels))
@@ -91,19 +100,20 @@ def _turning(task: Task, recording: Recording) -> Done:
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     flags = (*found, *flags, *_speed_flags(task, recording))
     periods = analysis.readings[0].periods
-    return _done(task, recording, _model(task, struts), None, periods, flags)
+    done = _done(task, recording, _model(task, struts), None, periods, flags)
+    return replace(done, seen=seen_in(recording, analysis))
 
 
 def _towed(task: Task, recording: Recording) -> Done:
-    part = gated(recording, task.path)
-    reading = zero_reading(part, 0.0, (*FORCES, *_surge(part)))
+    reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
     speed = task.set_point.carriage_speed_m_s
     struts = static_cycle(task.name, reading, task.oscillator, speed)
     struts, flags = _zeroed(struts, task, recording)
     if not struts.mean_known:
         raise DataError(
             f"{task.name}: its mean force is all that it tells, and no zero run is named; make one "
-            "before and after, and name them as zero_before and zero_after"
+            "before and after, and name them as zero_before and zero_after; or say tared = true in "
+            "the campaign file, where zeros were taken off before it was recorded"
         )
     return _done(task, recording, _model(task, struts), None, 0, flags)
 
@@ -136,7 +146,7 @@ def _zeroed(
     """Take the zero runs off the means, with their drift between them."""
     before, after = task.zeros
     if before is None and after is None:
-        return struts, ()
+        return replace(struts, mean_known=task.tared), ()
     if before is None or after is None or before.name == after.name:
         only = before or after
         assert only is not None  # noqa: S101 - one of them is there
@@ -184,17 +194,6 @@ def _surge(recording: Recording) -> tuple[str, ...]:
     return (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
 
 
-def gated(recording: Recording, path: Path) -> Recording:
-    """Return the part of a record at rest in which the gate was open, where that was written."""
-    if not (path.parent / EVENTS).exists():
-        return recording
-    events, _ = read_lines(path.parent / EVENTS)
-    times = {one["text"]: float(one["time_s"]) for one in events if one["kind"] == "state"}
-    if not {"gate open", "hold"} <= set(times):
-        return recording
-    return recording.between(times["gate open"], times["hold"])
-
-
 def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
     """Say where the carriage did not do what the campaign says."""
     if CARRIAGE_SPEED.name not in recording.channel_names:
@@ -211,7 +210,7 @@ def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
 
 
 def _note(code: str, text: str, name: str) -> Flag:
-    return Flag(code, Severity.NOTE, f"{name}: {text}", None)
+    return Flag(code, Severity.NOTE, text, None, (name,))
 
 
 def _done(
@@ -224,20 +223,16 @@ def _done(
 ) -> Done:
     return Done(
         task.name,
-        str(task.path),
+        str(task.source.path),
         cycle,
         zero,
         periods,
         recording.sample_rate_hz,
         recording.end_s - recording.start_s,
-        (*recording.flags, *flags),
-        sha256_of(task.path) if task.hashed else "",
+        tuple(flag.of(task.name) for flag in (*recording.flags, *flags)),
+        sha256_of(task.source.path) if task.hashed else "",
         applied(recording),
     )
-
-
-def _failed(task: Task, error: PmmError) -> Failed:
-    return Failed(task.name, str(task.path), str(error), error.exit_status)
 
 
 def sha256_of(path: Path) -> str:

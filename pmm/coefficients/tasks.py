@@ -7,7 +7,7 @@ from pathlib import Path
 from analysis.coefficients.corrections import ZeroReading
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.phasors import FloatArray
-from analysis.readers import ColumnMap
+from analysis.plausibility import Seen
 from analysis.resolver.analyse import Settings as ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.flags import Flag, Severity
@@ -15,6 +15,7 @@ from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.calibration import Calibration
 from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign_recording import COMPLETE, RecordingSource
 from pmm.coefficients.settings import Amplifier
 from pmm.plan.kinds import RunKind
 
@@ -70,24 +71,30 @@ class Task:
         As the campaign file says, measured where it was; ``None`` for a record at rest.
     zeros
         Before and after; either may be missing.
+    tared
+        Whether the recording's means are forces as they stand.
     hashed
         Whether the file's SHA-256 is wanted.
     """
 
-    name: str
-    path: Path
+    source: RecordingSource
     kind: RunKind
     oscillator: Oscillator
     set_point: SetPoint
     choice: ReferenceChoice
     settings: ResolverSettings
-    columns: ColumnMap | None = None
     drift_rad: float = 0.0
     number: int | None = None
     chain: Chain = field(default_factory=Chain)
     zero_names: tuple[str | None, str | None] = (None, None)
     zeros: tuple[Zero | None, Zero | None] = (None, None)
+    tared: bool = False
     hashed: bool = False
+
+    @property
+    def name(self) -> str:
+        """The run's name."""
+        return self.source.name or self.source.path.stem
 
     def with_zeros(self, zeros: Mapping[str, Zero]) -> "Task":
         """Return the task with the readings of its zero runs."""
@@ -111,6 +118,8 @@ class Done:
         Of the file, where it was wanted.
     calibration
         What made its readings forces; ``None`` where nothing did, or a matrix by hand.
+    seen
+        What the checks across all runs look at; ``None`` for a record at rest.
     """
 
     name: str
@@ -123,6 +132,7 @@ class Done:
     flags: tuple[Flag, ...] = ()
     sha256: str = ""
     calibration: Calibration | None = None
+    seen: Seen | None = None
 
 
 @dataclass(frozen=True)
@@ -176,23 +186,23 @@ def work_of(
         if (why := _why_not(one, leave_out)) is not None:
             flags += [_left_out(one.name, why)] if why else []
             continue
-        path = _path(one, folder)
-        if not path.exists() and isinstance(one, Run) and one.file is None:
+        source = RecordingSource.of(campaign, one, folder.resolve())
+        if not source.path.exists() and isinstance(one, Run) and one.file is None:
             missing.append(one.name)
             continue
+        own = campaign.as_recorded(one.name)
         task = Task(
-            one.name,
-            path,
+            source,
             one.kind,
-            oscillator,
+            own.oscillator or oscillator,
             _set_point(one),
-            campaign.reference,
+            own.reference,
             settings,
-            None if path.suffix == ".nc" else campaign.columns,
             one.drift_rad,
             one.number,
             chain,
             (one.zero_before, one.zero_after),
+            tared=campaign.tared,
             hashed=hashed,
         )
         kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
@@ -204,7 +214,7 @@ def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:
     """Say why a run is not used; without words where nobody expects it to be."""
     if one.name in leave_out:
         return "it was asked for"
-    if one.outcome != "complete":
+    if one.outcome != COMPLETE:
         return f"its outcome is {one.outcome!r}"
     if isinstance(one, AtRest) and one.kind not in (RunKind.ZERO, *TOWED):
         return ""
@@ -214,15 +224,11 @@ def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:
 
 
 def _left_out(name: str, why: str) -> Flag:
-    return Flag("run_left_out", Severity.NOTE, f"{name} is left out: {why}", name)
+    return Flag("run_left_out", Severity.NOTE, f"left out: {why}", None, (name,))
 
 
 def _is_dry(one: Run | AtRest) -> bool:
     return one.kind is RunKind.DRY or one.medium is Medium.AIR
-
-
-def _path(one: Run | AtRest, folder: Path) -> Path:
-    return one.recording_path(folder).resolve()
 
 
 def _set_point(one: Run | AtRest) -> SetPoint:

@@ -14,21 +14,22 @@ from analysis.coefficients.stated import Stated
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign import CAMPAIGN_FILE, Campaign, nearest_run
 from pmm.campaign_file import read_campaign
 from pmm.coefficients.given import (
     body_of,
     chain_of,
     largest,
     oscillator_of,
-    restoring_of,
     stated_of,
+    with_own_body,
     without_dry,
 )
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import Settings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
+from pmm.implausible import implausible
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,20 @@ class Outcome:
     body: Body | None
     settings: Settings
 
+    @property
+    def noticed(self) -> tuple[Flag, ...]:
+        """All that was flagged of the runs that were used, each flag with its runs."""
+        of_runs = [flag for flags in self.flags.values() for flag in flags]
+        return tuple(dict.fromkeys((*self.left_out, *self.result.flags, *of_runs)))
+
+    @property
+    def all_flags(self) -> tuple[Flag, ...]:
+        """The same with the runs that could not be used."""
+        failed = [
+            Flag("run_failed", Severity.VOID, one.message, None, (one.name,)) for one in self.failed
+        ]
+        return (*failed, *self.noticed)
+
 
 _NOTHING_STATED = Flag(
     "nothing_stated",
@@ -80,6 +95,11 @@ class _Read:
     work: Work
     stated: Stated
     body: Body | None
+
+    @property
+    def doubts(self) -> tuple[Flag, ...]:
+        """Units and signs that look wrong in all runs."""
+        return implausible(self.campaign, [one.seen for one in self.runs if one.seen is not None])
 
 
 def coefficients_of(
@@ -108,6 +128,7 @@ def coefficients_of(
     """
     campaigns = [(folder, read_campaign(folder / CAMPAIGN_FILE)) for folder in folders]
     _check_names(campaigns)
+    _check_left_out(settings.leave_out, [campaign for _, campaign in campaigns])
     parts = [
         _read(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
@@ -129,7 +150,7 @@ def coefficients_of(
         missing,
         {one.name: one.flags for one in runs if one.flags},
         (
-            *(flag for part in parts for flag in part.work.left_out),
+            *(flag for part in parts for flag in (*part.work.left_out, *part.doubts)),
             *(() if stated.vector.any() else (_NOTHING_STATED,)),
         ),
         stated,
@@ -169,6 +190,15 @@ def _check_names(campaigns: Sequence[tuple[Path, Campaign]]) -> None:
         raise ConfigurationError("the campaigns cannot be taken together: " + "; ".join(faults))
 
 
+def _check_left_out(names: Sequence[str], campaigns: Sequence[Campaign]) -> None:
+    """Refuse to leave out what is not there: a slip in a name would leave the run in."""
+    runs = [one.name for campaign in campaigns for one in campaign.runs]
+    known = [*runs, *(one.name for campaign in campaigns for one in campaign.at_rest)]
+    for name in names:
+        if name not in known:
+            raise ConfigurationError(f"leave_out: no run {name!r}; {nearest_run(name, known)}")
+
+
 def _read(
     folder: Path,
     campaign: Campaign,
@@ -188,13 +218,14 @@ def _read(
         leave_out=settings.leave_out,
         hashed=hashed,
     )
-    body, model = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
+    body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
     found = _recordings(work, executor, progress, with_dry=body is None)
     wet, dry = _sorted(found, {task.name for task in work.dry})
     if body is None:
-        wet = [without_dry(one, dry) if one.frequency_hz > 0.0 else one for one in wet]
-    restoring = restoring_of(campaign, settings)
-    cycles = [one.without(body, restoring).about(settings.point_ahead_m) for one in wet]
+        wet = [without_dry(one, dry, campaign) if one.frequency_hz > 0.0 else one for one in wet]
+    cycles = [
+        with_own_body(one, campaign, settings, body).about(settings.point_ahead_m) for one in wet
+    ]
     done = [one for one in found if isinstance(one, Done)]
     gauges = [one.calibration for one in done if one.calibration is not None]
     return _Read(
@@ -203,7 +234,7 @@ def _read(
         tuple(done),
         tuple(one for one in found if isinstance(one, Failed)),
         work,
-        stated_of(campaign, settings, model, gauges, motion_asked=_asked(cycles)),
+        stated_of(campaign, settings, models, gauges, motion_asked=_asked(cycles)),
         body,
     )
 

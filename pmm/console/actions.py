@@ -1,22 +1,25 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from anyio.to_thread import run_sync
 from pydantic import ValidationError
 from starlette.requests import Request
-from starlette.responses import JSONResponse
+from starlette.responses import Response
 
 from hardware.description.errors import PmmError
+from pmm.console.checking import ReadyPlan, check_plan_text, ready_plan
 from pmm.console.command_log import CommandRecord, keep
 from pmm.console.desk import NotInControlError
+from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
+from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, OrderKind
-from pmm.console.plans import CheckedPlan, Plans, plan_picture
+from pmm.console.plans import Plans
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
@@ -25,12 +28,14 @@ from pmm.console.requests import (
     Posted,
     TakePosted,
 )
+from pmm.console.workers import Workers
 from pmm.run.states import Command
 
 SESSION: Final = "x-pmm-session"
-_LARGEST_BODY: Final = (1 << 20) + (1 << 16)
 _LOGGED: Final = 400  # bytes of what was posted; plans are kept as files
 _SHOWN: Final = 8  # characters of a session
+# As JSON, in which a line's end takes two.
+_LARGEST: Final[dict[type[Posted], int]] = {PlanPosted: 2 * LARGEST_PLAN}
 P = TypeVar("P", bound=Posted)
 
 
@@ -42,8 +47,14 @@ class Who:
     address: str
 
 
+def who_asks(request: Request) -> Who:
+    """Return who sends a request."""
+    address = request.client.host if request.client is not None else "?"
+    return Who(request.headers.get(SESSION, ""), address)
+
+
 class TooLargeError(PmmError):
-    """A request that is larger than any plan."""
+    """A request that is larger than any of its kind."""
 
 
 class Actions:
@@ -56,33 +67,40 @@ class Actions:
     """
 
     def __init__(
-        self, hub: Hub, loop: LoopSide, plans: Plans, folder: Path, utc: Callable[[], str]
+        self,
+        hub: Hub,
+        loop: LoopSide,
+        workers: Workers,
+        plans: Plans,
+        folder: Path,
+        utc: Callable[[], str],
     ) -> None:
-        self._hub, self._loop, self._plans = hub, loop, plans
+        self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._folder, self._utc = folder, utc
-        self._queued: dict[int, CheckedPlan] = {}
+        self._queued: dict[int, ReadyPlan] = {}
+        self._count = 0
 
-    async def command(self, request: Request) -> JSONResponse:
+    async def command(self, request: Request) -> Response:
         """Hand a command to run control; a quick stop is everybody's right."""
         return await self._do(request, CommandPosted, "command", self._command)
 
-    async def answer(self, request: Request) -> JSONResponse:
+    async def answer(self, request: Request) -> Response:
         """Answer the rig's question."""
         return await self._do(request, AnswerPosted, "answer", self._answer)
 
-    async def queue(self, request: Request) -> JSONResponse:
+    async def queue(self, request: Request) -> Response:
         """Queue a plan."""
         return await self._do(request, PlanPosted, "queue", self._queue)
 
-    async def drop(self, request: Request) -> JSONResponse:
+    async def drop(self, request: Request) -> Response:
         """Take a plan out of the queue."""
         return await self._do(request, DropPosted, "drop", self._drop)
 
-    async def take(self, request: Request) -> JSONResponse:
+    async def take(self, request: Request) -> Response:
         """Take control."""
         return await self._do(request, TakePosted, "take control", self._take)
 
-    async def check(self, request: Request) -> JSONResponse:
+    async def check(self, request: Request) -> Response:
         """Read and check a plan; nothing is changed, so whoever watches may do it."""
         return await self._do(request, PlanPosted, "check", self._check)
 
@@ -90,15 +108,11 @@ class Actions:
         """Return the folder of the present campaign, or the one for all."""
         present = self._hub.last.plan if self._hub.last is not None else 0
         found = self._queued.get(present)
-        return self._folder if found is None else found.waiting.folder
+        return self._folder if found is None else found.packed.folder
 
     def folders(self) -> list[Path]:
         """Return the folders of all campaigns that were queued."""
-        return [one.waiting.folder for one in self._queued.values()]
-
-    def queued(self, number: int) -> CheckedPlan | None:
-        """Return a plan that was queued."""
-        return self._queued.get(number)
+        return [one.packed.folder for one in self._queued.values()]
 
     async def _do(
         self,
@@ -106,12 +120,11 @@ class Actions:
         kind: type[P],
         action: str,
         act: Callable[[P, Who], Awaitable[dict[str, Any]]],
-    ) -> JSONResponse:
-        address = request.client.host if request.client is not None else "?"
-        who = Who(request.headers.get(SESSION, ""), address)
-        given = ""
+    ) -> Response:
+        who = who_asks(request)
+        given, folder = "", self.folder()
         try:
-            body = await body_of(request)
+            body = await body_of(request, _LARGEST.get(kind, LARGEST_REQUEST))
             given = body[:_LOGGED].decode("utf-8", "replace")
             found = await act(kind.model_validate_json(body), who)
             status = 200
@@ -121,27 +134,38 @@ class Actions:
             status, found = 403, {"error": str(error)}
         except PmmError as error:
             status, found = 409, {"error": str(error)}
-        await self._log(who, action, given, found, taken=status == 200)
-        return JSONResponse(found, status)
+        if action != "check":
+            await self.log(who, action, given, found, folder, taken=status == 200)
+        return Response(encode_answer(found), status, media_type="application/json")
 
-    async def _log(
-        self, who: Who, action: str, given: str, found: dict[str, Any], *, taken: bool
+    async def log(
+        self,
+        who: Who,
+        action: str,
+        given: str,
+        found: dict[str, Any],
+        folder: Path | None = None,
+        *,
+        taken: bool,
     ) -> None:
-        if action == "check":
-            return
+        """Keep what was asked and what was answered, in the present campaign's folder or that."""
         said = str(found.get("said", found.get("error", "")))
         session = who.session[:_SHOWN]
         record = CommandRecord(self._utc(), who.address, session, action, given, taken, said)
         try:
-            await run_sync(keep, self.folder(), record)
+            await run_sync(keep, folder or self.folder(), record)
         except OSError as error:
-            time_s = self._hub.last.status.time_s if self._hub.last is not None else 0.0
-            text = f"commands are not logged: {error}"
-            self._hub.add_notice(Notice("alarm", time_s, text))
+            self.alarm(f"commands are not logged: {error}")
+
+    def alarm(self, text: str) -> None:
+        """Show something that the server has found as an alarm."""
+        time_s = self._hub.last.status.time_s if self._hub.last is not None else 0.0
+        self._hub.add_notice(Notice("alarm", time_s, text))
 
     async def _command(self, posted: CommandPosted, who: Who) -> dict[str, Any]:
-        if posted.command is not Command.QUICK_STOP:
-            self._hub.desk.require(who.session)
+        if posted.command is Command.QUICK_STOP:
+            return {"said": await self._loop.stop_quickly()}
+        self._hub.desk.require(who.session)
         return {"said": await self._loop.order(OrderKind.COMMAND, str(posted.command))}
 
     async def _answer(self, posted: AnswerPosted, who: Who) -> dict[str, Any]:
@@ -150,21 +174,25 @@ class Actions:
         return {"said": said}
 
     async def _check(self, posted: PlanPosted, who: Who) -> dict[str, Any]:
-        found = await run_sync(self._plans.check, posted.name, posted.text)
-        return {"plan": plan_picture(found)}
+        worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
+        found = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
+        return {"plan": found}
 
     async def _queue(self, posted: PlanPosted, who: Who) -> dict[str, Any]:
         self._hub.desk.require(who.session)
-        found = await run_sync(self._plans.queue, posted.name, posted.text)
-        number = found.waiting.number
-        self._queued[number] = found
+        worker = self._workers.for_whom(in_control=True)
+        found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
+        self._count += 1
+        number = self._count
+        self._queued[number] = replace(found, packed=replace(found.packed, pieces=()))
         try:
-            said = await self._loop.order(OrderKind.QUEUE, plan=found.waiting)
+            plan = replace(found.packed, number=number)
+            said = await self._loop.order(OrderKind.QUEUE, plan=plan)
         except PmmError:
             del self._queued[number]
             raise
         self._tell_plans()
-        return {"said": said, "plan": plan_picture(found)}
+        return {"said": said, "plan": found.picture}
 
     async def _drop(self, posted: DropPosted, who: Who) -> dict[str, Any]:
         self._hub.desk.require(who.session)
@@ -172,17 +200,16 @@ class Actions:
 
     async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
         self._hub.desk.take_over(who.session)
-        self._hub.tell_desk()
+        self._hub.news.set()
         return {"said": "this browser has control"}
 
     def _tell_plans(self) -> None:
-        plans = {str(n): plan_picture(one) for n, one in self._queued.items()}
-        self._hub.plans = plans
-        self._hub.broadcast({"type": "plans", "plans": plans})
+        plans = {str(number): one.picture for number, one in self._queued.items()}
+        self._hub.tell_plans(encode_answer(plans))
 
 
-async def body_of(request: Request) -> bytes:
-    """Read a body that is not larger than any plan.
+async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:
+    """Read a body that is not larger than so many bytes.
 
     Raises
     ------
@@ -192,8 +219,8 @@ async def body_of(request: Request) -> bytes:
     body = bytearray()
     async for part in request.stream():
         body += part
-        if len(body) > _LARGEST_BODY:
-            raise TooLargeError(f"the request is larger than {_LARGEST_BODY} bytes")
+        if len(body) > largest:
+            raise TooLargeError(f"the request is larger than {largest} bytes")
     return bytes(body)
 
 

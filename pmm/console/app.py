@@ -1,52 +1,78 @@
 """The web application: one page, what it loads, what it posts, and the stream of frames."""
 
 import asyncio
+import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 from importlib.util import find_spec
+from math import ceil
 from multiprocessing.connection import Connection
 from pathlib import Path
 from secrets import token_urlsafe
-from typing import Final
+from typing import Any, Final
 
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
-from pmm.console.actions import Actions, body_of
+from hardware.description.errors import PmmError
+from pmm.console.actions import Actions, TooLargeError, body_of, who_asks
 from pmm.console.app_settings import Settings
+from pmm.console.checking import look_around
 from pmm.console.client import Client
 from pmm.console.finished import Finished
 from pmm.console.hub import Hub
+from pmm.console.limits import MOST_STREAMS
+from pmm.console.lockout import Lockout
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, Reply
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
+from pmm.console.pump import pump
+from pmm.console.quick_stop import QuickStop
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, Guard
+from pmm.console.workers import Shared, Workers
 
 PAGE: Final = Path(__file__).parent / "page"
 _SESSION_LENGTH: Final = range(16, 65)
-_WRONG_TOKEN_S: Final = 0.5
+_WAIT: Final = "too many wrong tokens came from this address; wait {} s, then try again"
+_NOT_TAKEN: Final = 1003  # RFC 6455: data of a kind that is not accepted
+_TOO_MANY: Final = 1013  # the registry of RFC 6455: try again later
+_FULL: Final = (
+    f"{MOST_STREAMS} pages are open, which is the limit; close one. Quick stop works here too"
+)
 
 
 class Console:
     """The parts of a console that is being served."""
 
-    def __init__(self, settings: Settings, connection: Connection, end: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        connection: Connection,
+        quick_stop: QuickStop,
+        end: Callable[[], None],
+    ) -> None:
         self.door = settings.door
         self.hub = Hub(self._replied, self._written, _utc)
-        self.loop = LoopSide(connection, self.hub.take, self._lost)
+        self.loop = LoopSide(connection, quick_stop, self.hub.take, self._lost)
         self._end = end
+        self._lockout = Lockout(time.monotonic)
         plans = Plans(settings.rig_path, settings.plans, settings.output)
-        self.plans = plans
-        self.actions = Actions(self.hub, self.loop, plans, settings.log_folder, _utc)
-        self.finished = Finished(self.hub, settings.earlier, settings.reference)
+        self.workers = Workers()
+        self.actions = Actions(self.hub, self.loop, self.workers, plans, settings.log_folder, _utc)
+        figures = self.workers.figures
+        self.finished = Finished(self.hub, figures, settings.earlier, settings.reference)
         self.pages = Pages(self.actions.folders, settings.log_folder)
+        self._around = Shared(
+            lambda: self.workers.around.run(look_around, plans, self.pages.folders())
+        )
+        self._pump = asyncio.ensure_future(pump(self.hub))
 
     def _replied(self, reply: Reply) -> None:
         self.loop.replied(reply)
@@ -66,27 +92,38 @@ class Console:
         if len(session) not in _SESSION_LENGTH or taken:
             session = token_urlsafe(24)
         await socket.accept()
-        client = self.hub.join(session)
-        sender = asyncio.ensure_future(_send(socket, client))
+        if len(self.hub.clients) >= MOST_STREAMS and not self.hub.is_expected(session):
+            await socket.close(_TOO_MANY, _FULL)
+            return
+        client = Client(session, socket.send_text, socket.close)
+        self.hub.join(client)
         try:
-            while True:
-                await socket.receive_text()
-        except WebSocketDisconnect:
-            pass
+            if (await socket.receive())["type"] == "websocket.receive":
+                await socket.close(
+                    _NOT_TAKEN, "nothing is taken on this stream; commands are posted"
+                )
         finally:
-            sender.cancel()
             self.hub.part(client)
 
     async def log_in(self, request: Request) -> Response:
         """Take the token and give a cookie for it."""
+        who = who_asks(request)
         try:
             posted = TokenPosted.model_validate_json(await body_of(request))
-        except ValueError:
+        except (ValueError, TooLargeError):
             return JSONResponse({"error": "no token"}, 422)
+        left_s = ceil(self._lockout.wait_s(who.address))  # nothing is awaited until it is counted
+        if left_s:
+            return JSONResponse({"error": _WAIT.format(left_s)}, 429, {"retry-after": str(left_s)})
         cookie = self.door.log_in(posted.token)
         if cookie is None:
-            await asyncio.sleep(_WRONG_TOKEN_S)
+            said, shut_out = self._lockout.wrong(who.address)
+            if shut_out:
+                self.actions.alarm(said)
+            await self.actions.log(who, "log in", "", {"error": said}, taken=False)
             return JSONResponse({"error": "this is not the token"}, 401)
+        self._lockout.right(who.address)
+        await self.actions.log(who, "log in", "", {"said": "welcome"}, taken=True)
         answer = JSONResponse({"said": "welcome"})
         answer.set_cookie(
             COOKIE, cookie, httponly=True, samesite="strict", secure=self.door.tls, path="/"
@@ -95,19 +132,31 @@ class Console:
 
     async def offered(self, request: Request) -> Response:
         """Return the names of the plans."""
-        return JSONResponse({"names": await asyncio.to_thread(self.plans.names)})
+        return await self._seen(lambda names, _: {"names": names})
 
     async def listed(self, request: Request) -> Response:
         """Return the pages that the campaigns' folders hold."""
-        return JSONResponse({"pages": await asyncio.to_thread(self.pages.listed)})
+        return await self._seen(lambda _, found: {"pages": self.pages.listed(found)})
+
+    async def _seen(
+        self, show: Callable[[list[str], dict[Path, list[str]]], dict[str, Any]]
+    ) -> Response:
+        try:
+            return JSONResponse(show(*await self._around.get()))
+        except PmmError as error:
+            return JSONResponse({"error": str(error)}, 409)
 
     async def leave(self) -> None:
         """Let go of what was started."""
+        self._pump.cancel()
         self.finished.close()
+        self.workers.close()
         await asyncio.sleep(0)
 
 
-def application(settings: Settings, connection: Connection, end: Callable[[], None]) -> Guard:
+def application(
+    settings: Settings, connection: Connection, quick_stop: QuickStop, end: Callable[[], None]
+) -> Guard:
     """Return the application; it is set up when its event loop runs.
 
     Parameters
@@ -118,7 +167,7 @@ def application(settings: Settings, connection: Connection, end: Callable[[], No
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
-        console = Console(settings, connection, end)
+        console = Console(settings, connection, quick_stop, end)
         app.router.routes.extend(_routes(console))
         try:
             yield
@@ -171,15 +220,6 @@ def charts_folder() -> Path:
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError("uplot-python is not installed; install this package anew")
     return Path(spec.origin).parent / "static"
-
-
-async def _send(socket: WebSocket, client: Client) -> None:
-    while True:
-        text = await client.next()
-        if client.replaced:
-            await socket.close(4001, "this session was opened in another window")
-            return
-        await socket.send_text(text)
 
 
 def _utc() -> str:

@@ -1,62 +1,110 @@
-"""One browser, seen from the server: what waits for it is bounded, and frames are dropped."""
+"""One browser, seen from the server: what waits for it is bounded, and pictures never wait."""
 
 import asyncio
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from typing import Final
 
-WAITING: Final = 8  # messages: a third of a second
+from starlette.websockets import WebSocketDisconnect
+
+REPLACED: Final = 4001  # of RFC 6455's private codes; the page knows it
+WAITING: Final = 64  # messages that are no pictures: alarms, states, plans, runs that ended
 
 
 class Client:
-    """What waits to be sent to a browser.
+    """What a browser has, and what waits to be sent to it.
 
-    A browser that does not keep up gets nothing more until it has room again, and then a snapshot
-    of everything instead of what it missed.
+    Pictures do not wait: when it has taken what was sent, it gets the latest one. Where too many
+    messages wait, it gets a snapshot of everything in their place.
 
     Parameters
     ----------
-    snapshot
-        Makes that snapshot for this session.
+    send
+        Sends a text; it waits for as long as the browser does not take any.
+    close
+        Ends the stream, with a code and a reason.
 
     Attributes
     ----------
-    replaced
-        Whether the same session was opened elsewhere, which ends this one.
+    behind
+        Whether it needs a snapshot.
+    frame, piece
+        Numbers of the latest frame it has, and of the first piece of traces that it lacks.
+    desk
+        What it was told of who has control.
     dropped
         Messages that were not sent.
     """
 
-    def __init__(self, session: str, snapshot: Callable[[str], str]) -> None:
-        self.session, self.replaced, self.dropped = session, False, 0
-        self._snapshot = snapshot
+    def __init__(
+        self,
+        session: str,
+        send: Callable[[str], Awaitable[None]],
+        close: Callable[[int, str], Awaitable[None]],
+    ) -> None:
+        self.session, self._send, self._close = session, send, close
+        self.behind, self.dropped = True, 0
+        self.frame = self.piece = 0
+        self.desk = ""
         self._waiting: deque[str] = deque()
-        self._behind = True
-        self._wake = asyncio.Event()
+        self._sending: asyncio.Future[None] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether it has not taken yet what was sent last."""
+        return self._sending is not None and not self._sending.done()
+
+    @property
+    def _waits(self) -> bool:
+        return self.behind or bool(self._waiting)
 
     def offer(self, text: str) -> None:
         """Add a message, or fall behind."""
-        if self._behind:
+        if self.behind:
             self.dropped += 1
         elif len(self._waiting) >= WAITING:
             self.dropped += len(self._waiting) + 1
-            self._waiting.clear()
-            self._behind = True
+            self.fall_behind()
         else:
             self._waiting.append(text)
-        self._wake.set()
+
+    def fall_behind(self) -> None:
+        """Forget what waits: a snapshot comes in its place."""
+        self._waiting.clear()
+        self.behind = True
+
+    def take(self) -> list[str]:
+        """Return the messages that wait; they wait no more."""
+        found = list(self._waiting)
+        self._waiting.clear()
+        return found
+
+    def begin(self, texts: list[str], done: Callable[[], None]) -> None:
+        """Begin to send; ``done`` is called where something waits when these are taken."""
+
+        def sent(_: object) -> None:
+            if self._waits:
+                done()
+
+        self._sending = asyncio.ensure_future(self._send_all(texts))
+        self._sending.add_done_callback(sent)
 
     def replace(self) -> None:
         """End this one: its session was opened elsewhere."""
-        self.replaced = True
-        self._wake.set()
+        self.stop()
+        self._sending = asyncio.ensure_future(self._end())
 
-    async def next(self) -> str:
-        """Wait for the next message."""
-        while not (self._waiting or self._behind or self.replaced):
-            self._wake.clear()
-            await self._wake.wait()
-        if self._behind:
-            self._behind = False
-            return self._snapshot(self.session)
-        return self._waiting.popleft() if self._waiting else ""
+    def stop(self) -> None:
+        """Send nothing more."""
+        if self._sending is not None:
+            self._sending.cancel()
+
+    async def _end(self) -> None:
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):
+            await self._close(REPLACED, "this session was opened in another window")
+
+    async def _send_all(self, texts: list[str]) -> None:
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):  # it has gone
+            for text in texts:
+                await self._send(text)

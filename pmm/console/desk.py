@@ -27,6 +27,11 @@ class Desk:
     def __init__(self) -> None:
         self._holder = ""
 
+    @property
+    def holder(self) -> str:
+        """The session that has control; empty for none."""
+        return self._holder
+
     def seen_from(self, session: str) -> Holder:
         """Return who has control."""
         if not self._holder:

@@ -14,9 +14,19 @@ from pmm.run.status import HarmonicRow, RunOutcome
 _DIGITS = 6
 
 
-def encode(message: Mapping[str, Any]) -> str:
-    """Return a message for the browser; raises ValueError for what JSON does not have."""
+class Made(str):
+    """JSON that is made already."""
+
+
+def encode(message: object) -> str:
+    """Return a message for the browser, or a part of one, as JSON; raises ValueError for NaN."""
     return json.dumps(message, allow_nan=False, separators=(",", ":"))
+
+
+def encode_answer(parts: Mapping[str, Any]) -> str:
+    """Return a message of which some parts are made already."""
+    texts = (f"{encode(k)}:{v if isinstance(v, Made) else encode(v)}" for k, v in parts.items())
+    return f"{{{','.join(texts)}}}"
 
 
 def number(value: float) -> float | None:
@@ -47,7 +57,7 @@ def hello_picture(hello: Hello) -> dict[str, Any]:
 
 
 def frame_picture(frame: Frame) -> dict[str, Any]:
-    """Return one tick."""
+    """Return one tick, without its traces."""
     status, point = frame.status, frame.set_point
     return {
         "type": "frame",
@@ -76,7 +86,6 @@ def frame_picture(frame: Frame) -> dict[str, Any]:
         "bus": asdict(frame.bus),
         "loop": {key: _plain(value) for key, value in asdict(frame.loop).items()},
         "needles": needles_picture(frame.needles),
-        "trace": trace_picture(frame.trace),
     }
 
 

@@ -1,40 +1,27 @@
-"""What the server knows of the rig, and its handing on to all browsers."""
+"""What the server knows of the rig, and what of it each browser lacks."""
 
+import asyncio
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
-import numpy as np
-
 from pmm.console.client import Client
-from pmm.console.desk import Desk
+from pmm.console.desk import Desk, Holder
 from pmm.console.encoding import (
     encode,
-    frame_picture,
     hello_picture,
     needles_picture,
     notice_picture,
     outcome_picture,
-    trace_picture,
 )
-from pmm.console.messages import (
-    WRITTEN,
-    FloatArray,
-    Frame,
-    Hello,
-    Needles,
-    Notice,
-    Reply,
-    Told,
-    Trace,
-)
-from pmm.console.traces import POINTS
+from pmm.console.messages import WRITTEN, Frame, Hello, Needles, Notice, Reply, Told
+from pmm.console.pictures import Pictures
 
 _NOTICES: Final = 200
 
 
 class Hub:
-    """Takes what the loop tells, keeps what a browser needs to begin, and hands frames on.
+    """Takes what the loop tells, and keeps it as the texts that browsers get.
 
     Parameters
     ----------
@@ -44,6 +31,15 @@ class Hub:
         Told when a campaign's file holds one more run.
     utc
         Date and time in ISO 8601.
+
+    Attributes
+    ----------
+    clients
+        The browsers, by their sessions.
+    last
+        The latest frame.
+    news
+        Set when there is something to send.
     """
 
     def __init__(
@@ -52,120 +48,129 @@ class Hub:
         written: Callable[[Notice], None],
         utc: Callable[[], str],
     ) -> None:
-        self.hello: Hello | None = None
-        self.plans: dict[str, Any] = {}
         self.desk = Desk()
         self.clients: dict[str, Client] = {}
-        self.finished: list[dict[str, Any]] = []
-        self.figures: dict[str, Any] = {}
         self.last: Frame | None = None
-        self.connected = False
+        self.news = asyncio.Event()
         self._replied, self._written, self._utc = replied, written, utc
-        self._notices: deque[dict[str, Any]] = deque(maxlen=_NOTICES)
+        self._hello, self._connected = "null", False
+        self._plans = self._figures = "{}"
+        self._finished: list[str] = []
+        self._notices: deque[str] = deque(maxlen=_NOTICES)
         self._count, self._began = 0, utc()
         self._needles: Needles | None = None
-        self._ring: FloatArray = np.empty((0, 0))
-        self._ring_first, self._ring_start_s = 0, 0.0
+        self._pictures = Pictures()
+        self._common = ""
 
     def take(self, message: Told) -> None:
         """Take what the loop tells."""
         if isinstance(message, Frame):
-            self._frame(message)
+            self.last = message
+            self._needles = message.needles or self._needles
+            self._pictures.take(message)
+            self._changed()
         elif isinstance(message, Notice):
             self._notice(message)
         elif isinstance(message, Reply):
             self._replied(message)
         else:
-            self.hello, self.connected = message, True
-            self._ring = np.empty((len(message.channels), 0))
+            self._begin(message)
 
     def lost(self) -> None:
         """Say that the loop has ended."""
-        self.connected = False
-        self.broadcast({"type": "lost"})
+        self._connected = False
+        self._tell(encode({"type": "lost"}))
 
-    def broadcast(self, message: dict[str, Any]) -> None:
-        """Send a message to all browsers."""
-        text = encode(message)
-        for one in self.clients.values():
-            one.offer(text)
+    def tell_plans(self, plans: str) -> None:
+        """Keep and hand on the plans that were queued, as JSON: their pictures by their numbers."""
+        self._plans = plans
+        self._tell(f'{{"type":"plans","plans":{plans}}}')
 
-    def join(self, session: str) -> Client:
+    def tell_figures(self, figures: dict[str, Any]) -> None:
+        """Keep and hand on what was worked out of runs that ended."""
+        self._figures = encode(figures)
+        self._tell(f'{{"type":"figures","figures":{self._figures}}}')
+
+    def join(self, client: Client) -> None:
         """Let a browser come; an older page of the same session ends."""
-        before = self.clients.get(session)
+        before = self.clients.get(client.session)
         if before is not None:
             before.replace()
-        client = self.clients[session] = Client(session, self.snapshot)
-        self.desk.arrive(session)
-        self.tell_desk()
-        return client
+        self.clients[client.session] = client
+        self.desk.arrive(client.session)
+        self.news.set()
 
     def part(self, client: Client) -> None:
         """Let a browser go."""
+        client.stop()
         if self.clients.get(client.session) is client:
             del self.clients[client.session]
-            self.tell_desk()
+            self.news.set()
 
-    def tell_desk(self) -> None:
-        """Say to everybody who has control."""
-        for session, client in self.clients.items():
-            client.offer(encode(self._desk(session)))
+    def is_expected(self, session: str) -> bool:
+        """Whether a session has a place however many there are: it has control, or one already."""
+        return session in self.clients or self.desk.seen_from(session) is Holder.YOU
 
-    def snapshot(self, session: str) -> str:
-        """Return everything that a page needs to begin, or to go on after a gap."""
-        trace = Trace(self._ring_first, self._ring_start_s, self._ring)
-        return encode(
-            {
-                "type": "snapshot",
-                "session": session,
-                "began": self._began,
-                "connected": self.connected,
-                "hello": None if self.hello is None else hello_picture(self.hello),
-                "frame": None if self.last is None else frame_picture(self.last),
-                "needles": needles_picture(self._needles),
-                "trace": trace_picture(trace),
-                "notices": list(self._notices),
-                "plans": self.plans,
-                "finished": self.finished,
-                "figures": self.figures,
-                "desk": self._desk(session),
-            }
-        )
+    @property
+    def in_control(self) -> Client | None:
+        """The browser that has control, if its page is open."""
+        return self.clients.get(self.desk.holder)
+
+    def due(self, client: Client) -> list[str]:
+        """Return what a browser lacks, and take it for sent."""
+        pictures, desk = self._pictures, self._desk(client.session)
+        texts: list[str] = []
+        if client.behind:
+            client.behind = False
+            texts.append(self._snapshot(client.session, desk))
+        else:
+            texts += client.take()
+            if client.desk != desk:
+                texts.append(desk)
+            if client.frame != pictures.number:
+                texts.append(pictures.frame(client.piece))
+        client.frame, client.piece, client.desk = pictures.number, pictures.next_piece, desk
+        return texts
 
     def add_notice(self, notice: Notice) -> None:
         """Keep and hand on what happened."""
         self._count += 1
-        picture = notice_picture(notice, self._count, self._utc())
-        self._notices.append(picture)
-        self.broadcast(picture)
+        text = encode(notice_picture(notice, self._count, self._utc()))
+        self._notices.append(text)
+        self._tell(text)
 
-    def _desk(self, session: str) -> dict[str, Any]:
-        return {
-            "type": "desk",
-            "holder": str(self.desk.seen_from(session)),
-            "browsers": len(self.clients),
-        }
+    def _snapshot(self, session: str, desk: str) -> str:
+        """Return everything that a page needs to begin, or to go on after a gap."""
+        own = encode({"type": "snapshot", "session": session})
+        if not self._common:
+            self._common = (
+                f'"began":{encode(self._began)},"connected":{encode(self._connected)},'
+                f'"hello":{self._hello},"frame":{self._pictures.frame(self._pictures.next_piece)},'
+                f'"needles":{encode(needles_picture(self._needles))},'
+                f'"traces":{self._pictures.traces(0)},"notices":[{",".join(self._notices)}],'
+                f'"plans":{self._plans},"finished":[{",".join(self._finished)}],'
+                f'"figures":{self._figures}'
+            )
+        return f'{own[:-1]},{self._common},"desk":{desk}}}'
 
-    def _frame(self, frame: Frame) -> None:
-        self.last = frame
-        self._needles = frame.needles or self._needles
-        self._keep(frame.trace)
-        if self.clients:
-            self.broadcast(frame_picture(frame))
+    def _begin(self, hello: Hello) -> None:
+        self._hello, self._connected = encode(hello_picture(hello)), True
+        for one in self.clients.values():
+            one.fall_behind()
+        self._changed()
 
-    def _keep(self, trace: Trace) -> None:
-        """Keep the newest points; after a hole that is longer than the window nothing is old."""
-        if not trace.values.size:
-            return
-        next_number = self._ring_first + self._ring.shape[1]
-        hole = min(max(trace.first - next_number, 0), POINTS) if self._ring.size else 0
-        gap = np.full((len(trace.values), hole), np.nan)
-        ring = np.hstack((self._ring, gap, trace.values))[:, -POINTS:]
-        count = trace.values.shape[1]
-        rate_hz = self.hello.trace_rate_hz if self.hello is not None else 1.0
-        self._ring = ring
-        self._ring_first = trace.first + count - ring.shape[1]
-        self._ring_start_s = trace.start_s + (count - ring.shape[1]) / rate_hz
+    def _changed(self) -> None:
+        self._common = ""
+        self.news.set()
+
+    def _tell(self, text: str) -> None:
+        for one in self.clients.values():
+            one.offer(text)
+        self._changed()
+
+    def _desk(self, session: str) -> str:
+        holder = str(self.desk.seen_from(session))
+        return f'{{"type":"desk","holder":"{holder}","browsers":{len(self.clients)}}}'
 
     def _notice(self, notice: Notice) -> None:
         if notice.kind == WRITTEN:
@@ -175,6 +180,7 @@ class Hub:
         if notice.outcome is not None:
             self._needles = notice.needles or self._needles
             folder = str(notice.folder or "")
-            entry = outcome_picture(notice.outcome, notice.needles, folder, self._utc())
-            self.finished.append(entry)
-            self.broadcast({"type": "finished", "entry": entry})
+            picture = outcome_picture(notice.outcome, notice.needles, folder, self._utc())
+            entry = encode(picture)
+            self._finished.append(entry)
+            self._tell(f'{{"type":"finished","entry":{entry}}}')

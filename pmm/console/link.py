@@ -3,10 +3,12 @@
 import queue
 import threading
 from collections import deque
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Final
 
 from pmm.console.messages import Frame, Order, Told
+from pmm.console.packing import PackedPlan, unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped
@@ -92,7 +94,10 @@ class Link:
         try:
             while not self._closed.is_set():
                 if self._connection.poll(_POLL_S):
-                    self._orders.put(self._connection.recv())
+                    order = self._connection.recv()
+                    if isinstance(order.plan, PackedPlan):
+                        order = replace(order, plan=unpack(order.plan))
+                    self._orders.put(order)
         except (OSError, EOFError):
             self._closed.set()
             self._wake.set()

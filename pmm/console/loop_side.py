@@ -4,12 +4,13 @@ import asyncio
 import threading
 from collections.abc import Callable
 from multiprocessing.connection import Connection
-from typing import Final
+
+from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
-from pmm.console.messages import Order, OrderKind, QueuedPlan, Reply, Told
-
-PATIENCE_S: Final = 5.0
+from pmm.console.messages import Order, OrderKind, Reply, Told
+from pmm.console.packing import PackedPlan
+from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
 
 class RefusedError(PmmError):
@@ -21,6 +22,8 @@ class LoopSide:
 
     Parameters
     ----------
+    quick_stop
+        Its own way, beside the pipe.
     take
         Called in the event loop with every message that is no reply.
     lost
@@ -28,17 +31,23 @@ class LoopSide:
     """
 
     def __init__(
-        self, connection: Connection, take: Callable[[Told], None], lost: Callable[[], None]
+        self,
+        connection: Connection,
+        quick_stop: QuickStop,
+        take: Callable[[Told], None],
+        lost: Callable[[], None],
     ) -> None:
+        self._quick_stop = quick_stop
         self._connection, self._take, self._lost = connection, take, lost
         self._open: dict[int, asyncio.Future[Reply]] = {}
         self._count = 0
+        self._sending = asyncio.Lock()
         self._loop = asyncio.get_running_loop()
         self._thread = threading.Thread(target=self._receive, name="console loop", daemon=True)
         self._thread.start()
 
     async def order(
-        self, kind: OrderKind, text: str = "", question: str = "", plan: QueuedPlan | None = None
+        self, kind: OrderKind, text: str = "", question: str = "", plan: PackedPlan | None = None
     ) -> str:
         """Give an order; return what the loop says.
 
@@ -48,11 +57,12 @@ class LoopSide:
             If it is refused, or the loop does not answer.
         """
         self._count += 1
-        order = Order(self._count, kind, text, question, plan)
+        order = Order(self._count, kind, text, question, plan, self._quick_stop.pressed)
         future: asyncio.Future[Reply] = self._loop.create_future()
         self._open[order.number] = future
         try:
-            self._connection.send(order)
+            async with self._sending:
+                await run_sync(self._connection.send, order)
             reply = await asyncio.wait_for(future, PATIENCE_S)
         except (OSError, TimeoutError) as error:
             raise RefusedError("the control loop does not answer; look at the rig") from error
@@ -61,6 +71,17 @@ class LoopSide:
         if not reply.done:
             raise RefusedError(reply.text)
         return reply.text
+
+    async def stop_quickly(self) -> str:
+        """Stop at once; return when the loop has taken it.
+
+        Raises
+        ------
+        NotStoppedError
+            If it has not.
+        """
+        await self._quick_stop.taken(self._quick_stop.press())
+        return "quick stop taken"
 
     def replied(self, reply: Reply) -> None:
         """Take a reply."""

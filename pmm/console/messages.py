@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.status import RunOutcome, Status
+
+if TYPE_CHECKING:
+    from pmm.console.packing import PackedPlan
 
 FloatArray = NDArray[np.float64]
 WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
@@ -35,7 +38,7 @@ class QueuedPlan:
     Attributes
     ----------
     number
-        Of the queue's entries, never used twice.
+        Of the queue's entries, never used twice; 0 until it is one.
     folder
         Where it is recorded.
     runs
@@ -58,13 +61,17 @@ class Order:
         A command's name, an answer, or the number of a queued plan.
     question
         What an answer is to.
+    quick_stops
+        How many quick stops there were when it was given: they go by a way of their own, and what
+        is older than the last of them is not carried out any more.
     """
 
     number: int
     kind: OrderKind
     text: str = ""
     question: str = ""
-    plan: QueuedPlan | None = None
+    plan: "QueuedPlan | PackedPlan | None" = None
+    quick_stops: int = 0
 
 
 @dataclass(frozen=True)
@@ -96,7 +103,7 @@ class Hello:
     speed
         How many times as fast as the clock the rig runs; 1 for all that is real.
     priority
-        Of the loop among the machine's programs, see :mod:`pmm.console.priority`.
+        Of the loop among the machine's programs, see :mod:`pmm.real_time`.
     """
 
     rig: str

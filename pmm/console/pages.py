@@ -1,9 +1,10 @@
 """Pages and figures in campaigns' folders (report, gap, inertia), shown apart from the console."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from anyio.to_thread import run_sync
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 
@@ -30,30 +31,41 @@ class Pages:
         self._campaigns, self._beside = campaigns, beside
         self._numbers: dict[Path, int] = {}
 
-    def listed(self) -> list[dict[str, Any]]:
-        """Return the pages there are, with their addresses."""
+    def folders(self) -> tuple[Path, ...]:
+        """Return where to look for pages: there, and in the folders directly in them."""
+        return (self._beside, *self._campaigns())
+
+    def listed(self, found: Mapping[Path, Sequence[str]]) -> list[dict[str, Any]]:
+        """Return the pages of the folders with their addresses.
+
+        Each folder keeps its number, so that an address stays good.
+        """
+        for folder in found:
+            self._numbers.setdefault(folder, len(self._numbers))
         return [
-            {"name": path.name, "folder": folder.name, "address": f"/pages/{number}/{path.name}"}
-            for folder, number in self._folders().items()
-            for path in _pages(folder)
+            {"name": name, "folder": folder.name, "address": f"/pages/{number}/{name}"}
+            for folder, number in self._numbers.items()
+            for name in found.get(folder, ())
         ]
 
     async def page(self, request: Request) -> Response:
-        """Serve one of the pages that are listed; no other file."""
+        """Serve a page in one of the folders that were listed; no other file."""
         number, name = request.path_params["folder"], request.path_params["name"]
-        folder = next((one for one, n in self._folders().items() if n == number), None)
-        found = [] if folder is None else _pages(folder)
-        path = next((one for one in found if one.name == name), None)
-        if path is None:
+        folder = next((one for one, n in self._numbers.items() if n == number), None)
+        found = None if folder is None else await run_sync(_page, folder, name)
+        if found is None:
             return PlainTextResponse("no such page", 404)
-        return FileResponse(path, headers={"content-security-policy": _POLICY})
+        return FileResponse(found, headers={"content-security-policy": _POLICY})
 
-    def _folders(self) -> dict[Path, int]:
-        """Return the folders; each keeps its number, so that an address stays good."""
-        for one in (self._beside, *self._campaigns()):
-            for folder in (one, *_within(one)):
-                self._numbers.setdefault(folder, len(self._numbers))
-        return self._numbers
+
+def pages_in(folders: Iterable[Path]) -> dict[Path, list[str]]:
+    """Return the names of the pages in folders and in the folders directly in them."""
+    every = dict.fromkeys(one for folder in folders for one in (folder, *_within(folder)))
+    return {folder: [one.name for one in _pages(folder)] for folder in every}
+
+
+def _page(folder: Path, name: str) -> Path | None:
+    return next((one for one in _pages(folder) if one.name == name), None)
 
 
 def _within(folder: Path) -> list[Path]:

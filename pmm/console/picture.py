@@ -55,13 +55,13 @@ def allowed(control: RunControl) -> tuple[str, ...]:
 
 def present_run(control: RunControl, status: Status) -> RunPlan | None:
     """Return the run that a status tells of."""
-    return next((one for one in control.runs if one.name == status.run), None)
+    return control.runs[status.run_number - 1] if status.run_number else None
 
 
-def following(control: RunControl, run: RunPlan | None) -> tuple[str, ...]:
-    """Return the names of the runs that come after one."""
-    ended = {one.run for one in control.outcomes} | {run.name if run else ""}
-    return tuple(one.name for one in control.runs if one.name not in ended)[:_FOLLOWING]
+def following(control: RunControl, status: Status) -> tuple[str, ...]:
+    """Return the names of the runs that come after that one."""
+    after = status.run_number
+    return tuple(one.name for one in control.runs[after : after + _FOLLOWING])
 
 
 class NeedleReader:

@@ -1,6 +1,7 @@
 """Plans that the console offers: found in a folder, read and checked as ``pmm run`` does."""
 
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any
 from hardware.description.errors import ConfigurationError, PmmError
 from pmm.configuration import read_toml
 from pmm.console.encoding import number
+from pmm.console.limits import LARGEST_PLAN
 from pmm.console.messages import QueuedPlan
 from pmm.plan.checks import Verdict, check_plan, require_possible
 from pmm.plan.duration import duration_rows
@@ -18,9 +20,9 @@ from pmm.plan.findings import Finding
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.run.campaign_folder import chosen_runs, folder_of, keep_sources
+from pmm.run.campaign_folder import chosen_runs, folder_of
 
-LARGEST_TEXT = 1 << 20
+_SHOWN = 60  # characters of a name that is no rig's
 
 
 @dataclass(frozen=True)
@@ -44,10 +46,11 @@ class CheckedPlan:
         return any(one.verdict is Verdict.REFUSE for one in self.findings)
 
 
+@dataclass(frozen=True)
 class Plans:
     """Reads plans of one rig.
 
-    Parameters
+    Attributes
     ----------
     rig_path
         The rig's file; plans that name another one are refused.
@@ -57,14 +60,19 @@ class Plans:
         Where campaigns are recorded, one folder each; by default as ``pmm run`` does.
     """
 
-    def __init__(self, rig_path: Path, folder: Path, output: Path | None) -> None:
-        self._rig_path, self._folder, self._output = rig_path, folder, output
-        self._count = 0
+    rig_path: Path
+    folder: Path
+    output: Path | None
+
+    @property
+    def rigs(self) -> tuple[str, ...]:
+        """What a plan may name as its rig: no other file is looked for."""
+        return (_relative(self.rig_path, self.folder),)
 
     def names(self) -> list[str]:
         """Return the files in the folder that hold a plan, by their names."""
-        found = sorted(self._folder.glob("*.toml"))
-        return [one.name for one in found if is_plan(one)]
+        found = sorted(self.folder.glob("*.toml"))
+        return [one.name for one in found if _size(one) <= LARGEST_PLAN and is_plan(one)]
 
     def check(self, name: str, text: str) -> CheckedPlan:
         """Read and check a plan: one of the folder's files, or the text of one.
@@ -91,11 +99,18 @@ class Plans:
             with self._written(text) as path:  # what is refused is not kept
                 self._possible(path)
             name = f"console-{_digest(text)}.toml"
-            (self._folder / name).write_text(text, encoding="utf-8")
-        found = self._possible(self._known(name))
-        found.waiting.folder.mkdir(parents=True, exist_ok=True)
-        keep_sources(found.waiting.plan, found.waiting.folder)
-        return found
+            (self.folder / name).write_text(text, encoding="utf-8")
+        return self._possible(self._known(name))
+
+    def _check_rig(self, path: Path) -> None:
+        """Hold the plan's rig against this console's; no file of another name is opened."""
+        named = read_toml(path).get("rig", "rig.toml")
+        if named not in self.rigs:
+            known = " or ".join(f'rig = "{one}"' for one in self.rigs)
+            given = str(named)[:_SHOWN]
+            raise ConfigurationError(
+                f"{path}: rig = {given!r} is no rig of this console; write {known}"
+            )
 
     def _possible(self, path: Path) -> CheckedPlan:
         found = self._read(path)
@@ -106,33 +121,28 @@ class Plans:
         names = self.names()
         if name not in names:
             known = ", ".join(names) or "none"
-            raise ConfigurationError(f"{self._folder}: no plan {name!r}; there are: {known}")
-        return self._folder / name
+            raise ConfigurationError(f"{self.folder}: no plan {name!r}; there are: {known}")
+        return self.folder / name
 
     @contextmanager
     def _written(self, text: str) -> Iterator[Path]:
-        path = self._folder / f".console-{_digest(text)}.toml"
+        path = self.folder / f".console-{_digest(text)}.toml"
         try:
             path.write_text(text, encoding="utf-8")
             yield path
         except OSError as error:
-            raise ConfigurationError(f"{self._folder}: cannot keep the plan: {error}") from error
+            raise ConfigurationError(f"{self.folder}: cannot keep the plan: {error}") from error
         finally:
             path.unlink(missing_ok=True)
 
     def _read(self, path: Path) -> CheckedPlan:
+        self._check_rig(path)
         plan, rig = read_plan_and_rig(path)
-        if plan.rig_path.resolve() != self._rig_path.resolve():
-            raise ConfigurationError(
-                f"{path}: is for {plan.rig_path}, and this console has {self._rig_path}; name it "
-                "as rig"
-            )
         folder = folder_of(plan, rig.recorder.folder, None)
-        if self._output is not None:
-            folder = self._output / plan.name
-        runs = chosen_runs(plan, folder, (), resume=True)
-        self._count += 1
-        waiting = QueuedPlan(self._count, plan, folder, runs)
+        if self.output is not None:
+            folder = self.output / plan.name
+        runs = chosen_runs(plan, rig, folder, resume=True)
+        waiting = QueuedPlan(0, plan, folder, runs)
         return CheckedPlan(waiting, rig, check_plan(plan, rig, _today()), duration_rows(runs, rig))
 
 
@@ -140,7 +150,6 @@ def plan_picture(found: CheckedPlan) -> dict[str, Any]:
     """Return a plan for the browser."""
     one = found.waiting
     return {
-        "number": one.number,
         "name": one.plan.name,
         "file": one.plan.path.name,
         "folder": str(one.folder),
@@ -175,6 +184,23 @@ def is_plan(path: Path) -> bool:
     except PmmError:
         return False
     return "runs" in table and "rig" in table and "oscillator" not in table
+
+
+def _size(path: Path) -> int:
+    """Return a file's size in bytes; 0 for what cannot be read."""
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
+
+
+def _relative(rig: Path, folder: Path) -> str:
+    """Return how a plan in a folder names its rig."""
+    rig = rig.resolve()
+    try:
+        return Path(os.path.relpath(rig, folder.resolve())).as_posix()
+    except ValueError:  # on another drive
+        return rig.as_posix()
 
 
 def _digest(text: str) -> str:

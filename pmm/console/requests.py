@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from pmm.console.plans import LARGEST_TEXT
+from pmm.console.limits import LARGEST_PLAN
 from pmm.run.states import Command
 
 
@@ -31,7 +31,7 @@ class PlanPosted(Posted):
     """A plan: the name of a file, or the text of one."""
 
     name: str = Field(default="", max_length=200)
-    text: str = Field(default="", max_length=LARGEST_TEXT)
+    text: str = Field(default="", max_length=LARGEST_PLAN)
 
 
 class DropPosted(Posted):

@@ -3,17 +3,22 @@
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import socket
+from typing import Any, cast
 
 from pmm.console.app_settings import Settings
+from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE, REQUEST_S
+from pmm.console.quick_stop import QuickStop
 
 
 def serve(
     settings: Settings,
     listening: socket,
     connection: Connection,
+    quick_stop: QuickStop,
     certificate: Path | None,
     key: Path | None,
 ) -> None:
@@ -26,6 +31,7 @@ def serve(
     import uvicorn
 
     from pmm.console.app import application
+    from pmm.console.connections import Connection, Crowd, Stream
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -38,10 +44,12 @@ def serve(
         server.should_exit = True
 
     configuration = uvicorn.Config(
-        application(settings, connection, end),
-        ws="websockets-sansio",
+        application(settings, connection, quick_stop, end),
+        ws=Stream,
         ws_per_message_deflate=False,
-        ws_max_size=1 << 16,
+        ws_max_size=LARGEST_MESSAGE,
+        h11_max_incomplete_event_size=LARGEST_HEADERS,
+        http=cast("type[asyncio.Protocol]", partial(Connection, Crowd())),
         log_level="warning",
         access_log=False,
         server_header=False,
@@ -50,4 +58,11 @@ def serve(
         ssl_keyfile=key,
     )
     server = Server(configuration)
-    asyncio.run(server.serve(sockets=[listening]))
+
+    async def run() -> None:
+        if certificate is not None:  # a handshake that is half done is no connection of ours yet
+            loop: Any = asyncio.get_running_loop()
+            loop.create_server = partial(loop.create_server, ssl_handshake_timeout=REQUEST_S)
+        await server.serve(sockets=[listening])
+
+    asyncio.run(run())

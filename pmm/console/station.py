@@ -10,6 +10,7 @@ from concurrent.futures import Executor
 from typing import Final
 
 from hardware.description.errors import PmmError
+from hardware.errors import as_fault
 from hardware.rig import Rig
 from pmm.console.asking import Answers
 from pmm.console.link import Link
@@ -34,6 +35,7 @@ from pmm.console.picture import (
     following,
     present_run,
 )
+from pmm.console.quick_stop import QuickStop
 from pmm.console.traces import TappedJournal, Traces, points_a_second, show_idle
 from pmm.console.writing import Writer
 from pmm.plan.rig_file import RigFile, is_simulated
@@ -73,6 +75,7 @@ class Station:
         rig: Rig,
         rig_file: RigFile,
         link: Link,
+        quick_stop: QuickStop,
         answers: Answers,
         pacer: CountingPacer,
         taps: Taps,
@@ -84,6 +87,7 @@ class Station:
     ) -> None:
         self._rig, self._rig_file, self._link = rig, rig_file, link
         self._answers, self._pacer, self._taps = answers, pacer, taps
+        self._quick_stop = quick_stop
         self._clock, self._utc, self._provenance = clock, utc, provenance
         self._executor, self._speed = executor, speed
         self._channels = channels_of(rig, rig_file)
@@ -91,6 +95,7 @@ class Station:
         self._needles = NeedleReader()
         self._waiting: deque[QueuedPlan] = deque()
         self._present: QueuedPlan | None = None
+        self._recording: Recording | None = None
         self._writer = Writer(rig_file, executor)
         self._due_s = clock()
         self._ticks = self._told_alarms = self._told_outcomes = 0
@@ -123,12 +128,32 @@ class Station:
         )
 
     def step(self) -> None:
-        """Take orders, run a cycle, and go on to the next plan if it is its turn."""
+        """Take a quick stop, then orders; run a cycle; go on to the next plan if it is its turn."""
+        self._guarded(self._stop_quickly)
+        self._guarded(self._take_orders)
+        self.control.step()
+        self._guarded(self._go_on)
+
+    def _guarded(self, work: Callable[[], None]) -> None:
+        """Do what is beside run control; the loop must not end by it."""
+        try:
+            work()
+        except Exception as error:
+            self.control.fail(as_fault("console", error))
+
+    def _stop_quickly(self) -> None:
+        if self._quick_stop.take():
+            self.control.request(Command.QUICK_STOP)
+
+    def _take_orders(self) -> None:
         for order in self._link.orders():
             self._link.tell(self._carry_out(order))
         if self.control.measurement is None:
             show_idle(self._rig, self._traces)
-        self.control.step()
+
+    def _go_on(self) -> None:
+        if self._present is not None and self.control.finished and not self._left:
+            self._writer.let_go(self._present.number)
         if self.control.finished and self._waiting:
             self._next_plan(goes_on=self.control.state is State.DONE)
 
@@ -154,13 +179,17 @@ class Station:
         return Reply(order.number, True, text)
 
     def _obey(self, order: Order) -> str:
+        if order.quick_stops < self._quick_stop.pressed:
+            raise RunStateError(
+                "there was a quick stop after this; give it again if you still mean it"
+            )
         if order.kind is OrderKind.COMMAND:
             return self._command(Command(order.text))
         if order.kind is OrderKind.ANSWER:
             if not self._answers.give(order.question, order.text):
                 raise RunStateError("nobody asks this any more")
             return "answered"
-        if order.kind is OrderKind.QUEUE and order.plan is not None:
+        if order.kind is OrderKind.QUEUE and isinstance(order.plan, QueuedPlan):
             return self._queue(order.plan)
         if order.kind is OrderKind.DROP:
             return self._drop(int(order.text))
@@ -175,6 +204,7 @@ class Station:
     def _queue(self, plan: QueuedPlan) -> str:
         if not plan.runs:
             raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
+        self._writer.begin(plan)
         self._waiting.append(plan)
         self._notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
         if self._idle and not self._left:
@@ -186,6 +216,7 @@ class Station:
             if not self._idle:
                 raise RunStateError(f"{self._present.plan.name} is under way; stop it first")
             name, self._present = self._present.plan.name, None
+            self._writer.let_go(number)
             before, self.control = self.control, self._controlled(())
             self.control.follow(before)
         else:
@@ -194,6 +225,7 @@ class Station:
                 raise RunStateError(f"no plan {number} waits")
             name = found[0].plan.name
             self._waiting.remove(found[0])
+            self._writer.let_go(number)
         self._notice("queue", f"{name}: taken out of the queue")
         return f"{name} is taken out"
 
@@ -224,11 +256,12 @@ class Station:
         )
         self._told_alarms = self._told_outcomes = 0
         self._told_state = None
-        if self._present is not None:
-            control.free_bytes = self._recording(self._present).free_bytes
+        self._recording = None if self._present is None else self._recorded(self._present)
+        if self._recording is not None:
+            control.free_bytes = self._recording.free_bytes
         return control
 
-    def _recording(self, plan: QueuedPlan) -> Recording:
+    def _recorded(self, plan: QueuedPlan) -> Recording:
         kept = {**self._provenance, "plan": plan.plan.name}
         if plan.plan.operator:
             kept["operator"] = plan.plan.operator
@@ -237,9 +270,9 @@ class Station:
         )
 
     def _begin(self, run: RunPlan) -> Measurement:
-        if self._present is None:
+        if self._recording is None:
             raise AssertionError("a run without a plan")
-        measurement = self._recording(self._present).begin(run)
+        measurement = self._recording.begin(run)
         measurement.journal = TappedJournal(measurement.journal, self._traces)
         return measurement
 
@@ -295,5 +328,5 @@ class Station:
             loop=self._pacer.statistics(),
             needles=self._needles.read(measurement, status.harmonics),
             trace=self._traces.take(),
-            following=following(control, run),
+            following=following(control, status),
         )

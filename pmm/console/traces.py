@@ -101,6 +101,15 @@ class TappedJournal:
     def __init__(self, journal: Journal, traces: Traces) -> None:
         self._journal, self._traces = journal, traces
 
+    @property
+    def begun(self) -> bool:
+        """Whether there is something to keep."""
+        return self._journal.begun
+
+    def opened(self, *, wait: bool) -> bool:
+        """Tell whether the recorder is open."""
+        return self._journal.opened(wait=wait)
+
     def samples(self, first_sync: int, values: FloatArray) -> None:
         """Keep consecutive samples, and show them."""
         self._journal.samples(first_sync, values)

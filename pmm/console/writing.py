@@ -1,16 +1,23 @@
-"""The campaign's file, written anew after each run, beside the loop."""
+"""What is written of a campaign beside its runs, away from the loop: sources, campaign file."""
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, wait
+from typing import TYPE_CHECKING
 
+from pmm.campaign_owner import own_campaign
 from pmm.console.messages import WRITTEN, Notice, QueuedPlan
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.rig_file import RigFile
-from pmm.run.campaign_folder import finished_runs
+from pmm.run.campaign_folder import finished_runs, keep_sources
+
+if TYPE_CHECKING:
+    from pmm.campaign_owner import CampaignOwnership
 
 
 class Writer:
-    """Writes ``campaign.toml`` in the order in which runs end.
+    """Owns the folders of the queued plans and writes ``campaign.toml`` in the order of the runs.
+
+    Each piece of work owns its folder until it is done, whoever else lets go of it meanwhile.
 
     Parameters
     ----------
@@ -21,27 +28,63 @@ class Writer:
     def __init__(self, rig_file: RigFile, executor: Executor | None) -> None:
         self._rig_file, self._executor = rig_file, executor
         self._pending: list[Future[None]] = []
+        self._owned: dict[int, CampaignOwnership] = {}
+
+    def begin(self, plan: QueuedPlan) -> None:
+        """Own a plan's folder, and copy plan and rig file into it, as they are now.
+
+        The loop owns it, because the web server may end before the plan; and it never waits.
+
+        Raises
+        ------
+        OwnedElsewhereError
+            If another process is writing into the folder.
+        """
+        owned = self._owned[plan.number] = own_campaign(plan.folder, patience_s=0.0)
+
+        def begin() -> None:
+            keep_sources(plan.plan, plan.folder)
+            owned.count()  # now, and not in the loop
+
+        self._do(plan, begin)
+
+    def let_go(self, number: int) -> None:
+        """Let others write into the folder of a plan that is done or taken out of the queue."""
+        owned = self._owned.pop(number, None)
+        if owned is not None:
+            owned.release()
 
     def write(self, plan: QueuedPlan, tell: Callable[[Notice], None]) -> None:
         """Write the file of a plan's folder, and tell when it is there."""
+        self._do(plan, lambda: self._write(plan, tell))
+
+    def _do(self, plan: QueuedPlan, work: Callable[[], None]) -> None:
+        owned = own_campaign(plan.folder, patience_s=0.0)
+
+        def done() -> None:
+            with owned:
+                work()
+
         if self._executor is None:
-            self._write(plan, tell)
+            done()
         else:
-            self._pending.append(self._executor.submit(self._write, plan, tell))
+            self._pending.append(self._executor.submit(done))
 
     def failures(self) -> list[str]:
         """Return what went wrong since the last call."""
         done = [one for one in self._pending if one.done()]
         self._pending = [one for one in self._pending if one not in done]
         found = [one.exception() for one in done]
-        return [f"campaign.toml is not written: {error}" for error in found if error is not None]
+        return [f"the campaign is not written: {error}" for error in found if error is not None]
 
     def close(self) -> list[str]:
-        """Wait for what is being written; return what went wrong."""
+        """Wait for what is being written and let go of the folders; return what went wrong."""
         wait(self._pending)
+        for number in tuple(self._owned):
+            self.let_go(number)
         return self.failures()
 
     def _write(self, plan: QueuedPlan, tell: Callable[[Notice], None]) -> None:
-        done = finished_runs(plan.folder, plan.plan.runs)
+        done = finished_runs(plan.folder, plan.plan, self._rig_file)
         write_campaign(plan.folder, plan.plan, self._rig_file, done)
         tell(Notice(WRITTEN, 0.0, plan.plan.name, plan=plan.number, folder=plan.folder))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
+from pmm.campaign_owner import own_campaign
 
 
 @dataclass(frozen=True)
@@ -45,19 +46,27 @@ def append_effects(path: Path, effects: Sequence[Added], read: Callable[[Path], 
     ----------
     read
         Reads such a file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the new file cannot be read; the old one stays then.
+    OwnedElsewhereError
+        If another process is writing into its folder.
     """
     old = path.read_text(encoding="utf-8")
     text = old.rstrip("\n") + "\n" + "".join(one.table for one in effects)
     written = path.with_name(f"{path.name}.part")
-    written.write_text(text, encoding="utf-8")
-    try:
-        read(written)
-    except ConfigurationError:
-        written.unlink()
-        raise
-    kept = _free_name(path)
-    kept.write_text(old, encoding="utf-8")
-    written.replace(path)
+    with own_campaign(path.resolve().parent):
+        written.write_text(text, encoding="utf-8")
+        try:
+            read(written)
+        except ConfigurationError:
+            written.unlink()
+            raise
+        kept = _free_name(path)
+        kept.write_text(old, encoding="utf-8")
+        written.replace(path)
     return kept
 
 

@@ -1,26 +1,24 @@
 """A campaign's zero runs as the gap diagnosis wants them."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from analysis.gap.at_rest import run_at_rest
 from analysis.gap.components import GapRun
 from analysis.gap.observe import STRUTS
-from analysis.readers import read_recording
 from analysis.recording import Recording
 from hardware.description.errors import DataError, PmmError
+from hardware.description.flags import Flag
 from hardware.description.setpoint import Medium
-from pmm.calibrated import calibrated
-from pmm.campaign import AtRest, Campaign
+from pmm.campaign import AtRest, Campaign, Run
 from pmm.campaign_order import place_in
-from pmm.coefficients.reading import gated
+from pmm.campaign_recording import RecordingSource, open_recording
 from pmm.plan.kinds import RunKind
 
 
 def records_at_rest(
     campaign: Campaign, folder: Path, sensors: Sequence[str] = ()
-) -> tuple[tuple[GapRun, ...], dict[str, str]]:
+) -> tuple[tuple[GapRun, ...], dict[str, str], dict[str, tuple[Flag, ...]]]:
     """Read and observe the zero runs of a campaign.
 
     Other records at rest carry a load that is not the simulation's.
@@ -33,27 +31,47 @@ def records_at_rest(
     Returns
     -------
     tuple
-        Those that can be used, and by name why the others cannot.
+        Those that can be used; by name why the others cannot, and what is not what was written.
     """
     found: list[GapRun] = []
     left_out: dict[str, str] = {}
+    damaged: dict[str, tuple[Flag, ...]] = {}
     for one in campaign.at_rest:
         if one.kind is not RunKind.ZERO:
             continue
         try:
-            found.append(_observed(campaign, one, folder, sensors))
+            check_recorded_alike(one)
+            recording = open_recording(RecordingSource.of(campaign, one, folder))
+            damaged |= damage_of(one.name, recording)
+            found.append(_observed(campaign, one, recording, sensors))
         except (PmmError, OSError) as error:
-            left_out[one.name] = str(error)
-    return tuple(found), left_out
+            left_out[one.name] = str(error).removeprefix(f"{one.name}: ")
+    return tuple(found), left_out, damaged
 
 
-def _observed(campaign: Campaign, one: AtRest, folder: Path, sensors: Sequence[str]) -> GapRun:
-    if one.outcome != "complete":
-        raise DataError(f"its outcome is {one.outcome!r}")
-    path = one.recording_path(folder)
-    recording = gated(calibrated(read_recording(path, campaign.columns)), path)
+def check_recorded_alike(run: Run | AtRest) -> None:
+    """Refuse what was recorded with another rig or model: one simulation stands for all runs.
+
+    Raises
+    ------
+    DataError
+        Naming what was another.
+    """
+    if run.recorded_with is not None:
+        raise DataError(f"{run.name}: recorded with another rig or model: {'; '.join(run.differs)}")
+
+
+def damage_of(name: str, recording: Recording) -> dict[str, tuple[Flag, ...]]:
+    """Return what of a run's recording is not what was written, under its name, if anything."""
+    flags = tuple(flag for flag in recording.flags if flag.damaged)
+    return {name: flags} if flags else {}
+
+
+def _observed(
+    campaign: Campaign, one: AtRest, recording: Recording, sensors: Sequence[str]
+) -> GapRun:
     names = [name for name in recording.channel_names if not sensors or name in sensors]
-    recording = replace(recording.select(names), name=one.name)
+    recording = recording.select(names)
     if not _place_matters_not(campaign, one, recording):
         raise DataError(
             f"no channel {' and '.join(STRUTS)} tells where its struts stand, and the water pushes "

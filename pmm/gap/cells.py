@@ -1,6 +1,5 @@
 """Where the difference lies, cell by cell: stage, channel, harmonic and run."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -9,48 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import TRENDS, Component, Part
-from analysis.gap.where import CHAIN, Gap, gap_of, left_by_step, step_of
-from pmm.gap.examine import Examined
+from analysis.gap.fit import Problem
+from analysis.gap.where import left_by_step, step_of
 
 FloatArray = NDArray[np.float64]
 
 HARMONIC: Final = "harmonic"
-
-
-@dataclass(frozen=True)
-class StepRow:
-    """One step of the walk, or one contrast.
-
-    Attributes
-    ----------
-    gap_u
-        Root mean square of E/u after the free numbers have taken what they may.
-    stated_u
-        That of the simulation as it is stated; NaN where it is not told.
-    tells
-        False where the input that was fed is so uncertain that the gap would not show anyway.
-    """
-
-    what: str
-    gap_u: float
-    count: int
-    beyond: bool
-    worst: str
-    stated_u: float
-    tells: bool = True
-
-    @property
-    def verdict(self) -> str:
-        """Whether there is a gap, in words."""
-        if self.beyond:
-            return "gap"
-        return "no gap" if self.tells else "cannot tell"
-
-    @property
-    def said(self) -> tuple[str, str, str]:
-        """E/u as stated and after the free numbers, and how many numbers were compared."""
-        stated = f"{self.stated_u:.2f}" if math.isfinite(self.stated_u) else "-"
-        return stated, f"{self.gap_u:.2f}", str(self.count)
 
 
 @dataclass(frozen=True)
@@ -74,36 +37,22 @@ class Cell:
     after: float
 
 
-def step_row(one: Gap) -> StepRow:
-    """Return a part of the difference as a row."""
-    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated, one.tells)
+def heat_cells(problem: Problem, left: FloatArray) -> Iterator[Cell]:
+    """Yield both parts of a harmonic as one number, and so all trends or bands of a channel.
 
-
-def remains(examined: Examined) -> Iterator[StepRow]:
-    """Yield what the cause that is named leaves, step by step along the chain."""
-    problem = examined.diagnosis.problem
-    left = left_by_step(problem, examined.diagnosis.left)
-    stack = problem.simulator.stack
-    for what in CHAIN:
-        rows = np.array([step_of(one) == what for one in stack.components])
-        if rows.any():
-            yield step_row(gap_of(stack, left, what, rows))
-
-
-def heat_cells(examined: Examined) -> Iterator[Cell]:
-    """Yield both parts of a harmonic as one number, and so all trends or bands of a channel."""
-    problem = examined.diagnosis.problem
+    Parameters
+    ----------
+    left
+        What the answer leaves of the whitened difference, shape ``(observations,)``.
+    """
     stack = problem.simulator.stack
     sizes: dict[tuple[str, str, str, int, str], list[int]] = {}
     for at, (one, run) in enumerate(zip(stack.components, stack.run, strict=True)):
         key = (step_of(one), one.channel, *_kind(one), stack.runs[run].name)
         sizes.setdefault(key, []).append(at)
-    first, second = (
-        left_by_step(problem, problem.residual),
-        left_by_step(problem, examined.diagnosis.left),
-    )
+    first, second = (left_by_step(problem, one) for one in (problem.residual, left))
     for key, rows in sizes.items():
-        old, new = (float(np.sqrt(np.mean(left[rows] ** 2))) for left in (first, second))
+        old, new = (float(np.sqrt(np.mean(part[rows] ** 2))) for part in (first, second))
         yield Cell(*key, old, new)
 
 

@@ -59,23 +59,50 @@ class CoefficientRow:
         return not math.isnan(self.with_effect)
 
     @property
+    def reference(self) -> tuple[float, float]:
+        """What the fit without an effect is held against, and the standard uncertainty of that.
+
+        The fit with the effect that is named; where none is, what is stated.
+        """
+        if self.compared:
+            return self.with_effect, self.u_with
+        return self.stated, self.u_without
+
+    @property
+    def off_u(self) -> float:
+        """By how many standard uncertainties the fit without an effect is off its reference."""
+        value, u = self.reference
+        return (self.without - value) / u
+
+    @property
+    def off(self) -> bool:
+        """Whether that is more than the uncertainty."""
+        return abs(self.off_u) > (1.0 if self.compared else 2.0)
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the reference is so far from 0 that a per cent of it says something."""
+        value, u = self.reference
+        return abs(value) > 2.0 * u
+
+    @property
     def moved(self) -> bool:
         """Whether it is off what is stated, or an effect moves it, by more than its uncertainty."""
-        if not self.compared:
-            return abs(self.without - self.stated) > 2.0 * self.u_without
-        biased = abs(self.with_effect - self.without) > self.u_with
-        return biased or abs(self.with_effect - self.stated) > 2.0 * self.u_with
+        value, u = self.reference
+        return self.off or abs(value - self.stated) > 2.0 * u
+
+    @property
+    def where(self) -> str:
+        """Its name, and the frequency and speed that it holds at."""
+        pairs = ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
+        told = [f"{value:g} {unit}" for value, unit in pairs if not math.isnan(value)]
+        return f"{self.name} at {', '.join(told)}" if told else self.name
 
     @property
     def said(self) -> tuple[str, ...]:
         """What stands below :func:`headings`."""
-        where = [
-            f"{value:g} {unit}"
-            for value, unit in ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
-            if not math.isnan(value)
-        ]
         found = (
-            f"{self.name} at {', '.join(where)}" if where else self.name,
+            self.where,
             self.unit,
             f"{self.stated:.6g}",
             f"{self.without:.6g} ± {2.0 * self.u_without:.2g}",
@@ -114,20 +141,15 @@ class _Fit:
         return float(row @ self.off), math.sqrt(row @ self.covariance @ row)
 
 
-def coefficient_rows(
-    examined: Examined, *, named: bool
-) -> tuple[Convention, tuple[CoefficientRow, ...]]:
+def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientRow, ...]]:
     """Return every free coefficient of model and water, and how the derivatives are written.
 
-    Parameters
-    ----------
-    named
-        Whether the answer names an effect, for the rows to say what it does to them.
+    Where the answer names an effect, the rows say what that does to them.
     """
     simulator = examined.diagnosis.problem.simulator
     points = [run.set_point for run in simulator.stack.runs if run.turns]
     convention, derivatives = reported(examined.ready.reporting, simulator.rig, points)
-    plain, cured = _fits(examined, named)
+    plain, cured = _fits(examined)
     others = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
     kept = [one for one in (*derivatives, *others) if one.weights.keys() & set(plain.names)]
     return convention, tuple(_row(one, examined, plain, cured) for one in kept)
@@ -153,12 +175,12 @@ def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> 
     )
 
 
-def _fits(examined: Examined, named: bool) -> tuple[_Fit, _Fit | None]:
+def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
     """Return the fit without and with the effect that is named; ``None`` where none is."""
-    problem, cause = examined.diagnosis.problem, examined.diagnosis.cause
+    problem, cause = examined.diagnosis.problem, examined.cause
     columns = problem.nuisances.columns
     plain = _fitted(examined, problem.residual, columns)
-    if cause is None or not named:
+    if cause is None:
         return plain, None
     both = np.hstack((columns, cause.columns))
     return plain, _fitted(examined, cause.linearised(problem.residual), both)

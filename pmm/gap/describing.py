@@ -3,12 +3,11 @@
 import math
 from collections.abc import Sequence
 
-from pmm.gap.report import GapReport
+from analysis.gap.description import Description
 
 
-def described(report: GapReport) -> Sequence[str]:
+def described(one: Description | None) -> Sequence[str]:
     """Return the description of a remainder, a sentence each; it names no cause."""
-    one = report.description
     if one is None:
         return ()
     orders = sorted(one.orders.items(), key=lambda pair: -pair[1])[:3]

@@ -4,10 +4,12 @@ import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
@@ -23,11 +25,16 @@ from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
 from analysis.gap.verdict import NONE, answer_of, ranked
-from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld
+from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld, shrinkage
 from pmm.campaign import Campaign
+from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
 from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
+from pmm.gap.steps import remains, walk_rows
+from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
+
+FloatArray = NDArray[np.float64]
 
 _LIKELIEST: Final = 6  # answers that are asked to foretell
 
@@ -96,7 +103,6 @@ class Examined:
     free: tuple[Free, ...]
     diagnosis: Diagnosis
     judged: Judged
-    description: Description | None
     effects: tuple[Marginal, ...]
     catalogue: Mapping[str, type[Effect]]
 
@@ -126,6 +132,51 @@ class Examined:
         found = shares_of(self.diagnosis, self.recentred)
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))
 
+    @cached_property
+    def conclusion(self) -> Conclusion:
+        """What all of it comes to: whoever says something of this campaign says it from here."""
+        problem, weighing = self.diagnosis.problem, self._weighing()
+        steps = walk_rows(problem, self.diagnosis.walk)
+        verdict = verdict_of(weighing, steps)
+        left = problem.residual - self._explained(verdict)
+        return Conclusion(verdict, weighing, steps, tuple(remains(problem, left)))
+
+    @property
+    def cause(self) -> Fit | None:
+        """The effect that the answer names, as fitted; ``None`` where it names none."""
+        best = self.diagnosis.best
+        return best.fit if best is not None and self.conclusion.verdict == EFFECT else None
+
+    @property
+    def left(self) -> FloatArray:
+        """What the answer leaves of the whitened difference, shape ``(observations,)``."""
+        return self.diagnosis.problem.residual - self._explained(self.conclusion.verdict)
+
+    @cached_property
+    def description(self) -> Description | None:
+        """The form of what is left, if it is more than noise."""
+        return describe(self.diagnosis.problem, self.left)
+
+    def _explained(self, verdict: str) -> FloatArray:
+        best = self.diagnosis.best
+        if best is None or verdict != EFFECT:
+            return np.zeros_like(self.diagnosis.problem.residual)
+        return best.fit.signature
+
+    def _weighing(self) -> Weighing:
+        found, judged = self.diagnosis, self.judged
+        best = "" if found.best is None else answer_of(found.best.fit)
+        told = bool(judged.plain and judged.cured)
+        return Weighing(
+            self.shares,
+            best,
+            {own: tuple(sorted(name for name, _ in one)) for own, one in found.classes.items()},
+            {one.name: one.title for one in self.catalogue.values()},
+            shrinkage(judged.plain, judged.cured).share if told else math.nan,
+            max(found.stages, key=lambda name: found.stages[name], default=""),
+            None if catalogue().keys() <= self.catalogue.keys() else len(self.catalogue),
+        )
+
 
 def examine(
     folder: Path,
@@ -152,8 +203,7 @@ def examine(
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
     if found.cause is not None and not judgement.is_foretold:
         found = refuted(found, [answer_of(found.cause)], known)
-    described = describe(found.problem, found.left)
-    return Examined(ready, free, found, judgement, described, marginals(found), known)
+    return Examined(ready, free, found, judgement, marginals(found), known)
 
 
 def _judged(

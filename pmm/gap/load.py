@@ -7,16 +7,17 @@ from pathlib import Path
 
 from analysis.gap.components import GapRun
 from analysis.gap.observe import Observed, observe
-from analysis.readers import read_recording
+from analysis.gap.sensors import as_recorded, resolved
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, PmmError
+from hardware.description.flags import Flag
 from hardware.description.oscillator import Range
-from pmm.calibrated import calibrated
 from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
 from pmm.campaign_file import read_campaign
 from pmm.campaign_order import place_in
+from pmm.campaign_recording import RecordingSource, open_recording
 from pmm.configuration import read_toml
-from pmm.gap.at_rest import records_at_rest
+from pmm.gap.at_rest import check_recorded_alike, damage_of, records_at_rest
 from pmm.gap.cut_short import cut_short
 from sim.rig import SimulatedRig
 
@@ -36,6 +37,8 @@ class Loaded:
     cut_short
         Runs of which many periods are not used, or some for want of samples, by name, with the
         reason.
+    damaged
+        What is not what was written, by run.
     """
 
     campaign: Campaign
@@ -45,6 +48,7 @@ class Loaded:
     reference_channel: str | None
     at_rest: tuple[GapRun, ...] = ()
     cut_short: dict[str, str] = field(default_factory=dict)
+    damaged: dict[str, tuple[Flag, ...]] = field(default_factory=dict)
 
 
 def load_campaign(
@@ -73,13 +77,18 @@ def load_campaign(
     campaign = campaign_of(path)
     rig = unlimited(campaign.rig())
     left_out: dict[str, str] = {}
+    damaged: dict[str, tuple[Flag, ...]] = {}
     found: list[tuple[Run, Observed]] = []
     for run in campaign.runs:
         if run.name in withheld or not run.frequency_hz > 0.0:
             continue
         progress(run.name)
         try:
-            found.append((run, _observed(campaign, run, path.parent, sensors)))
+            check_recorded_alike(run)
+            recording = open_recording(RecordingSource.of(campaign, run, path.parent))
+            damaged |= damage_of(run.name, recording)
+            observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
+            found.append((run, observed))
         except (PmmError, OSError) as error:
             left_out[run.name] = str(error).removeprefix(f"{run.name}: ")
     reference = _usual_reference(found)
@@ -89,9 +98,17 @@ def load_campaign(
             left_out[run.name] = f"its phase comes from {own}, not as in most runs"
     kept = [pair for pair in found if pair[0].name not in left_out]
     runs = tuple(_gap_runs(campaign, kept))
-    at_rest, unused = records_at_rest(campaign, path.parent, sensors)
+    at_rest, unused, harmed = records_at_rest(campaign, path.parent, sensors)
     cut = {run.name: said for run, one in kept if (said := cut_short(one.analysis))}
-    return Loaded(campaign, rig, runs, left_out | unused, reference, at_rest, cut)
+    rig = as_recorded(rig, (*runs, *at_rest), reference)
+    known, still = resolved(rig, (*runs, *at_rest))
+    notes = {
+        name: "; ".join(filter(None, (cut.get(name), still.get(name)))) for name in cut | still
+    }
+    usable, usable_at_rest = known[: len(runs)], known[len(runs) :]
+    return Loaded(
+        campaign, rig, usable, left_out | unused, reference, usable_at_rest, notes, damaged | harmed
+    )
 
 
 def campaign_of(path: Path) -> Campaign:
@@ -130,13 +147,6 @@ def _usual_reference(found: Sequence[tuple[Run, Observed]]) -> str | None:
     """Return the reference that most runs have: phases from different ones cannot be compared."""
     references = [one.reference_channel for _, one in found]
     return max(references, key=references.count) if references else None
-
-
-def _observed(campaign: Campaign, run: Run, folder: Path, sensors: Sequence[str]) -> Observed:
-    recording = calibrated(read_recording(run.recording_path(folder), campaign.columns))
-    recording = _only(recording, sensors)
-    latency_s = campaign.reference.latency_s
-    return observe(replace(recording, name=run.name, set_point=run.set_point), latency_s)
 
 
 def _only(recording: Recording, sensors: Sequence[str]) -> Recording:

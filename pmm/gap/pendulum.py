@@ -22,6 +22,7 @@ from analysis.gap.pendulum.trial import Trial
 from analysis.inertia.gates import passages, read_gate_events
 from analysis.inertia.series import UsablePart, series_from_recording, usable_part
 from analysis.readers import read_recording
+from analysis.readers.damage import check_whole
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
 from sim.pendulum.bench import PendulumBench
@@ -133,7 +134,7 @@ def _check_period(trial: Trial, period_s: float) -> None:
 
 def _part(one: Record, folder: Path) -> UsablePart:
     path = folder / one.record
-    part = usable_part(series_from_recording(read_recording(path), one.channel))
+    part = usable_part(series_from_recording(check_whole(read_recording(path)), one.channel))
     if part.series.unit in ("rad", "") and part.first_amplitude > _LARGEST_RAD:
         raise DataError(
             f"{path}: the first swing of {one.channel} is "

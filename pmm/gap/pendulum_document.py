@@ -1,12 +1,12 @@
 """A pendulum's diagnosis as a document for programs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any, Final
 
 from analysis.gap.pendulum.hypothesis import Hypothesis
-from analysis.gap.pendulum.said import said
 from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict, told_apart
+from pmm.gap.pendulum_conclusion import conclusion_of
 from pmm.gap.pendulum_examine import Examined
 from pmm.gap.plain import plain_values
 
@@ -15,14 +15,21 @@ _SHOWN = 8  # answers
 _LEAST = 1e-4  # probability that is worth a row
 
 
-def document(name: str, examined: Examined) -> dict[str, Any]:
-    """Return everything that was found, as plain numbers and texts; what is not known is null."""
+def document(name: str, examined: Examined, said: Sequence[str]) -> dict[str, Any]:
+    """Return everything that was found, as plain numbers and texts; what is not known is null.
+
+    Parameters
+    ----------
+    said
+        The same for people.
+    """
     found = examined.diagnosis
     verdict = found.verdict
     told = {
         "schema": SCHEMA,
         "name": name,
-        "said": list(said(found)),
+        "verdict": conclusion_of(found).verdict,
+        "said": list(said),
         "notes": list(examined.notes),
         "best": list(verdict.best),
         "inflation": verdict.inflation,

@@ -13,6 +13,7 @@ from analysis.gap.quality import doubts, judged
 from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import COEFFICIENTS, NONE
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag
 from pmm.campaign import CAMPAIGN_FILE, Campaign
 from pmm.coefficients.settings import Settings as Reporting
 from pmm.coefficients.settings import settings_of
@@ -46,6 +47,8 @@ class Prepared:
         reason.
     reporting
         How the user has coefficients reported: ``coefficients.toml`` beside the campaign file.
+    damaged
+        What is not what was written, by run.
     """
 
     campaign: Campaign
@@ -57,6 +60,7 @@ class Prepared:
     settings: Settings
     cut_short: Mapping[str, str] = field(default_factory=dict)
     reporting: Reporting = field(default_factory=Reporting)
+    damaged: Mapping[str, tuple[Flag, ...]] = field(default_factory=dict)
 
 
 def prepare(
@@ -94,7 +98,10 @@ def prepare(
     there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
     if len(fitted) < _FEWEST:
         why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
-        raise DataError(f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}{why}")
+        raise DataError(
+            f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}: record "
+            f"more set-points, or withhold fewer{why}"
+        )
     settings = Settings(
         known,
         case.priors,
@@ -106,7 +113,9 @@ def prepare(
         (withheld if one.name in held_out else fitted).append(one)
     cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
     used = tuple(fitted), tuple(withheld)
-    return Prepared(campaign, case, left_out, there, *used, settings, cut, reporting)
+    return Prepared(
+        campaign, case, left_out, there, *used, settings, cut, reporting, loaded.damaged
+    )
 
 
 def _reporting(folder: Path) -> Reporting:
@@ -149,6 +158,17 @@ def shares_of(found: Diagnosis, there: Recentred) -> Mapping[str, float]:
     return shares
 
 
+def _without_hull(campaign: Campaign) -> str:
+    """Return what to add to a refusal where the simulation believes in no water at all."""
+    hull = campaign.hull
+    if any(any(row) for table in (hull.added_mass, hull.damping, hull.restoring) for row in table):
+        return ""
+    return (
+        "; the campaign has no [hull], so that it is simulated without water: state restoring, "
+        "added_mass and damping as far as they are known, and try again"
+    )
+
+
 def _sorted(
     loaded: Loaded, case: Case, on: Sequence[Effect], held_out: Sequence[str], file: Path
 ) -> tuple[Recentred, list[GapRun], list[GapRun], dict[str, str]]:
@@ -163,7 +183,7 @@ def _sorted(
         found = (*found, *(one for one in every if one.run in names))
     for one in found:
         if not one.run:
-            raise DataError(f"{file}: {one.channel}: {one.reason}")
+            raise DataError(f"{file}: {one.channel}: {one.reason}{_without_hull(loaded.campaign)}")
     bad: dict[str, str] = {}
     for one in found:
         said = f"{one.channel}: {one.reason}".removeprefix(": ")

@@ -1,11 +1,14 @@
-"""What is said of single runs that are used: one that alone is off, and those cut short."""
+"""What is said of single runs that are used, and of channels that are not as loud as stated."""
 
 from collections.abc import Iterator
+from typing import Final
 
-from analysis.gap.odd_run import odd_run
+from analysis.gap.odd_run import OddRun, odd_run
+from analysis.gap.sensors import heard_rms
 from analysis.gap.withheld import gap_of
-from pmm.gap.cells import remains
 from pmm.gap.examine import Examined
+
+NOTED: Final = 2.0  # times: a specification's noise is often meant as a largest one
 
 
 def run_notes(examined: Examined) -> Iterator[str]:
@@ -15,18 +18,33 @@ def run_notes(examined: Examined) -> Iterator[str]:
         yield f"run {name}: {said}"
 
 
-def odd_note(examined: Examined) -> str | None:
-    """Return what is said of the run that alone is off, unless the cause explains it too.
+def noise_notes(examined: Examined) -> Iterator[str]:
+    """Yield the channels whose noise is not as it is stated: what was heard is what counts."""
+    for line in examined.campaign.acquisition.lines:
+        own = line.digitiser.noise_rms
+        found = heard_rms(examined.ready.fitted, line.channel.name)
+        if own and found and not 1.0 / NOTED < found / own < NOTED:
+            unit = line.channel.unit
+            yield (
+                f"{line.channel.name}: white noise of {found:.2g} {unit} is heard, "
+                f"{own:.2g} {unit} are stated as noise_rms; what is heard is used"
+            )
+
+
+def odd_one(examined: Examined) -> OddRun | None:
+    """Return the run that alone is off, unless the cause explains it too.
 
     An effect may show beyond noise in the one run that drives it hardest.
     """
-    if not any(one.beyond for one in remains(examined)):
+    if not examined.conclusion.unexplained:
         return None
     looked = examined.diagnosis.weighed.looked
     fits = [one.fit for one in looked if one.fit is not None]
-    found = odd_run(examined.diagnosis.problem, fits)
-    if found is None:
-        return None
+    return odd_run(examined.diagnosis.problem, fits)
+
+
+def odd_note(found: OddRun) -> str:
+    """Return what is said of it."""
     named = " and ".join(found.beside)
     rest = f"{named} explains the others" if named else "the others show no gap beyond u"
     return (
@@ -37,7 +55,7 @@ def odd_note(examined: Examined) -> str | None:
 
 def _not_foretold(examined: Examined) -> Iterator[str]:
     """Yield the only run that was withheld, where the cause that is named leaves much of it."""
-    judged, cause = examined.judged, examined.diagnosis.cause
+    judged, cause = examined.judged, examined.cause
     if cause is None or len(judged.cured) != 1 or not judged.chosen:
         return
     before, left = (gap_of(one.left) for one in (judged.plain[0], judged.cured[0]))

@@ -16,6 +16,7 @@ from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.bifilar_workflow import workflow
 from pmm.inertia.given import flags_of, given, gravity_of
+from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import (
     Finding,
     Outcome,
@@ -193,6 +194,9 @@ def _tilts(
             for key in ("half_spacing_m", "line_m")
         )
         own = yaw_from_period(runs.period, spacing, line, gravity_of(table))
+        if at.line_mass_kg:
+            share = line_share(at, given(table.model, "mass_kg"))
+            own = yaw_off_lines(one if one.half_spacing_m else at, share, own)
         gyradius = without_air(table, own).result
         angle = given(one, "angle_deg" if one.angle_deg is not None else "angle_rad")
         tests.append((angle, gyradius))

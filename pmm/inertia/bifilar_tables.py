@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Literal
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import AirTable, air_rules
 from pmm.inertia.bifilar_axes import TiltedTable
+from pmm.inertia.lines import line_rules
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
 from pmm.inertia.reading import one_of, together
@@ -66,12 +67,20 @@ class PendulumTable:
 
 @dataclass(frozen=True)
 class SuspensionTable:
-    """One suspension: lines of length ``line_m``, a distance of twice ``half_spacing_m`` apart."""
+    """One suspension: lines of length ``line_m``, a distance of twice ``half_spacing_m`` apart.
+
+    Attributes
+    ----------
+    line_mass_kg
+        Of all lines together, with what hangs along them; 0 for light ones.
+    """
 
     half_spacing_m: float
     line_m: float
     u_half_spacing_m: float = 0.0
     u_line_m: float = 0.0
+    line_mass_kg: float = 0.0
+    u_line_mass_kg: float = 0.0
     name: str = "suspension"
     yaw: YawTable | None = None
     sway: PeriodSource | None = None
@@ -137,6 +146,7 @@ class BifilarTable:
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """At least one suspension, each with a name of its own; the workflow's order is kept."""
         yield from air_rules(table)
+        yield from line_rules(table)
         yield from _workflow_rules(table)
         rows = table.get("suspensions")
         if rows == []:

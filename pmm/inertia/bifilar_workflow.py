@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from analysis.inertia.bifilar import yaw_gyradius
 from analysis.inertia.budget import linear_budget
+from analysis.inertia.corrections import yaw_without_lines
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.workflow import Step
 from hardware.description.flags import Flag
@@ -75,8 +76,12 @@ def _inertia(job: Job[BifilarTable], one: Suspended, period: Estimate, mass: Est
     spacing, line = one.table.half_spacing_m, one.table.line_m
     gravity = gravity_of(job.table).value
 
+    lines_kg = one.table.line_mass_kg
+
     def inertia(period_s: float, mass_kg: float) -> float:
-        return mass_kg * yaw_gyradius(period_s, spacing, line, gravity) ** 2
+        on_lines = yaw_gyradius(period_s, spacing, line, gravity)
+        own = yaw_without_lines(on_lines, lines_kg / mass_kg, spacing, by_sway=False)
+        return mass_kg * own**2
 
     inputs = {"period_s": period, "mass_kg": mass}
     return linear_budget("I_yaw", inertia, inputs, unit="kg m2").result

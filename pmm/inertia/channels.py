@@ -16,7 +16,7 @@ from pmm.inertia.reading import Job
 def chosen_series(
     job: Job[Any], recording: Recording, channel: str | None, where: str
 ) -> tuple[Series, tuple[Flag, ...]]:
-    """Return a recording's only channel, or the one that is named, and whether it is the strongest.
+    """Return a recording's only channel, or the one that is named, and what is to be said of it.
 
     Raises
     ------
@@ -32,7 +32,8 @@ def chosen_series(
     unit = {one.name: one.unit for one in recording.channels}
     others = [name for name in names if name != chosen.channel and unit[name] == chosen.unit]
     beside = tuple(series_from_recording(recording, name) for name in others)
-    return chosen, strongest_axis(chosen, beside)
+    damaged = (flag for flag in recording.flags if flag.damaged)
+    return chosen, (*strongest_axis(chosen, beside), *damaged)
 
 
 def true_angles(

@@ -1,25 +1,35 @@
 """An outcome as JSON takes it: the same numbers as in the tables."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from analysis.inertia.amplitude import PowerDecay
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.result import estimate_numbers
+from pmm.inertia.fits import FormFit
 from pmm.inertia.outcome import Finding, Outcome
 from pmm.inertia.sources import PeriodRuns
 
 JSON_SCHEMA = "pmm-inertia-1"
 
 
-def document(outcome: Outcome) -> dict[str, Any]:
-    """Return what ``--json`` prints; ``docs/inertia-files.md`` describes it."""
+def document(outcome: Outcome, fits: Sequence[FormFit] = ()) -> dict[str, Any]:
+    """Return what ``--json`` prints; ``docs/inertia-files.md`` describes it.
+
+    Parameters
+    ----------
+    fits
+        Of the records by the forms F1 to F4, where they were asked for.
+    """
     text: dict[str, Any] = {
         "schema": JSON_SCHEMA,
         "job": outcome.job,
         "name": outcome.name,
         "results": {one.name: _finding(one) for one in outcome.findings},
         "periods": [_period(one) for one in outcome.periods],
+        "fits": [{**asdict(one), "form": str(one.form)} for one in fits],
         "targets": [
             {
                 "quantity": one.name,

@@ -19,6 +19,7 @@ from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.series import usable_part
 from analysis.readers import read_recording
+from analysis.readers.damage import check_whole
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.inertia.air import without_air
@@ -31,6 +32,7 @@ from pmm.inertia.bifilar_tables import (
 )
 from pmm.inertia.channels import chosen_series
 from pmm.inertia.given import given, gravity_of
+from pmm.inertia.lines import line_share, pitch_off_lines, slower, yaw_off_lines
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
 
@@ -80,10 +82,15 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
         by_beats = yaw_from_beats(
             count, given(table, "half_spacing_m"), yaw_slower=table.beats.yaw_slower
         )
+        by_beats = yaw_off_lines(table, _share(job, table), by_beats, by_sway=True, seed=4)
         found["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
     _double_pendulum(job, table, where, (yaw, sway), found, periods, flags)
     flags += [flag for runs in periods for flag in runs.flags]
     return Suspended(table, yaw, found, tuple(periods), tuple(flags))
+
+
+def _share(job: Job[BifilarTable], table: SuspensionTable) -> Estimate | None:
+    return line_share(table, given(job.table.model, "mass_kg")) if table.line_mass_kg else None
 
 
 def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
@@ -92,8 +99,8 @@ def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
         return BeatCount(table.oscillations or 0.0, table.beats or 0.0, table.counting_error or 0.5)
     counts = []
     for name in table.records:
-        recording = read_recording(
-            job.beside(name), job.columns, sample_rate_hz=table.sample_rate_hz
+        recording = check_whole(
+            read_recording(job.beside(name), job.columns, sample_rate_hz=table.sample_rate_hz)
         )
         series, _ = chosen_series(job, recording, table.channel, where)
         part = usable_part(series).series
@@ -130,10 +137,13 @@ def _yaw(
         ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
     flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
     by_period = yaw_from_period(yaw, spacing, given(table, "line_m"), gravity, seed=seed)
+    share = _share(job, table)
+    by_period = yaw_off_lines(table, share, by_period, seed=seed + 4)
     found["yaw by period"] = without_air(job.table, by_period, seed=seed + 2)
     both = (ratio, exactly(1.0)) if ratio is not None else (yaw, sway)
     if both[1] is not None:
         by_ratio = yaw_from_ratio(both[0], both[1], spacing, seed=seed + 1)
+        by_ratio = yaw_off_lines(table, share, by_ratio, by_sway=True, seed=seed + 5)
         found["yaw by ratio"] = without_air(job.table, by_ratio, by_sway=True, seed=seed + 3)
     return yaw, sway
 
@@ -175,10 +185,10 @@ def _double_pendulum(
             continue
         slow, fast = _both(job, source, f"{where}.{axis}", periods)
         gravity = gravity_of(job.table)
-        lines = sway or _period_of_lines(given(table, "line_m"), gravity)
-        result = pitch_from_periods(
-            slow, fast, lines, gravity, seed=job.table.monte_carlo_seed + 20
-        )
+        share, seed = _share(job, table), job.table.monte_carlo_seed + 20
+        lines = sway or _period_of_lines(given(table, "line_m"), gravity, share)
+        result = pitch_from_periods(slow, fast, lines, gravity, seed=seed)
+        result = pitch_off_lines(share, result, seed=seed + 2)
         found[axis], found["depth"] = result.gyradius, result.depth
         if axis == "pitch" and yaw is not None:
             flags += resonance_flags(yaw.value, slow.value)
@@ -199,7 +209,7 @@ def _both(
     return slow.period, fast.period
 
 
-def _period_of_lines(line: Estimate, gravity: Estimate) -> Estimate:
-    value = sway_period(line.value, gravity.value)
+def _period_of_lines(line: Estimate, gravity: Estimate, share: Estimate | None) -> Estimate:
+    value = slower(sway_period(line.value, gravity.value), share)
     spread = 0.5 * value * math.hypot(line.relative, gravity.relative)
     return Estimate(value, spread, "s")

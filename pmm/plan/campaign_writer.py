@@ -7,12 +7,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
+from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.roles import Reading
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.plan.sensors import acquisition_table, dynamometers_table
 from pmm.plan.toml_text import toml_table, toml_value
+from pmm.whole_file import write_whole
 
 _NAME: Final = "campaign.toml"
 _WITHIN: Final = 3.0  # standard uncertainties: a reading so near to a limit is that of the limit
@@ -31,12 +34,25 @@ class FinishedRun:
         encoder or a dial.
     outcome
         ``"complete"``, ``"stopped"`` or ``"fault"``.
+    channels
+        What was recorded; empty where nobody says.
+    noise_rms
+        Of each channel, in a zero run.
+    number
+        Its place among the campaign's runs; 0 where nobody says, then the order given is taken.
+    differs, recorded_with
+        As in :class:`pmm.run.identity.Made`.
     """
 
     plan: RunPlan
     recording: str
     readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
     outcome: str = "complete"
+    channels: tuple[Channel, ...] = ()
+    noise_rms: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    number: int = 0
+    differs: tuple[str, ...] = ()
+    recorded_with: Mapping[str, Any] | None = None
 
 
 def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Path:
@@ -50,19 +66,14 @@ def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[Finish
         The file.
     """
     target = folder / _NAME
-    beside = folder / f".{_NAME}.part"
-    text = "\n".join(_tables(folder, plan, rig, done))
-    with beside.open("w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    beside.replace(target)
+    write_whole(target, "\n".join(_tables(folder, plan, rig, done)))
     return target
 
 
 def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Iterator[str]:
     yield f"# Written by pmm run from {plan.path.name} and {rig.path.name}: docs/campaigns.md\n" + (
         f"name = {toml_value(plan.name)}\n"
+        + ("" if rig.hardware.photocell else "photocell = false\n")
     )
     yield toml_table("oscillator", asdict(rig.oscillator))
     if rig.model is not None:
@@ -73,16 +84,17 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun])
     offset = {key: one for key, one in asdict(rig.photocell_offset).items() if one}
     if offset:
         yield toml_table("reference", offset)
-    yield from _handed_on(folder, rig)
+    yield from _handed_on(folder, rig, done)
     names = {one.plan.name for one in done}
-    for number, one in enumerate(done, 1):
+    for place, one in enumerate(done, 1):
         array = "runs" if one.plan.oscillates else "at_rest"
         keys = _turning(one, rig) if one.plan.oscillates else _resting(one.plan)
-        yield toml_table(array, keys | _common(one, names, number), array=True)
+        yield toml_table(array, keys | _common(one, names, one.number or place), array=True)
 
 
-def _handed_on(folder: Path, rig: RigFile) -> Iterator[str]:
-    for name, table in rig.campaign.items():
+def _handed_on(folder: Path, rig: RigFile, done: Sequence[FinishedRun]) -> Iterator[str]:
+    """Yield what the rig's file hands on, with what the runs tell of sensors and sampling."""
+    for name, table in {**rig.campaign, **_known(rig, done)}.items():
         if name == "radiation" and isinstance(table, Mapping) and "file" in table:
             file = os.path.relpath(rig.path.resolve().parent / table["file"], folder.resolve())
             yield toml_table(name, {**table, "file": Path(file).as_posix()})
@@ -90,6 +102,20 @@ def _handed_on(folder: Path, rig: RigFile) -> Iterator[str]:
             yield toml_table(name, table)
         elif isinstance(table, list):
             yield from (toml_table(name, one, array=True) for one in table)
+
+
+def _known(rig: RigFile, done: Sequence[FinishedRun]) -> dict[str, Any]:
+    simulation = rig.campaign.get("simulation", {})
+    found: dict[str, Any] = {"simulation": {**simulation, "sample_rate_hz": rig.sample_rate_hz}}
+    if dynamometers := dynamometers_table(rig):
+        found["dynamometers"] = dynamometers
+    recorded = {channel.name: channel for one in done for channel in one.channels}
+    if recorded:
+        noise = [one.noise_rms for one in done if one.noise_rms and one.outcome == "complete"]
+        found["acquisition"] = acquisition_table(rig, tuple(recorded.values()), noise)
+    if rig.hardware.photocell is None:
+        found["photocell"] = None
+    return found
 
 
 def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
@@ -108,6 +134,8 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "zero_after": run.zero_after if run.zero_after in names else None,
         "number": number,
         "outcome": one.outcome,
+        "differs": one.differs or None,
+        "recorded_with": one.recorded_with,
     }
 
 

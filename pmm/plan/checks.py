@@ -10,6 +10,7 @@ from pmm.plan.findings import Finding, PlanRefusedError, Verdict
 from pmm.plan.limits import bus_finding, limit_findings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
+from pmm.plan.simulated_rig import departure_findings
 
 __all__ = ["Finding", "PlanRefusedError", "Verdict", "check_plan", "require_possible"]
 
@@ -24,7 +25,12 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Fin
     today
         On which the plan is to be run: whether the gauges' calibration is still good then.
     """
-    found = [*bus_finding(rig), *_expired(rig, today), *_not_checked(plan, rig)]
+    found = [
+        *bus_finding(rig),
+        *departure_findings(rig),
+        *_expired(rig, today),
+        *_not_checked(plan, rig),
+    ]
     for run in plan.runs:
         found += [*limit_findings(run, rig), *field_findings(run, rig)]
     ranks = list(Verdict)

@@ -14,6 +14,8 @@ from pmm.plan.run_plan import LoadDirection, LoadStep, RunPlan
 T = TypeVar("T")
 Lists = Sequence[Sequence[Any]]
 Combine = Callable[[Lists], Iterator[tuple[Any, ...]]]
+# Of a plan: six weeks of six-minute runs. Each takes some kilobytes, and a line on every page.
+MOST_RUNS = 10_000
 _PHASED = (Motion.PITCH, Motion.YAW, Motion.YAW_DRIFT)
 
 
@@ -83,6 +85,21 @@ def expand(
         frequencies,
     )
     return [_run(entry, defaults, oscillator, one) for one in combine(lists)]
+
+
+def run_count(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> int:
+    """Return how many runs :func:`expand` would make of an entry."""
+    repeats = _either(entry.repeats, defaults.repeats)
+    if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
+        return repeats * len(entry.channels or channels) * len(entry.loads_n)
+    lists: Lists = (
+        entry.speeds_m_s,
+        entry.drifts_rad,
+        entry.strut_phases_rad,
+        entry.amplitudes_m,
+        entry.frequencies_hz,
+    )
+    return repeats * math.prod(max(1, len(one)) for one in lists)
 
 
 def _either(value: T | None, default: T) -> T:

@@ -55,7 +55,7 @@ class Motion(StrEnum):
 
     Heave and sway: both struts together. Pitch and yaw: opposite at zero speed; with forward speed
     ``U`` the strut phase is that of ``tan(phase / 2) = omega l / U``, for which the angle of attack
-    stays zero. Yaw with drift: the same, with the model turned by a steady drift angle. Phase: the
+    stays zero. Yaw with drift: the same, the oscillator turned by a steady drift angle. Phase: the
     strut phase is given. None: the shaft is at rest.
     """
 

@@ -9,7 +9,8 @@ from hardware.bus import LARGEST_LOAD
 from hardware.rig_configuration import Part, load_of
 from pmm.plan.duration import tank_length_m
 from pmm.plan.findings import Finding, Verdict
-from pmm.plan.motion_peaks import acceleration_peak_m_s2, force_peak_n, velocity_peak_m_s
+from pmm.plan.force_estimate import force_peak_n
+from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 

@@ -2,14 +2,16 @@
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 from hardware.description.errors import ConfigurationError
-from pmm.configuration import Fault, Place, as_error, read_toml, validate
+from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
+from pmm.file_names import campaign_name_faults, no_file_name
+from pmm.plan.expansion import MOST_RUNS, run_count
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan_rules import (
     channel_faults,
@@ -19,14 +21,12 @@ from pmm.plan.plan_rules import (
     gate_faults,
     rig_faults,
 )
-from pmm.plan.plan_tables import Control, Defaults, Entry, PlanTables, Zero
+from pmm.plan.plan_tables import Control, Defaults, Entry, PlanTables
 from pmm.plan.plan_units import EXTRA_KEYS, expand_units
 from pmm.plan.rig_file import Examined, RigFile, examine_rig
 from pmm.plan.run_plan import RunPlan
 
 T = TypeVar("T")
-
-_NOT_IN_FILE_NAMES = set('/\\:*?"<>|\0')
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,9 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
     faults += _faults(table, found)
     runs: tuple[RunPlan, ...] = ()
     if tables is not None and not faults and found.rig is not None:
-        runs = runs_of(tables, found.rig.oscillator, found.channels or ())
+        channels = found.channels or ()
+        faults += _size_faults(tables, channels)
+        runs = () if faults else runs_of(tables, found.rig.oscillator, channels)
         faults += _name_faults(runs)
     errors = [as_error(path, faults, original)] if faults else []
     errors += [found.error] if found.error is not None else []
@@ -105,9 +107,8 @@ def _rig_path(path: Path, table: dict[str, Any]) -> Path:
 
 def _faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield what is wrong with tables that are right key by key; each is looked at by itself."""
-    name = table.get("name", "")
-    if isinstance(name, str) and set(name) & _NOT_IN_FILE_NAMES:
-        yield Fault(("name",), f"= {name!r} cannot be the name of a folder")
+    yield from limit_faults(table)
+    yield from campaign_name_faults(table)
     runs = table.get("runs")
     if not runs:
         yield Fault((), "the plan has no runs; add a table [[runs]] for each motion")
@@ -122,8 +123,9 @@ def _faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
 def _entry_faults(
     table: dict[str, Any], entry: Entry, defaults: Defaults, found: Examined, place: Place
 ) -> Iterator[Fault]:
-    if set(entry.name) & _NOT_IN_FILE_NAMES or entry.name.startswith("."):
-        yield Fault((*place, "name"), f"= {entry.name!r} cannot be the name of a file")
+    fault = no_file_name(entry.name) if entry.name else None
+    if fault is not None:
+        yield Fault((*place, "name"), f"= {entry.name!r} {fault}")
     yield from entry_faults(table, entry, place)
     yield from end_faults(entry, defaults, place)
     yield from rig_faults(entry.motion, found.oscillator, place)
@@ -135,12 +137,8 @@ def _table_faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
     defaults = _part(Defaults, table, "defaults")
     if defaults is not None:
         yield from gate_faults(defaults, ("defaults",))
-    zero = _part(Zero, table, "zero")
-    if zero is not None:
-        yield from gate_faults(zero, ("zero",))
     control = _part(Control, table, "control")
     if control is not None:
-        yield from gate_faults(control, ("control",))
         yield from control_faults(control, ("control",))
         yield from rig_faults(control.motion, found.oscillator, ("control",))
 
@@ -148,6 +146,14 @@ def _table_faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
 def _part(kind: type[T], table: dict[str, Any], key: str) -> T | None:
     part = table.get(key)
     return validate(kind, part, []) if isinstance(part, dict) else None
+
+
+def _size_faults(tables: PlanTables, channels: Sequence[str]) -> Iterator[Fault]:
+    """Yield that there are too many runs, before there are."""
+    count = sum(run_count(one, tables.defaults, channels) for one in tables.runs)
+    if count > MOST_RUNS:
+        message = f"asks for {count} runs; the limit is {MOST_RUNS}: make several plans of it"
+        yield Fault(("runs",), message)
 
 
 def _name_faults(runs: tuple[RunPlan, ...]) -> Iterator[Fault]:

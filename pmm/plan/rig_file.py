@@ -11,6 +11,7 @@ from typing import Any
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
+from hardware.watch import Watched
 from pmm.calibration import Calibration, read_calibration
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.oscillator_table import expand_preset
@@ -54,6 +55,8 @@ class RigFile:
         Structural modes from a pluck test.
     calibration
         Of the gauges, from check weights; kept with every recording and applied in the analysis.
+    tables
+        All of the file, as it is written.
     realtime
         Whether cycles keep to the clock; a simulated rig runs free unless it is asked for.
     campaign
@@ -77,6 +80,13 @@ class RigFile:
     recorder: RecorderSettings = field(default_factory=RecorderSettings)
     realtime: bool = True
     campaign: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def watched(self) -> Watched:
+        """What the rig watches in every cycle: highest frequency, safe loads."""
+        loads = {one.channel: one.safe_n for one in self.gauges}
+        return Watched(self.oscillator.frequency_hz.high, MappingProxyType(loads))
 
     @property
     def sample_rate_hz(self) -> float:
@@ -145,7 +155,8 @@ def examine_rig(path: Path) -> Examined:
     rig = _built(path, replace(own, modes=own.modes + modes), hardware, devices)
     # As written: a table that is read again elsewhere is handed on untouched.
     kept = MappingProxyType(dict(original.get("campaign", {})))
-    rig = replace(rig, campaign=kept, calibration=calibration)
+    tables = MappingProxyType(original)
+    rig = replace(rig, campaign=kept, calibration=calibration, tables=tables)
     return Examined(rig, oscillator, channels)
 
 

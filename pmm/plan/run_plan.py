@@ -3,8 +3,11 @@
 import json
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from pathlib import Path
 
+from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
+from pmm.configuration import Fault, as_error, validate
 from pmm.plan.kinds import Motion, RunKind
 
 
@@ -135,3 +138,21 @@ class RunPlan:
     def to_json(self) -> str:
         """Return the run as a JSON document, to be kept with its recording."""
         return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, text: str, where: str) -> "RunPlan":
+        """Return the run that a document holds.
+
+        Raises
+        ------
+        DataError
+            If it is none; the message names ``where``.
+        """
+        faults: list[Fault] = []
+        try:
+            found = validate(cls, json.loads(text), faults)
+        except (ValueError, TypeError, ConfigurationError) as error:
+            raise DataError(f"{where}: damaged plan of the run: {error!r}") from error
+        if found is None:
+            raise DataError(str(as_error(Path(where), faults, {})))
+        return found

@@ -12,12 +12,12 @@ import numpy as np
 
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
-from hardware.errors import DriveStateError, HardwareError, TransitionTimeoutError
+from hardware.errors import DriveStateError, HardwareError, NotAtRestError, TransitionTimeoutError
 from hardware.line_log import LoggedPort
 from hardware.opening import carry_on
 from hardware.pacing import FreeRunning
 from hardware.playback import INTERFACE
-from hardware.raw_log import read_frames
+from hardware.raw_log_reading import read_frames
 from hardware.rig import Rig
 from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.serial_port import PortSettings
@@ -99,7 +99,7 @@ def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[Taken], list[s
         for _ in range(_cycles(run)):
             try:
                 rig.cycle()
-            except (DriveStateError, TransitionTimeoutError):
+            except (DriveStateError, NotAtRestError, TransitionTimeoutError):
                 pass  # the replayed drives follow the run's commands, not this rig's
             except HardwareError as error:
                 faults.append(str(error))

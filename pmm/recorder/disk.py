@@ -1,6 +1,5 @@
 """Room on the disk: enough before a run, and still enough in it."""
 
-import errno
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,7 +9,6 @@ from typing import ClassVar, Final
 from hardware.errors import HardwareError, Reaction
 
 RESERVE_BYTES: Final = 256 * 2**20
-_FULL: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _FRAME_BYTES: Final = 12  # of a raw log, packed; measured 8 to 10
 _MEGA: Final = 1e6
 
@@ -22,11 +20,6 @@ class DiskFullError(HardwareError):
 
     def __init__(self, message: str) -> None:
         super().__init__("recorder", message)
-
-
-def is_full(error: OSError) -> bool:
-    """Tell whether an error says that there is no room: disk, quota or size limit."""
-    return error.errno in _FULL
 
 
 def bytes_per_s(channels: int, sample_rate_hz: float, frames_per_s: float = 0.0) -> float:

@@ -1,8 +1,7 @@
-"""The files of a run's folder, and how one is written whole or not at all."""
+"""The files of a run's folder."""
 
 import hashlib
 import os
-import sys
 from pathlib import Path
 from typing import Final
 
@@ -28,10 +27,6 @@ class RunExistsError(DataError):
     """The folder holds a run already: nothing is ever recorded over it."""
 
 
-class BeingRecordedError(DataError):
-    """A process is recording into the folder at this moment."""
-
-
 def is_run(folder: Path) -> bool:
     """Tell whether a folder holds a run, or what a crash left of one."""
     return any((folder / name).exists() for name in (HEADER, *STREAMS))
@@ -53,17 +48,6 @@ def check_empty(folder: Path) -> None:
         )
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file so that it is there whole, on the disk, or not at all."""
-    part = path.with_name(f".{path.name}.part")
-    with part.open("w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
-    sync_folder(path.parent)
-
-
 def set_aside(path: Path) -> None:
     """Give a file that cannot be read another name, if it is there: its bytes are kept."""
     if not path.exists():
@@ -74,20 +58,14 @@ def set_aside(path: Path) -> None:
     path.rename(other)
 
 
-def sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
-    if sys.platform == "win32":
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
 def sync_data(handle: int) -> None:
     """Bring a file's data to the disk."""
     getattr(os, "fdatasync", os.fsync)(handle)
+
+
+def contents_of(path: Path) -> dict[str, int | str]:
+    """Return a file's size and hash, as the completion marker keeps them."""
+    return {"bytes": path.stat().st_size, "sha256": sha256(path)}
 
 
 def sha256(path: Path) -> str:
@@ -97,28 +75,3 @@ def sha256(path: Path) -> str:
         while piece := file.read(_CHUNK):
             found.update(piece)
     return found.hexdigest()
-
-
-def lock(handle: int, folder: Path) -> None:
-    """Keep others from taking the run of an open file for one that a crash left.
-
-    The lock ends with the process, however it ends. Where system or disk have none, nothing is
-    done.
-
-    Raises
-    ------
-    BeingRecordedError
-        If another process holds it.
-    """
-    if sys.platform == "win32":
-        return
-    import fcntl
-
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
-        raise BeingRecordedError(
-            f"{folder}: a process is recording into it; recover it when that has ended"
-        ) from error
-    except OSError:
-        return  # a network drive without locks

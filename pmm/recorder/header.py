@@ -1,10 +1,12 @@
 """What a run's folder says of the run before its first sample: ``header.json``."""
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
@@ -39,6 +41,9 @@ class RunHeader:
         SYNC messages per second.
     started_utc
         Date and time in ISO 8601, handed in.
+    number
+        Place of the run among all of its campaign, from 1: it orders them, whatever the clock says.
+        0 in a campaign of before numbers were kept.
     kind, plan_json
         What kind of run it is, and its plan as JSON.
     configuration_sha256, provenance
@@ -65,6 +70,7 @@ class RunHeader:
     sample_rate_hz: float
     started_utc: str
     kind: str
+    number: int = 0
     set_point: SetPoint | None = None
     plan_json: str = "{}"
     configuration_sha256: Mapping[str, str] = field(default_factory=lambda: _NOTHING)
@@ -78,10 +84,30 @@ class RunHeader:
     opening: Mapping[str, Any] = field(default_factory=lambda: _NOTHING)
     live: LiveSettings = LiveSettings()
 
+    @property
+    def order(self) -> tuple[int, str, int]:
+        """What sorts runs as they were made: by number; those without one come first, by clock."""
+        return self.number, self.started_utc, self.first_sync
+
     def to_json(self) -> str:
         """Return the header as it is kept."""
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
         return json.dumps({name: _plain(value) for name, value in fields.items()}, indent=1)
+
+    @classmethod
+    def read(cls, path: Path) -> "RunHeader":
+        """Return the header of a run from its file.
+
+        Raises
+        ------
+        DataError
+            As :meth:`from_json`, or if it cannot be read as text.
+        """
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise DataError(f"{path}: damaged run header: {error}") from error
+        return cls.from_json(text, str(path))
 
     @classmethod
     def from_json(cls, text: str, where: str) -> "RunHeader":
@@ -95,7 +121,7 @@ class RunHeader:
         try:
             fields = json.loads(text)
             point = fields["set_point"]
-            return cls(
+            found = cls(
                 **{
                     **fields,
                     "channels": tuple(Channel(**one) for one in fields["channels"]),
@@ -104,8 +130,40 @@ class RunHeader:
                     "live": LiveSettings(**fields["live"]),
                 }
             )
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise DataError(f"{where}: damaged run header: {error!r}") from error
+        if wrong := [name for name, right in _KINDS.items() if not right(getattr(found, name))]:
+            raise DataError(f"{where}: damaged run header: {', '.join(wrong)} cannot be so")
+        return found
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**53
+
+
+def _is_rate(value: object) -> bool:
+    return isinstance(value, int | float) and 0.0 < value < math.inf
+
+
+def _are_texts(value: object) -> bool:
+    return isinstance(value, Mapping) and all(map(_is_text, value.values()))
+
+
+_KINDS: Final[Mapping[str, Callable[[object], bool]]] = {
+    "run_name": _is_text,
+    "started_utc": _is_text,
+    "kind": _is_text,
+    "plan_json": _is_text,
+    "sample_rate_hz": _is_rate,
+    "number": _is_whole,
+    "first_sync": _is_whole,
+    "configuration_sha256": _are_texts,
+    "provenance": _are_texts,
+}
 
 
 def _plain(value: Any) -> Any:

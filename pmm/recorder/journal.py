@@ -1,4 +1,4 @@
-"""Appends to the files of a run, in a thread of its own, so that the disk never holds up the loop.
+"""Opens and writes the files of a run, in a thread of its own: the disk never holds up the loop.
 
 What is handed over is written and brought to the disk (fdatasync) at once. A write that fails, on a
 full disk for example, is taken back to the last whole piece; everything before stays.
@@ -6,15 +6,17 @@ full disk for example, is taken back to the last whole piece; everything before 
 
 import hashlib
 import os
-import queue
-import threading
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Final, TypeAlias
 
-from hardware.description.errors import DataError
-from pmm.recorder.disk import DiskFullError, is_full
-from pmm.recorder.files import STREAMS, lock, sync_data, sync_folder
+from hardware.description.errors import DataError, PmmError
+from hardware.description.room import is_full
+from pmm.recorder.disk import DiskFullError
+from pmm.recorder.files import STREAMS, sync_data
+from pmm.whole_file import sync_folder
+from pmm.worker import Worker
 
 Piece: TypeAlias = Callable[[], bytes]
 """Makes bytes to append; called in the journal's thread."""
@@ -51,68 +53,75 @@ class Journal:
 
     Parameters
     ----------
-    first
-        What each file begins with; all streams of :data:`pmm.recorder.files.STREAMS` are made.
-
-    Raises
-    ------
-    DiskFullError, OSError
-        If the files cannot be made.
+    prepare
+        Called first, in the journal's thread: makes room for the files and returns what each begins
+        with. All streams of :data:`pmm.recorder.files.STREAMS` are made then.
     """
 
-    def __init__(self, folder: Path, first: Mapping[str, bytes]) -> None:
+    def __init__(self, folder: Path, prepare: Callable[[], Mapping[str, bytes]]) -> None:
         self._folder = folder
         self._streams: dict[str, _Stream] = {}
-        self._jobs: queue.SimpleQueue[tuple[tuple[str, Piece], ...] | None] = queue.SimpleQueue()
-        self._error: Exception | None = None
-        self._pending = 0
-        try:
-            for name in STREAMS:
-                self._streams[name] = _Stream(folder / name)
-                self._streams[name].append(first.get(name, b""))
-                sync_data(self._streams[name].handle)
-            lock(self._streams[STREAMS[0]].handle, folder)
-            sync_folder(folder)
-        except BaseException as error:
-            self._release()
-            if isinstance(error, OSError):
-                raise self._named(error) from error
-            raise
-        self._thread = threading.Thread(target=self._work, name="recorder", daemon=True)
-        self._thread.start()
+        self._begun = self._opened = False
+        self._worker = Worker("recorder")
+        self._worker.do(partial(self._open, prepare))
+
+    def opened(self, *, wait: bool) -> bool:
+        """Tell whether the files are there, on the disk.
+
+        Parameters
+        ----------
+        wait
+            Until they are.
+
+        Raises
+        ------
+        PmmError
+            If they cannot be made, or a piece could not be written.
+        """
+        if wait and not self._opened:
+            self._worker.wait()
+        self.check()
+        return self._opened
+
+    @property
+    def begun(self) -> bool:
+        """Whether the files were made: there is something to keep."""
+        return self._begun
 
     @property
     def size(self) -> int:
         """Bytes that are written."""
-        return sum(one.size for one in self._streams.values())
+        return sum(one.size for one in tuple(self._streams.values()))
 
     @property
     def behind(self) -> int:
         """How many pieces of work wait for the disk."""
-        return self._pending
+        return self._worker.behind
 
-    def hand_over(self, pieces: Iterable[tuple[str, Piece]]) -> None:
-        """Have pieces appended to their files and brought to the disk.
+    def hand_over(
+        self, pieces: Iterable[tuple[str, Piece]], then: Callable[[], None] | None = None
+    ) -> None:
+        """Have pieces appended to their files and brought to the disk; ``then`` is called after.
 
         Raises
         ------
-        DiskFullError, DataError
+        PmmError
             If an earlier piece could not be written; nothing more is taken then.
         """
         self.check()
-        self._pending += 1
-        self._jobs.put(tuple(pieces))
+        self._worker.do(partial(self._write, tuple(pieces), then))
 
     def check(self) -> None:
         """Raise what went wrong in writing, if anything did."""
-        if self._error is not None:
-            raise self._named(self._error) from self._error
+        error = self._worker.error
+        if isinstance(error, PmmError):
+            raise error.with_traceback(None)
+        if error is not None:
+            raise self._named(error) from error
 
     def finish(self) -> None:
         """Write what was handed over and end the thread; the files stay open. May be repeated."""
-        if self._thread.is_alive():
-            self._jobs.put(None)
-            self._thread.join()
+        self._worker.close()
 
     def replace_head(self, name: str, head: bytes) -> None:
         """Write over the beginning of a finished stream, whose hash is taken anew."""
@@ -135,22 +144,26 @@ class Journal:
         self.finish()
         self._release()
 
-    def _work(self) -> None:
-        while (job := self._jobs.get()) is not None:
-            if self._error is None:
-                try:
-                    self._write(job)
-                except Exception as error:  # the loop has to learn of whatever it was
-                    self._error = error
-            self._pending -= 1
+    def _open(self, prepare: Callable[[], Mapping[str, bytes]]) -> None:
+        first = prepare()
+        for name in STREAMS:
+            self._streams[name] = _Stream(self._folder / name)
+            self._begun = True
+            if name in first:
+                self._streams[name].append(first[name])
+                sync_data(self._streams[name].handle)
+        sync_folder(self._folder)
+        self._opened = True
 
-    def _write(self, job: tuple[tuple[str, Piece], ...]) -> None:
+    def _write(self, job: tuple[tuple[str, Piece], ...], then: Callable[[], None] | None) -> None:
         touched = set()
         for name, piece in job:
             self._streams[name].append(piece())
             touched.add(name)
         for name in touched:
             sync_data(self._streams[name].handle)
+        if then is not None:
+            then()
 
     def _release(self) -> None:
         for one in self._streams.values():

@@ -12,18 +12,26 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from pmm.recorder.decoding import decode, spread
 from pmm.recorder.disk import DiskFullError, free_bytes
-from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside, write_whole
+from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
 from pmm.recorder.live_path import PATIENCE_CYCLES, Taken
-from pmm.recorder.recording import RunData
+from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
 from pmm.recorder.texts import as_line
+from pmm.whole_file import write_whole
 
 
-def rebuild(run: RunData, drivers: Iterable[EntryPoint] | None = None) -> Flag:
+def rebuild(
+    run: RunData, drivers: Iterable[EntryPoint] | None = None
+) -> tuple[Flag, tuple[str, ...]]:
     """Write ``samples.arrows`` from the raw log, and ``pulses.jsonl`` where that is lost as well.
 
-    The samples are decoded by the same code as in the run, so they are the same bit by bit. A
-    ``samples.arrows`` of which nothing is whole keeps its bytes under another name.
+    The samples are decoded by the same code as in the run, so they are the same bit by bit; those
+    that are whole stay. The bytes of a damaged ``samples.arrows`` are kept under another name.
+
+    Returns
+    -------
+    tuple
+        What was done, and the names of the files that were made.
 
     Raises
     ------
@@ -37,10 +45,9 @@ def rebuild(run: RunData, drivers: Iterable[EntryPoint] | None = None) -> Flag:
     try:
         taken, _ = decode(run, drivers)
     except DataError as error:
-        raise DataError(
-            f"{run.folder}: holds no whole sample, and none can be decoded: {error}"
-        ) from error
-    first, values = _joined(run, taken)
+        what = "lost samples" if run.samples else "no whole sample, and none"
+        raise DataError(f"{run.folder}: holds {what} can be decoded: {error}") from error
+    first, values = _with_whole(run, *_joined(run, taken))
     need = 8 * (values.shape[0] + 1) * values.shape[1]
     if (free := free_bytes(run.folder)) < need:
         raise DiskFullError(
@@ -53,8 +60,26 @@ def rebuild(run: RunData, drivers: Iterable[EntryPoint] | None = None) -> Flag:
     if not (run.folder / PULSES).exists():
         _write_pulses(run.folder, taken)
         lost.append(PULSES)
-    message = f"{' and '.join(lost)} held nothing whole; decoded again from the raw log ({BUS})"
-    return Flag("samples_rebuilt", Severity.WARNING, message)
+    message = f"what {' and '.join(lost)} had lost is decoded again from the raw log ({BUS})"
+    return Flag("samples_rebuilt", Severity.WARNING, message), tuple(lost)
+
+
+def _with_whole(run: RunData, first: int, decoded: FloatArray) -> tuple[int, FloatArray]:
+    """Return the first SYNC and all samples, those of the journal where they are whole."""
+    if run.samples is None:
+        return first, decoded
+    told = run.marker if run.marker is not None and marker_is_whole(run.marker) else {}
+    samples = run.samples
+    last = samples.first_sync + samples.sample_count - 1
+    begin = told.get("first_sync", min(first, samples.first_sync))
+    end = told.get("last_sync", max(first + decoded.shape[1] - 1, last))
+    values = np.full((decoded.shape[0], end - begin + 1), np.nan)
+    for start, part in ((first, decoded), (samples.first_sync, samples[:, :])):
+        skipped = max(begin - start, 0)
+        there = part[:, skipped : end + 1 - start]
+        place = values[:, start + skipped - begin :][:, : there.shape[1]]
+        np.copyto(place, there, where=~np.isnan(there))
+    return begin, values
 
 
 def _joined(run: RunData, taken: Sequence[Taken]) -> tuple[int, FloatArray]:

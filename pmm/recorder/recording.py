@@ -1,10 +1,12 @@
 """A run's folder as a recording: what is whole of its journals, and the NetCDF of it."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+from zlib import crc32
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from analysis.recording import FloatArray, Recording
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
+from pmm.plan.kinds import RunKind
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import (
     BUS,
@@ -21,16 +24,21 @@ from pmm.recorder.files import (
     HARMONICS,
     HEADER,
     LINES,
-    MARKER,
     PULSES,
     RECORDING,
     SAMPLES,
-    sync_folder,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
+from pmm.recorder.marker import read_marker
+from pmm.recorder.noise import white_noise_rms
 from pmm.recorder.samples import JournalSamples, counts, read_header, read_samples
 from pmm.recorder.texts import read_lines
+from pmm.whole_file import sync_folder
+
+_OPEN, _CLOSED = "gate open", "hold"  # states of run control, as its events have them
+_SUM: Final = "crc32"  # in the marker: of all else in it
+NOISE: Final = "noise_rms"  # in the marker of a zero run: of each channel, in its unit
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,7 @@ def read_run(folder: Path) -> RunData:
     if (folder / SAMPLES).exists():
         whole = samples.whole_bytes if samples else 0
         tails[SAMPLES] = (folder / SAMPLES).stat().st_size - whole
-    return RunData(folder, _header(folder), samples, texts, tails, _marker(folder))
+    return RunData(folder, _header(folder, samples), samples, texts, tails, read_marker(folder))
 
 
 def convert(run: RunData, flags: Sequence[Flag] = ()) -> Path:
@@ -124,7 +132,7 @@ def as_recording(run: RunData, flags: Sequence[Flag] = ()) -> Recording:
     if samples is None:
         raise DataError(f"{run.folder}: holds no whole sample; there is nothing to make of it")
     edges, unordered = _edges(run)
-    told = [Flag(**{**one, "severity": Severity(one["severity"])}) for one in _told(run)]
+    told = map(Flag.read, _told(run))
     return Recording(
         name=header.run_name,
         channels=header.channels,
@@ -149,11 +157,37 @@ def marker_text(
     found["lines"] = len(run.texts[LINES])
     found["cycles"] = asdict(run.cycles) if run.cycles else None
     found["flags"] = [asdict(one) for one in flags]
-    return json.dumps({**found, "files": contents}, indent=1)
+    found |= _noise_at_rest(run)
+    found |= {"files": contents}
+    return json.dumps({**found, _SUM: _sum(found)}, indent=1)
 
 
-def _header(folder: Path) -> RunHeader:
-    """Return the header from its file, or the copy in the samples' journal."""
+def marker_is_whole(marker: Mapping[str, Any] | None) -> bool:
+    """Tell whether a completion marker is what was written; one without a checksum is taken."""
+    if marker is None:
+        return False
+    rest = {key: value for key, value in marker.items() if key != _SUM}
+    return bool(marker.get(_SUM, _sum(rest)) == _sum(rest))
+
+
+def _sum(marker: Mapping[str, Any]) -> int:
+    return crc32(json.dumps(marker).encode())
+
+
+def _noise_at_rest(run: RunData) -> dict[str, Any]:
+    """Return what a zero run tells of the channels' noise; another record shows more than noise."""
+    if run.header.kind != RunKind.ZERO or run.samples is None:
+        return {}
+    found = white_noise_rms(run.samples[:, :])
+    names = (one.name for one in run.header.channels)
+    pairs = zip(names, found, strict=True)
+    return {NOISE: {name: float(rms) for name, rms in pairs if np.isfinite(rms)}}
+
+
+def _header(folder: Path, samples: JournalSamples | None) -> RunHeader:
+    """Return the header that a checksum vouches for; else that of its file, or any copy."""
+    if samples is not None and samples.is_headed:
+        return samples.header
     path = folder / HEADER
     try:
         return RunHeader.from_json(path.read_text(encoding="utf-8"), str(path))
@@ -165,14 +199,6 @@ def _header(folder: Path) -> RunHeader:
                 f"nothing says what {BUS} belongs to"
             ) from error
         return header
-
-
-def _marker(folder: Path) -> Mapping[str, Any] | None:
-    try:
-        found = json.loads((folder / MARKER).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) and "files" in found else None
 
 
 def _told(run: RunData) -> list[dict[str, Any]]:
@@ -218,8 +244,21 @@ def _provenance(run: RunData) -> dict[str, str]:
 
 
 def _gate(run: RunData) -> dict[str, str]:
-    """Return when the pulses opened and closed the gate, as far as it came."""
-    last = run.texts[HARMONICS][-1] if run.texts[HARMONICS] else {}
+    """Return when the pulses opened and closed the gate, as far as it came; else by time."""
+    last = run.texts[HARMONICS][-1] if run.texts[HARMONICS] else _gate_by_time(run)
     if not {"opened_s", "periods"} <= set(last):
         return {}
     return {GATE_OPENED: repr(last["opened_s"]), GATE_PERIODS: str(last["periods"])}
+
+
+def _gate_by_time(run: RunData) -> dict[str, Any]:
+    """Return the gate of an oscillation without pulses: whole periods, wherever one begins."""
+    point = run.header.set_point
+    events = (one for one in run.texts[EVENTS] if one["kind"] == "state")
+    times = {one["text"]: float(one["time_s"]) for one in events}
+    if run.header.photocell or point is None or not {_OPEN, _CLOSED} <= set(times):
+        return {}
+    # The cycle in which it closed is open to its end.
+    open_s = times[_CLOSED] - times[_OPEN] + 1.0 / run.header.sample_rate_hz
+    periods = math.floor(open_s * point.frequency_hz) - 1
+    return {"opened_s": times[_OPEN], "periods": periods} if periods > 0 else {}

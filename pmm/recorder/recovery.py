@@ -1,34 +1,36 @@
 """Makes a recording of whatever a crash left of a run. Nothing that is there is ever destroyed."""
 
 import json
-import os
 from collections.abc import Iterable, Mapping
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from hardware.description.errors import DataError
+from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from hardware.raw_log import LogState, look
+from hardware.raw_log import file_header
+from hardware.raw_log_reading import LogState, look
+from pmm.campaign_owner import own_campaign
+from pmm.recorder.changes import change_flags, changed_files, files_recovered
+from pmm.recorder.disk import DiskFullError
 from pmm.recorder.files import (
     BUS,
+    HEADER,
     MARKER,
     RECORDING,
     RECOVERED,
     SAMPLES,
+    STREAMS,
+    contents_of,
     is_run,
-    lock,
     set_aside,
-    write_whole,
 )
+from pmm.recorder.marker import read_recovered
 from pmm.recorder.rebuilding import rebuild
 from pmm.recorder.recording import RunData, convert, read_run
-from pmm.recorder.samples import counts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from pmm.recorder.samples import SampleWriter, counts
+from pmm.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class RecoveredRun:
         Whether the run had been closed and its recording was there: nothing was to do.
     flags
         What was noticed.
+    changed
+        Files that were not what was written.
     """
 
     path: Path
@@ -58,6 +62,26 @@ class RecoveredRun:
     lost_tail_bytes: Mapping[str, int]
     was_whole: bool
     flags: tuple[Flag, ...]
+    changed: tuple[str, ...] = ()
+
+
+class NothingWrittenError(DataError):
+    """A run of which nothing had been recorded when its program ended."""
+
+
+def _nothing_written(run: RunData) -> bool:
+    """Whether a run, never closed, has no more than what its recorder begins its files with."""
+    if run.marker is not None or not (run.folder / HEADER).exists():
+        return False
+    begun = {SAMPLES: SampleWriter(run.header).head(), BUS: file_header()}
+    return all(_is_begun(run.folder / name, begun.get(name, b"")) for name in STREAMS)
+
+
+def _is_begun(path: Path, head: bytes) -> bool:
+    """Whether a file is not there, or the beginning of what it begins with."""
+    if not path.exists():
+        return True
+    return path.stat().st_size <= len(head) and head.startswith(path.read_bytes())
 
 
 def runs_in(place: Path) -> tuple[Path, ...]:
@@ -79,7 +103,8 @@ def runs_in(place: Path) -> tuple[Path, ...]:
 def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> RecoveredRun:
     """Make a recording of a run's folder, however the run ended; the same again does nothing.
 
-    Where nothing of the samples' journal is whole, it is decoded again from the raw log.
+    What the samples' journal has lost is decoded again from the raw log; a file that is not what
+    was written is kept under another name where one is made in its place.
 
     Parameters
     ----------
@@ -88,56 +113,72 @@ def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Recove
 
     Raises
     ------
-    BeingRecordedError
-        If a process is recording into it.
+    OwnedElsewhereError
+        If another process is writing into the run's campaign.
+    NothingWrittenError
+        If nothing had been recorded yet.
     DataError
         If there is no whole sample in it, and none to be decoded.
     DiskFullError
         If there is no room for the recording.
     """
-    with _alone(folder):
+    with own_campaign(folder.resolve().parent):
         run = read_run(folder)
         log = look(folder / BUS) if (folder / BUS).exists() else LogState(0, 0)
-        if (folder / RECORDING).exists() and _readable(folder / RECORDING):
+        changed = changed_files(run)
+        is_recorded = (folder / RECORDING).exists() and RECORDING not in changed
+        if is_recorded and not changed:
             return _outcome(run, log, _flags_before(folder), was_whole=run.marker is not None)
-        flags = _flags(run, log)
-        if run.samples is None:
-            flags += (rebuild(run, drivers),)
-            run = read_run(folder)
-        set_aside(folder / RECORDING)
-        convert(run, flags)
-        outcome = _outcome(run, log, flags, was_whole=False)
-        write_whole(folder / RECOVERED, _text(outcome))
+        if run.samples is None and _nothing_written(run):
+            raise NothingWrittenError(
+                f"{folder}: its recorder was opened, and the program ended before anything was "
+                "written: there is nothing to recover, and nothing is lost"
+            )
+        damage = changed.pop(RECORDING, None)
+        flags, made = (*_torn(run, log), *change_flags(changed)), files_recovered(folder)
+        if _has_lost(run):
+            run, flags, made = _rebuilt(run, flags, made, drivers)
+        if not is_recorded:
+            set_aside(folder / RECORDING)
+            convert(run, flags)
+        if damage is not None:
+            changed |= {RECORDING: damage}
+            flags += change_flags({RECORDING: damage})
+        outcome = _outcome(run, log, flags, was_whole=False, changed=tuple(changed))
+        write_whole(folder / RECOVERED, _text(outcome, made))
         return outcome
 
 
-@contextmanager
-def _alone(folder: Path) -> "Iterator[None]":
-    """Hold the run's lock, so that neither its recorder nor another recovery is at it."""
-    if not (folder / SAMPLES).exists():
-        yield
-        return
-    handle = os.open(folder / SAMPLES, os.O_RDONLY)
+def _has_lost(run: RunData) -> bool:
+    """Tell whether samples were written that are not whole."""
+    if run.samples is None or run.samples.changes:
+        return True
+    last = run.samples.first_sync + run.samples.sample_count - 1
+    return run.marker is not None and last < run.marker.get("last_sync", last)
+
+
+def _rebuilt(
+    run: RunData,
+    flags: tuple[Flag, ...],
+    made: Mapping[str, Any],
+    drivers: Iterable[EntryPoint] | None,
+) -> tuple[RunData, tuple[Flag, ...], dict[str, Any]]:
+    """Decode what was lost from the raw log; where that cannot be, what is whole has to do."""
     try:
-        lock(handle, folder)
-        yield
-    finally:
-        os.close(handle)
+        flag, names = rebuild(run, drivers)
+    except PmmError as error:
+        if run.samples is None or isinstance(error, DiskFullError):
+            raise
+        text = f"what {SAMPLES} has lost cannot be decoded again: {error}"
+        return run, (*flags, Flag("samples_lost", Severity.WARNING, text)), dict(made)
+    again = {name: contents_of(run.folder / name) for name in names}
+    return read_run(run.folder), (*flags, flag), {**made, **again}
 
 
-def _readable(path: Path) -> bool:
-    from analysis.readers import read_recording
-
-    try:
-        return read_recording(path).sample_count > 0
-    except DataError:
-        return False
-
-
-def _flags(run: RunData, log: LogState) -> tuple[Flag, ...]:
-    """Return what the recovery itself noticed."""
+def _torn(run: RunData, log: LogState) -> tuple[Flag, ...]:
+    """Say what is not whole of a run that was not closed."""
     if run.marker is not None:
-        return tuple(_cut(run, run.marker))
+        return ()
     tails = {name: size for name, size in {**run.tails, BUS: log.tail_bytes}.items() if size}
     torn = ", ".join(f"{size} bytes of {name}" for name, size in tails.items()) or "nothing"
     message = (
@@ -147,18 +188,13 @@ def _flags(run: RunData, log: LogState) -> tuple[Flag, ...]:
     return (Flag("recovered", Severity.WARNING, message),)
 
 
-def _cut(run: RunData, marker: Mapping[str, Any]) -> "Iterator[Flag]":
-    """Yield a flag for each file of a closed run that is shorter than its marker says."""
-    for name, about in marker["files"].items():
-        path = run.folder / name
-        size = path.stat().st_size if path.exists() else 0
-        if size < about["bytes"]:
-            message = f"{name} has {size} of {about['bytes']} bytes; it was cut after the run"
-            yield Flag("journal_cut", Severity.WARNING, message)
-
-
 def _outcome(
-    run: RunData, log: LogState, flags: tuple[Flag, ...], *, was_whole: bool
+    run: RunData,
+    log: LogState,
+    flags: tuple[Flag, ...],
+    *,
+    was_whole: bool,
+    changed: tuple[str, ...] = (),
 ) -> RecoveredRun:
     found = counts(run.samples) if run.samples else {"samples": 0, "missing": 0}
     return RecoveredRun(
@@ -169,16 +205,14 @@ def _outcome(
         {name: size for name, size in {**run.tails, BUS: log.tail_bytes}.items() if size},
         was_whole,
         flags,
+        changed,
     )
 
 
-def _text(outcome: RecoveredRun) -> str:
-    return json.dumps({**asdict(outcome), "path": outcome.path.name}, indent=1)
+def _text(outcome: RecoveredRun, made: Mapping[str, Any]) -> str:
+    return json.dumps({**asdict(outcome), "path": outcome.path.name, "files": made}, indent=1)
 
 
 def _flags_before(folder: Path) -> tuple[Flag, ...]:
     """Return what an earlier recovery noticed."""
-    if not (folder / RECOVERED).exists():
-        return ()
-    told = json.loads((folder / RECOVERED).read_text(encoding="utf-8"))["flags"]
-    return tuple(Flag(**{**one, "severity": Severity(one["severity"])}) for one in told)
+    return tuple(map(Flag.read, read_recovered(folder).get("flags", ())))

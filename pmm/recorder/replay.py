@@ -11,6 +11,8 @@ import numpy as np
 from analysis.recording import FloatArray
 from hardware.description.errors import DataError
 from hardware.roles import Pulse
+from pmm.campaign_owner import writer_of
+from pmm.recorder.changes import changed_files
 from pmm.recorder.decoding import decode, spread
 from pmm.recorder.files import HARMONICS
 from pmm.recorder.live_path import Taken
@@ -42,6 +44,8 @@ class Replay:
         Largest difference of a coefficient, over the largest of its channel.
     faults
         What the devices reported again, in words.
+    changed
+        File of the run to what of it is not what was written, in words.
     """
 
     samples: FloatArray
@@ -53,6 +57,7 @@ class Replay:
     recorded_readings: tuple[Mapping[str, Any], ...]
     difference: float
     faults: tuple[str, ...]
+    changed: Mapping[str, str]
 
     @property
     def same(self) -> bool:
@@ -79,11 +84,15 @@ def replay(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Replay:
     Raises
     ------
     DataError
-        If the folder holds no samples, no raw log, or no rig to decode it with.
+        If the folder holds no samples, no raw log, or no rig to decode it with, or the run is being
+        recorded.
     ConfigurationError
         If the rig of the header cannot be built, because a driver is not installed for example.
     """
     run = read_run(folder)
+    writer = writer_of(folder.resolve().parent)
+    if run.marker is None and writer is not None:
+        raise DataError(f"{folder}: is being recorded by {writer}; replay it when it has ended")
     if run.samples is None:
         raise DataError(f"{folder}: holds no whole sample to compare a replay with")
     return _compare(run, run.samples, *decode(run, drivers))
@@ -106,4 +115,5 @@ def _compare(
         told,
         largest_difference(told, again_read),
         tuple(faults),
+        changed_files(run),
     )

@@ -1,7 +1,7 @@
 """Records a run into a folder of its own, so that a crash at any moment costs a second at most.
 
 The loop hands everything in and calls :meth:`RunRecorder.tick` once a cycle; nothing of it waits
-for the disk. ``docs/recording-safety.md`` describes the folder.
+for the disk, the opening of the files neither. ``docs/recording-safety.md`` describes the folder.
 """
 
 import json
@@ -19,7 +19,7 @@ from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.raw_log import Frame, FramePacker, container, file_header
 from hardware.roles import Pulse
-from pmm.recorder.disk import DiskWatch
+from pmm.recorder.disk import DiskFullError, DiskWatch
 from pmm.recorder.files import (
     BUS,
     CYCLES,
@@ -31,7 +31,6 @@ from pmm.recorder.files import (
     PULSES,
     SAMPLES,
     check_empty,
-    write_whole,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.journal import Journal, Piece
@@ -40,6 +39,7 @@ from pmm.recorder.recording import convert, marker_text, read_run
 from pmm.recorder.samples import Piece as SamplePiece
 from pmm.recorder.samples import SampleWriter
 from pmm.recorder.texts import as_line
+from pmm.whole_file import write_whole
 
 _SHARE: Final = 0.5  # of flush_s: what is left of it is for the disk
 _MOST_BEHIND: Final = 120  # hand-overs that may wait for a disk that has stopped answering
@@ -58,7 +58,9 @@ class Outcome(StrEnum):
 
 
 class RunRecorder:
-    """Records one run; use it in a ``with`` block.
+    """Records one run; use it in a ``with`` block, which waits until the files are there.
+
+    Without one, :meth:`opened` tells; what comes in the meantime is kept until then.
 
     Left without :meth:`close`, the journals stay as they are, without a completion marker: what a
     crash leaves, and ``pmm recover`` makes a recording of.
@@ -71,13 +73,14 @@ class RunRecorder:
         After so long at the latest everything is on the disk.
     disk
         Watches the room on the disk.
+    admit
+        Called before the folder is made, like all that is done to the disk in the journal's thread:
+        refuses the run by raising, or completes the header.
 
-    Raises
-    ------
-    RunExistsError
-        If the folder holds a run.
-    DiskFullError, DataError
-        If the files cannot be made.
+    Attributes
+    ----------
+    header
+        Complete once the recorder has opened.
     """
 
     def __init__(
@@ -87,27 +90,30 @@ class RunRecorder:
         *,
         flush_s: float = 1.0,
         disk: DiskWatch | None = None,
+        admit: Callable[[RunHeader], RunHeader] = lambda header: header,
     ) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        check_empty(folder)
         self.folder = folder
         self.header = header
         self._disk = disk
         self._every_s = _SHARE * flush_s
         self._due_s: float | None = None
-        self._writer = SampleWriter(header)
+        self._short: DiskFullError | None = None
         self._frames = FramePacker()
         self._samples: list[SamplePiece] = []
         self._texts: dict[str, list[bytes]] = {}
         self._next_sync = 0
         self._late = Lateness(1.0 / header.sample_rate_hz)
         self._closed = False
-        write_whole(folder / HEADER, header.to_json())
-        self._journal = Journal(folder, {SAMPLES: self._writer.head(), BUS: file_header()})
+        self._journal = Journal(folder, partial(self._open, admit))
         self.frame: Callable[[Frame], None] = self._frames.take
         self.cycle_statistics: Callable[[float], None] = self._late.add
 
     def __enter__(self) -> "RunRecorder":
+        try:
+            self.opened(wait=True)
+        except BaseException:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -120,6 +126,30 @@ class RunRecorder:
             pass  # the journal knows, and nothing is to hide what ended the block
         finally:
             self._journal.close()
+
+    def opened(self, *, wait: bool) -> bool:
+        """Tell whether the run's files are there.
+
+        Parameters
+        ----------
+        wait
+            Until they are; a loop that keeps time does not.
+
+        Raises
+        ------
+        RunExistsError
+            If the folder holds a run.
+        DiskFullError, DataError
+            If the files cannot be made.
+        PmmError
+            Whatever ``admit`` raises.
+        """
+        return self._journal.opened(wait=wait)
+
+    @property
+    def begun(self) -> bool:
+        """Whether the run has files of its own: there is something to keep."""
+        return self._journal.begun
 
     def samples(self, first_sync: int, values: NDArray[np.float64]) -> None:
         """Take samples of consecutive SYNCs; shape ``(channels, n)``, NaN where there is none.
@@ -183,14 +213,14 @@ class RunRecorder:
         if now_s < self._due_s:
             return
         self._due_s = now_s + self._every_s
-        self._hand_over()
+        self._hand_over(None if self._disk is None else partial(self._look, self._disk))
         if self._journal.behind > _MOST_BEHIND:
             behind_s = self._journal.behind * self._every_s
             raise RecordingStalledError(
                 f"{self.folder}: the disk is {behind_s:.0f} s behind; stop and look at it"
             )
-        if self._disk is not None:
-            self._disk.check_during(self._journal.size)
+        if self._short is not None:
+            raise self._short.with_traceback(None)
 
     def close(self, outcome: Outcome, flags: Sequence[Flag] = ()) -> Path:
         """Write the completion marker and the recording as NetCDF; return its path.
@@ -221,15 +251,35 @@ class RunRecorder:
         write_whole(self.folder / MARKER, text)
         return convert(replace(run, marker=json.loads(text)))
 
+    def _open(self, admit: Callable[[RunHeader], RunHeader]) -> Mapping[str, bytes]:
+        """Make the folder and its header; return what the streams begin with."""
+        self.header = admit(self.header)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        check_empty(self.folder)
+        write_whole(self.folder / HEADER, self.header.to_json())
+        self._writer = SampleWriter(self.header)
+        return {SAMPLES: self._writer.head(), BUS: file_header()}
+
+    def _look(self, disk: DiskWatch) -> None:
+        """Look how much room is left; the next :meth:`tick` says it."""
+        try:
+            disk.check_during(self._journal.size)
+            self._short = None
+        except DiskFullError as error:
+            self._short = error
+
+    def _batch(self, taken: list[SamplePiece]) -> bytes:
+        return self._writer.batch(taken)
+
     def _say(self, name: str, value: object) -> None:
         self._texts.setdefault(name, []).append(as_line(value))
 
-    def _hand_over(self) -> None:
-        """Give what has come to the journal's thread."""
+    def _hand_over(self, then: Callable[[], None] | None = None) -> None:
+        """Give what has come to the journal's thread; ``then`` is called in it afterwards."""
         pieces: list[tuple[str, Piece]] = []
         if self._samples:
             taken, self._samples = self._samples, []
-            pieces.append((SAMPLES, partial(self._writer.batch, taken)))
+            pieces.append((SAMPLES, partial(self._batch, taken)))
         pieces += [(BUS, partial(container, objects)) for objects in self._frames.drain()]
         texts, self._texts = self._texts, {}
         for name, lines in texts.items():
@@ -238,7 +288,7 @@ class RunRecorder:
         if found.cycles:
             line = as_line([found.cycles, found.p50_s, found.p99_s, found.worst_s, found.late])
             pieces.append((CYCLES, lambda: line))
-        self._journal.hand_over(pieces)
+        self._journal.hand_over(pieces, then)
 
 
 def _let_go(_frame: Frame) -> None:

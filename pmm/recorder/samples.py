@@ -5,15 +5,18 @@ as soon as it is written; a stream that was cut is readable up to its last whole
 """
 
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.errors import DataError
+from pmm.recorder import batches
 from pmm.recorder.header import RunHeader
 
 FloatArray = NDArray[np.float64]
@@ -37,12 +40,16 @@ class SampleWriter:
             for key, value in header.calibration.get(one.name, {}).items():
                 about[key] = repr(value)
             fields.append(pa.field(one.name, pa.float64(), metadata=about))
-        self._schema = pa.schema(fields, metadata={_HEADER_KEY: header.to_json().encode()})
+        about_all = {_HEADER_KEY: header.to_json().encode(), batches.KEY: batches.KIND}
+        self._schema = pa.schema(fields, metadata=about_all)
+        self._head = bytes(self._schema.serialize())
+        self._before = 0
         self.batch([(1, np.zeros((len(header.channels), 1)))])  # what is slow the first time
 
     def head(self) -> bytes:
-        """Return the beginning of the stream."""
-        return bytes(self._schema.serialize())
+        """Return the beginning of the stream, which its batches follow in the order of calls."""
+        self._before = crc32(self._head)
+        return self._head
 
     def batch(self, pieces: Sequence[Piece]) -> bytes:
         """Return pieces, each its first SYNC and values over the channels, as one batch."""
@@ -52,7 +59,17 @@ class SampleWriter:
         values = np.ascontiguousarray(np.concatenate([values for _, values in pieces], axis=1))
         columns = [self._column(one) for one in (sync, *values)]
         batch = self._arrow.RecordBatch.from_arrays(columns, schema=self._schema)
-        return bytes(batch.serialize())
+        own = batches.checksum((sync, *values), self._before)
+        about, self._before = batches.metadata(own, self._before), own
+        return self._message(batch, about)
+
+    def _message(self, batch: Any, about: dict[bytes, bytes]) -> bytes:
+        """Return a batch as it stands in the stream; only a stream's writer takes metadata."""
+        sink = self._arrow.BufferOutputStream()
+        with self._arrow.ipc.new_stream(sink, self._schema) as stream:
+            stream.write_batch(batch, custom_metadata=about)
+            end = sink.tell()
+        return bytes(sink.getvalue()[len(self._head) : end])
 
     def _column(self, values: NDArray[Any]) -> Any:
         """Return a column over an array; Arrow's own way from NumPy would load pandas here."""
@@ -77,6 +94,10 @@ class JournalSamples:
         First missing SYNC and how many, of each gap.
     whole_bytes
         Of the file: where the last whole batch ends.
+    changes
+        What is not what was written, in words; a stream without checksums has none to tell by.
+    is_headed
+        Whether the header is what was written, by the first batch's checksum.
     """
 
     header: RunHeader
@@ -84,6 +105,8 @@ class JournalSamples:
     sample_count: int
     gaps: tuple[tuple[int, int], ...]
     whole_bytes: int
+    changes: tuple[str, ...]
+    is_headed: bool
     batches: tuple[Any, ...]
     syncs: tuple[NDArray[np.int64], ...]
 
@@ -119,49 +142,69 @@ def read_samples(path: Path) -> JournalSamples | None:
     opened = _open(path)
     if opened is None:
         return None
-    header, stream, source = opened
-    batches: list[Any] = []
-    syncs: list[NDArray[np.int64]] = []
-    whole = source.tell()
-    while (batch := _next(stream)) is not None:
-        sync = batch.column(0).to_numpy()
-        last = int(syncs[-1][-1]) if syncs else 0
-        if not (len(sync) and sync[0] > last and np.all(np.diff(sync) > 0)):
-            break
-        batches.append(batch)
-        syncs.append(sync)
-        whole = source.tell()
-    if not batches:
+    header, schema, start, head_sum = opened
+    found = list(batches.read_batches(path, schema, start))
+    kept = _in_order(found)
+    if not kept:
         return None
-    first, last = int(syncs[0][0]), int(syncs[-1][-1])
+    first, last = int(kept[0].sync[0]), int(kept[-1].sync[-1])
+    syncs = tuple(one.sync for one in kept)
+    changes = tuple(_changes(found, kept, head_sum, header))
     return JournalSamples(
-        header, first, last - first + 1, _gaps(syncs), whole, tuple(batches), tuple(syncs)
+        header,
+        first,
+        last - first + 1,
+        _gaps(syncs),
+        max(one.end for one in found),
+        changes,
+        kept[0].before == head_sum,
+        tuple(one.content for one in kept),
+        syncs,
     )
 
 
-def _open(path: Path) -> tuple[RunHeader, Any, Any] | None:
-    """Open a stream and read its schema; ``None`` if that is not whole."""
+def _in_order(found: Sequence[batches.Batch]) -> list[batches.Batch]:
+    """Return batches by their SYNCs, but for those that come again."""
+    kept: list[batches.Batch] = []
+    for one in sorted(found, key=lambda one: int(one.sync[0])):
+        if not kept or one.sync[0] > kept[-1].sync[-1]:
+            kept.append(one)
+    return kept
+
+
+def _changes(
+    found: Sequence[batches.Batch], kept: Sequence[batches.Batch], head_sum: int, header: RunHeader
+) -> Iterator[str]:
+    """Say what is not what was written, in words."""
+    if kept[0].own is None:
+        return
+    if list(found) != list(kept):
+        yield "its batches are not in the order in which they were written"
+    if kept[0].before != head_sum:
+        yield "its beginning, or its first batch, is damaged or missing"
+    for one, after in pairwise(kept):
+        if after.before != one.own:
+            lost = int(one.sync[-1]) + 1, int(after.sync[0]) - 1
+            times = " to ".join(f"{at / header.sample_rate_hz:.3f} s" for at in lost)
+            yield f"what lay between is damaged or missing: SYNC {lost[0]} to {lost[1]} ({times})"
+
+
+def _open(path: Path) -> tuple[RunHeader, Any, int, int] | None:
+    """Return a whole beginning's header and schema, where it ends, and its checksum."""
     import pyarrow as pa
 
     if not path.exists() or not path.stat().st_size:
         return None
-    source = pa.memory_map(str(path))
-    try:
-        stream = pa.ipc.open_stream(source)
-        text = (stream.schema.metadata or {})[_HEADER_KEY].decode()
-        return RunHeader.from_json(text, str(path)), stream, source
-    except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError, DataError):
-        return None
-
-
-def _next(stream: Any) -> Any:
-    """Return the next whole batch, or ``None``."""
-    import pyarrow as pa
-
-    try:
-        return stream.read_next_batch()
-    except (StopIteration, pa.ArrowException, OSError):
-        return None
+    with path.open("rb") as file:
+        try:
+            schema = pa.ipc.open_stream(file).schema
+            text = (schema.metadata or {})[_HEADER_KEY].decode()
+            header = RunHeader.from_json(text, str(path))
+        except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError, DataError):
+            return None
+        end = file.tell()
+        file.seek(0)
+        return header, schema, end, crc32(file.read(end))
 
 
 def _gaps(syncs: Sequence[NDArray[np.int64]]) -> tuple[tuple[int, int], ...]:

@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from pmm.recorder.line_shapes import is_line_of
+
 
 def as_line(value: Any) -> bytes:
     """Return a value as a line."""
@@ -22,8 +24,11 @@ def read_lines(path: Path) -> tuple[list[Any], int]:
     at = 0
     while (end := data.find(b"\n", at)) >= 0:
         try:
-            values.append(json.loads(data[at:end]))
-        except ValueError:
+            value = json.loads(data[at:end])
+        except (ValueError, RecursionError):
             break
+        if not is_line_of(path.name, value):
+            break
+        values.append(value)
         at = end + 1
     return values, len(data) - at

@@ -1,18 +1,19 @@
 """A campaign's report: one page that needs nothing besides itself, on screen and on paper."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from hardware.description.flags import Flag, Severity
 from pmm.coefficients.provenance import provenance
 from pmm.coefficients.reading import sha256_of
 from pmm.coefficients.workflow import Outcome
+from pmm.flag_lines import FlagLine, flag_lines
 from pmm.report.campaign_tables import (
     Grid,
     budget_table,
     finding_tables,
     given_table,
+    recommended_table,
     run_table,
     value_tables,
 )
@@ -39,7 +40,7 @@ class Section:
     text: str = ""
     tables: tuple[Grid, ...] = ()
     drawings: tuple[Drawing, ...] = ()
-    flags: tuple[Flag, ...] = ()
+    flags: tuple[FlagLine, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -78,17 +79,17 @@ def _summary(outcome: Outcome) -> list[tuple[str, str]]:
     found = outcome.result
     agree = sum(one.agrees for one in found.checks)
     outside = sum(not one.within for one in found.references)
-    flagged = len(_flags(outcome))
     rows = [
         ("campaign", ", ".join(outcome.names)),
         ("runs", f"{len(outcome.cycles)} used, {len(outcome.failed)} could not be"),
         ("plane and form", f"{found.plane}, {found.form}"),
         ("system", found.normalisation),
-        ("values", f"{len(found.entries)}, with intervals of {100.0 * found.level:g} %"),
-        ("checks between runs", f"{agree} of {len(found.checks)} agree"),
+        ("values", f"{len(found.recommended)} recommended, of {len(found.entries)} in all"),
         ("repeats that stand off", str(len(found.outliers))),
-        ("flags", str(flagged)),
+        ("kinds of flags", str(len(flag_lines(outcome.all_flags)))),
     ]
+    if found.checks:
+        rows.append(("checks between runs", f"{agree} of {len(found.checks)} agree"))
     if found.references:
         rows.append(("beside tables", f"{outside} of {len(found.references)} outside"))
     return rows
@@ -96,14 +97,15 @@ def _summary(outcome: Outcome) -> list[tuple[str, str]]:
 
 def _sections(outcome: Outcome) -> Iterator[Section]:
     found = outcome.result
-    yield Section("Coefficients", "coefficients", tables=tuple(value_tables(found)))
+    values = (recommended_table(found), *value_tables(found))
+    yield Section("Coefficients", "coefficients", tables=values)
     yield Section("Figures", "figures", drawings=tuple(_drawings(outcome)))
     findings = tuple(finding_tables(found))
     if findings:
         yield Section("What was found", "findings", tables=findings)
-    flags = _flags(outcome)
+    flags = flag_lines(outcome.all_flags)
     text = "" if flags else "Nothing."
-    yield Section("What was flagged", "flags", text=text, flags=tuple(flags))
+    yield Section("What was flagged", "flags", text=text, flags=flags)
     yield Section("Uncertainty", "budget", tables=(given_table(outcome), budget_table(found)))
     yield Section("Runs", "runs", tables=(run_table(outcome),))
 
@@ -112,28 +114,6 @@ def _drawings(outcome: Outcome) -> Iterator[Drawing]:
     for name, caption, draw in figures(outcome.result):
         svg = render(draw(), "svg", name)
         yield Drawing(inline_svg(svg, name, caption), caption)
-
-
-def _flags(outcome: Outcome) -> list[Flag]:
-    """Return all flags, the runs' with their names; the same of several runs stands once."""
-    failed = [
-        Flag("run_failed", Severity.VOID, f"{one.name}: {one.message}", one.name)
-        for one in outcome.failed
-    ]
-    own = [
-        replace(flag, message=_named(name, flag))
-        for name, flags in outcome.flags.items()
-        for flag in flags
-    ]
-    coefficient = [replace(flag) for flag in outcome.result.flags]
-    seen = {flag.message for flag in own}
-    rest = [flag for flag in coefficient if not any(flag.message in text for text in seen)]
-    return list(dict.fromkeys((*failed, *outcome.left_out, *rest, *own)))
-
-
-def _named(name: str, flag: Flag) -> str:
-    channel = f" {flag.channel}:" if flag.channel and flag.channel != name else ""
-    return flag.message if flag.message.startswith(name) else f"{name}:{channel} {flag.message}"
 
 
 def _text(path: Path) -> str:

@@ -3,9 +3,12 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import count, product
+from string import ascii_uppercase
 
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.form_choice import BEYOND_DOUBT
 from analysis.coefficients.stated import STATED
 from pmm.coefficients.workflow import Outcome
 from pmm.report.rounding import rounded
@@ -15,6 +18,7 @@ _DASH = "–"
 _MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution
 _LITTLE = 0.005
 _NOTHING = 0.0005  # 0.0 % as it is written
+_SMALL = "An exclamation mark: a small difference of large loads, see the budget."
 
 
 @dataclass(frozen=True)
@@ -25,22 +29,66 @@ class Grid:
     ----------
     numbers
         Columns that are set to the right.
-    note
-        What it says about all rows.
+    notes
+        What it says about all rows, a paragraph each.
+    folded
+        Whether a page shows it when it is asked for alone.
     """
 
     title: str
     heads: tuple[str, ...]
     numbers: tuple[int, ...]
     rows: tuple[tuple[str, ...], ...]
-    note: str = ""
+    notes: tuple[str, ...] = ()
+    folded: bool = False
+
+
+def recommended_table(found: CampaignCoefficients) -> Grid:
+    """Return the values to be used first: one a coefficient, with the runs that it rests on."""
+    rows = found.recommended
+    groups = dict.fromkeys(found.entries[k].runs for k in rows)
+    letters = dict(zip(groups, _letters(), strict=False))
+    half = found.half_widths
+    told = [
+        (
+            found.entries[k].name,
+            found.entries[k].unit,
+            _value(found, k, float(half[k])),
+            f"{found.entries[k].speed_m_s:g}",
+            _way(found, k),
+            f"{letters[found.entries[k].runs]} ({len(found.entries[k].runs)})",
+            _largest(budget(found, k)),
+        )
+        for k in rows
+    ]
+    heads = ("coefficient", "unit", "value", "U (m/s)", "how", "runs", "largest input")
+    notes = [f"Intervals hold the value with {100.0 * found.level:g} %."]
+    notes += [_SMALL] if any(" !" in row[2] for row in told) else []
+    notes += [f"Runs {letter}: {', '.join(runs)}." for runs, letter in letters.items()]
+    return Grid(
+        f"Recommended values: {found.normalisation}", heads, (2, 3), tuple(told), tuple(notes)
+    )
+
+
+def _letters() -> Iterator[str]:
+    """Yield A, B ... Z, AA, AB ..."""
+    for size in count(1):
+        yield from map("".join, product(ascii_uppercase, repeat=size))
+
+
+def _way(found: CampaignCoefficients, k: int) -> str:
+    entry = found.entries[k]
+    at = entry.frequency_hz
+    return entry.method if not at > 0.0 else f"{entry.method}, {frequency(at)} Hz"
 
 
 def value_tables(found: CampaignCoefficients) -> Iterator[Grid]:
-    """Yield the values of each method, which name their system."""
-    half = found.half_widths
+    """Yield what else there is of each method: other amplitudes, frequencies and ways."""
+    half, first = found.half_widths, set(found.recommended)
     for method in dict.fromkeys(entry.method for entry in found.entries):
-        rows = found.rows(method=method)
+        rows = [k for k in found.rows(method=method) if k not in first]
+        if not rows:
+            continue
         drawn = found.trials.count > 0 and any(math.isfinite(found.trials.low[k]) for k in rows)
         heads = ["coefficient", "unit", "f (Hz)", "U (m/s)", "motion", "value", "runs"]
         numbers: tuple[int, ...] = (2, 3, 4, 5)
@@ -48,12 +96,11 @@ def value_tables(found: CampaignCoefficients) -> Iterator[Grid]:
             heads.insert(6, f"Monte Carlo, {found.trials.count}")
             numbers = (*numbers, 6)
         yield Grid(
-            f"{method}: {found.normalisation}",
+            f"Alternatives, {method}: {found.normalisation}",
             tuple(heads),
             numbers,
             tuple(_value_row(found, k, float(half[k]), drawn=drawn) for k in rows),
-            f"Intervals hold the value with {100.0 * found.level:g} %. "
-            "An exclamation mark: a small difference of large loads, see the budget.",
+            folded=True,
         )
 
 
@@ -61,19 +108,23 @@ def _value_row(
     found: CampaignCoefficients, k: int, half_width: float, *, drawn: bool
 ) -> tuple[str, ...]:
     entry = found.entries[k]
-    small = " !" if entry.retained < _FEW_DIGITS else ""
     row = [
         entry.name,
         entry.unit,
         frequency(entry.frequency_hz),
         f"{entry.speed_m_s:g}",
         amplitudes(entry.translation_amplitude_m, entry.rotation_amplitude_rad),
-        rounded(float(found.values[k]), half_width) + small,
+        _value(found, k, half_width),
         shortened(entry.runs),
     ]
     if drawn:
         row.insert(6, _interval(float(found.trials.low[k]), float(found.trials.high[k])))
     return tuple(row)
+
+
+def _value(found: CampaignCoefficients, k: int, half_width: float) -> str:
+    small = " !" if found.entries[k].retained < _FEW_DIGITS else ""
+    return rounded(float(found.values[k]), half_width) + small
 
 
 def budget_table(found: CampaignCoefficients) -> Grid:
@@ -95,11 +146,16 @@ def budget_table(found: CampaignCoefficients) -> Grid:
         )
     heads = ("coefficient", "f (Hz)", "U (m/s)", "method", "u", "ν", "k", "share of the variance")
     note = "u: standard uncertainty; ν: its degrees of freedom; k: coverage factor of the interval."
-    return Grid(f"Budgets: {found.normalisation}", heads, (1, 2, 4, 5, 6), tuple(rows), note)
+    title = f"Budgets: {found.normalisation}"
+    return Grid(title, heads, (1, 2, 4, 5, 6), tuple(rows), (note,), folded=True)
 
 
 def _freedom(value: float) -> str:
     return f"{value:.0f}" if value < _MANY else f"over {_MANY}"
+
+
+def _largest(one: CoefficientBudget) -> str:
+    return f"{one.lines[0].source} {100.0 * one.lines[0].share:.0f} %" if one.lines else _DASH
 
 
 def _shares(one: CoefficientBudget) -> str:
@@ -117,15 +173,15 @@ def _percent(share: float) -> str:
 
 
 def finding_tables(found: CampaignCoefficients) -> Iterator[Grid]:
-    """Yield checks, forms, outliers, what is missing and reference tables, where there are any."""
-    yield from _checks(found)
+    """Yield forms, outliers, what is missing, reference tables and checks, where there are any."""
     if found.choices:
-        choices = [
-            (one.load, one.verdict, ", ".join(one.forms), f"{one.evidence_ratio:.3g}", one.message)
+        forms = [
+            (one.load, one.verdict, one.fitted, ratio(one.evidence_ratio), ", ".join(one.runs),
+             one.message)
             for one in found.choices
-        ]
-        heads = ("load", "verdict", "compared", "evidence ratio", "")
-        yield Grid("Which form the data support", heads, (3,), tuple(choices))
+        ]  # fmt: skip
+        heads: tuple[str, ...] = ("load", "verdict", "fitted", "evidence ratio", "runs", "")
+        yield Grid("Which form the data support", heads, (3,), tuple(forms))
     if found.outliers:
         outliers = [
             (one.run, one.load, f"{one.ratio:.3g}", f"{one.limit:.3g}", one.message)
@@ -136,8 +192,8 @@ def finding_tables(found: CampaignCoefficients) -> Iterator[Grid]:
     if found.missing:
         missing = tuple((one.name, one.message) for one in found.missing)
         yield Grid("What these runs do not tell", ("coefficient", "why"), (), missing)
-    if found.references:
-        yield _references(found)
+    yield from beside_tables(found)
+    yield from _checks(found)
 
 
 def _checks(found: CampaignCoefficients) -> Iterator[Grid]:
@@ -150,18 +206,28 @@ def _checks(found: CampaignCoefficients) -> Iterator[Grid]:
              "agree" if c.agrees else "DIFFER", f"{c.first}; {c.second}")
             for c in found.checks if c.kind == kind
         ]  # fmt: skip
-        yield Grid(f"Checks in SI units: {kind}", heads, (2, 3, 4), tuple(rows))
+        agree = sum(c.agrees for c in found.checks if c.kind == kind)
+        title = f"Checks in SI units, {kind}: {agree} of {len(rows)} agree"
+        yield Grid(title, heads, (2, 3, 4), tuple(rows), folded=agree == len(rows))
 
 
-def _references(found: CampaignCoefficients) -> Grid:
+def ratio(value: float) -> str:
+    """Return an evidence ratio; what is beyond any doubt is not counted out."""
+    return f"{value:.3g}" if value < BEYOND_DOUBT else f"over {BEYOND_DOUBT:g}"
+
+
+def beside_tables(found: CampaignCoefficients) -> Iterator[Grid]:
+    """Yield the values beside tables from elsewhere, where there are any."""
+    if not found.references:
+        return
     rows = [
         (one.name, one.unit, frequency(one.frequency_hz), f"{one.speed_m_s:g}",
          rounded(one.measured, one.half_width), f"{one.expected:.5g}", f"{one.difference:+.3g}",
          "within" if one.within else "OUTSIDE", one.reference)
         for one in found.references
     ]  # fmt: skip
-    heads = ("coefficient", "unit", "f (Hz)", "U (m/s)", "measured", "table", "off", "", "table")
-    return Grid("Beside tables from elsewhere", heads, (2, 3, 4, 5, 6), tuple(rows))
+    heads = ("coefficient", "unit", "f (Hz)", "U (m/s)", "measured", "table", "off", "", "of")
+    yield Grid("Beside tables from elsewhere", heads, (2, 3, 4, 5, 6), tuple(rows))
 
 
 def run_table(outcome: Outcome) -> Grid:

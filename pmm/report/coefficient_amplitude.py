@@ -1,12 +1,21 @@
 """Linear coefficients over the amplitude of the motion, a series for each frequency."""
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from analysis.coefficients.campaign_records import LINEAR
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of, place_of
-from pmm.report.coefficient_panels import axis_label, beside, finish, grid, points, settle
+from pmm.report.coefficient_panels import (
+    MOST_SERIES,
+    axis_label,
+    beside,
+    finish,
+    grid,
+    points,
+    settle,
+)
 from pmm.report.style import drawing
 
 if TYPE_CHECKING:
@@ -29,7 +38,7 @@ def amplitude_figure(found: CampaignCoefficients, speed_m_s: float) -> "Figure":
         shown = sorted({f for name in names for f, _ in _series(found, name, speed_m_s)})
         for name, panel in zip(names, panels, strict=True):
             used = []
-            series = list(_series(found, name, speed_m_s))
+            series = _series(found, name, speed_m_s)
             largest = 1e3 * max(_lever(found, k) for _, rows in series for k in rows)
             for frequency, rows in series:
                 number = shown.index(frequency)
@@ -53,14 +62,17 @@ def _names(found: CampaignCoefficients, speed_m_s: float) -> list[str]:
 
 def _series(
     found: CampaignCoefficients, name: str, speed_m_s: float
-) -> Iterator[tuple[float, list[int]]]:
-    """Yield frequency and rows where there are two amplitudes or more."""
+) -> list[tuple[float, list[int]]]:
+    """Return frequency and rows where there are two amplitudes or more; of many an even choice."""
+    found_at = []
     rows = found.rows(name, method=LINEAR, speed_m_s=speed_m_s)
     for frequency in sorted({round(found.entries[k].frequency_hz, 3) for k in rows}):
         own = [k for k in rows if abs(found.entries[k].frequency_hz - frequency) < 1e-3]
         sizes = [_lever(found, k) for k in own]
         if len(own) > 1 and max(sizes) > (1.0 + _SAME) * min(sizes):
-            yield frequency, own
+            found_at.append((frequency, own))
+    few = np.linspace(0, len(found_at) - 1, min(MOST_SERIES, len(found_at)))
+    return [found_at[k] for k in few.round().astype(int)]
 
 
 def _lever(found: CampaignCoefficients, row: int) -> float:

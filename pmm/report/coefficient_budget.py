@@ -1,4 +1,4 @@
-"""Where the uncertainty of each coefficient comes from, as bars that add up to all of it."""
+"""How well each recommended value is known, and where its uncertainty comes from."""
 
 import math
 from collections.abc import Sequence
@@ -20,40 +20,67 @@ MOST_BARS: Final = 32
 _OTHER: Final = "others"
 _MOST_SOURCES: Final = len(PALETTE) - 1
 _INK: Final = "#B0B0B0"
+_WHOLE: Final = 100.0  # %: an interval as large as the value; longer bars end here
+_SPAN: Final = 100.0  # last over first of the axis, at least: three ticks with numbers
 
 
 def budget_rows(found: CampaignCoefficients, speed_m_s: float) -> list[int]:
-    """Return the rows that are drawn: those with an uncertainty, of many an even choice."""
+    """Return the rows that are drawn: recommended ones with an uncertainty, of many a choice."""
     spread = found.uncertain.standard_uncertainty
-    rows = [k for k in found.rows(speed_m_s=speed_m_s) if spread[k] > 0.0]
+    rows = [
+        k for k in found.recommended if spread[k] > 0.0 and found.entries[k].speed_m_s == speed_m_s
+    ]
     if len(rows) <= MOST_BARS:
         return rows
     return [rows[k] for k in np.linspace(0, len(rows) - 1, MOST_BARS).astype(int)]
 
 
 def budget_figure(found: CampaignCoefficients, rows: Sequence[int], speed_m_s: float) -> "Figure":
-    """Draw a bar for each value, made of what each kind of input adds to its variance."""
+    """Draw for each value its interval in per cent of it, and what each kind of input adds."""
     from matplotlib.figure import Figure
 
     budgets = [budget(found, k) for k in rows]
-    sources = _sources(budgets)
     with drawing():
         figure = Figure(figsize=(10.5, 1.5 + 0.27 * len(rows)), layout="constrained")
         figure.suptitle(
-            plain(f"Where the uncertainty comes from, {speed_m_s:g} m/s; {found.normalisation}")
+            plain(f"How well each value is known, {speed_m_s:g} m/s; {found.normalisation}")
         )
-        axes = figure.subplots()
-        _draw(axes, budgets, sources)
-        axes.set_yticks(range(len(rows)), [_label(found, k) for k in rows])
-        axes.set_ylim(len(rows) - 0.4, -0.6)
-        axes.set_xlim(0.0, 100.0)
-        axes.set_xlabel("share of the variance (%)")
-        axes.grid(visible=False, axis="y")
+        sizes, shares = figure.subplots(1, 2, sharey=True, width_ratios=(2, 3))
+        _draw_sizes(sizes, budgets)
+        _draw_shares(shares, budgets)
+        sizes.set_yticks(range(len(rows)), [_label(found, k) for k in rows])
+        sizes.set_ylim(len(rows) - 0.4, -0.6)
+        sizes.set_xlabel(f"interval of {100.0 * found.level:g} % (% of the value)")
+        shares.set_xlabel("share of the variance (%)")
+        shares.set_xlim(0.0, 100.0)
+        for axes in (sizes, shares):
+            axes.grid(visible=False, axis="y")
+            axes.tick_params(axis="y", length=0)
         figure.legend(loc="outside lower center", ncols=4)
     return figure
 
 
-def _draw(axes: "Axes", budgets: Sequence[CoefficientBudget], sources: Sequence[str]) -> None:
+def _draw_sizes(axes: "Axes", budgets: Sequence[CoefficientBudget]) -> None:
+    """Bars from a whole decade on; one as long as the value ends there and is hatched."""
+    part = np.array([_relative(one) for one in budgets])
+    low = 10.0 ** math.floor(math.log10(part.min()))
+    for place, size in enumerate(part):
+        hatch = "///" if size >= _WHOLE else None
+        axes.barh(place, size - low, 0.72, left=low, color=_INK, hatch=hatch, edgecolor="white")
+    axes.set_xscale("log")
+    axes.set_xlim(low, max(float(part.max()) * 1.5, low * _SPAN))
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_minor_formatter(lambda *_: "")
+
+
+def _relative(one: CoefficientBudget) -> float:
+    """Return the half width in per cent of the value, at most all of it."""
+    size = abs(one.value)
+    return _WHOLE if one.half_width >= size else 100.0 * one.half_width / size
+
+
+def _draw_shares(axes: "Axes", budgets: Sequence[CoefficientBudget]) -> None:
+    sources = _sources(budgets)
     left = np.zeros(len(budgets))
     for number, source in enumerate(sources):
         shares = np.array([_share(one, source, sources) for one in budgets])
@@ -80,7 +107,7 @@ def _share(one: CoefficientBudget, source: str, sources: Sequence[str]) -> float
 
 def _label(found: CampaignCoefficients, row: int) -> str:
     entry = found.entries[row]
-    at = "" if math.isnan(entry.frequency_hz) else f", {entry.frequency_hz:.3g} Hz"
-    way = f", {1e3 * entry.translation_amplitude_m:.3g} mm" if entry.translation_amplitude_m else ""
+    at = f", {entry.frequency_hz:.3g} Hz" if entry.frequency_hz > 0.0 else ""
+    unit = "" if entry.unit == "1" else f" {entry.unit}"
     value = rounded(float(found.values[row]), float(found.half_widths[row]))
-    return f"{entry.name}{at}{way}: {value}"
+    return f"{entry.name}{at}: {value}{unit}"

@@ -1,23 +1,34 @@
-"""Coefficients over frequency, with intervals, the value at zero frequency and reference tables."""
+"""Coefficients over frequency: the recommended value, each frequency's own, reference tables."""
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from analysis.coefficients.campaign_records import LINEAR
+import numpy as np
+
+from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
-from pmm.report.coefficient_panels import axis_label, beside, finish, grid, points, settle
-from pmm.report.style import TRACE, drawing
+from pmm.report.campaign_tables import amplitudes
+from pmm.report.coefficient_panels import (
+    MOST_SERIES,
+    axis_label,
+    beside,
+    finish,
+    grid,
+    points,
+    settle,
+)
+from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+RECOMMENDED: Final = "recommended"
 _MOST_PANELS: Final = 8
-_SAME_SIZE: Final = 0.02
 _DASHES: Final = ("--", ":", "-.")
 _MARGIN: Final = 0.04  # of the axis, right of the highest frequency
+_BAND: Final = 0.15  # opacity of the recommended value's interval
 
 
 def panels_of(found: CampaignCoefficients, speed_m_s: float) -> dict[str, list[str]]:
@@ -36,76 +47,79 @@ def panels_of(found: CampaignCoefficients, speed_m_s: float) -> dict[str, list[s
 def frequency_figure(
     found: CampaignCoefficients, speed_m_s: float, names: Sequence[str]
 ) -> "Figure":
-    """Draw a panel for each coefficient at one speed."""
+    """Draw a panel for each coefficient at one speed, of at most four series."""
     with drawing():
-        title = f"Coefficients at {speed_m_s:g} m/s; {found.normalisation}"
-        figure, panels = grid(names, title)
-        labels = [label for label, _ in _series(found, names, speed_m_s)]
-        numbers = {label: k for k, label in enumerate(dict.fromkeys(labels))}
-        widest = max(_place(found.entries[k].frequency_hz) for k in found.rows(speed_m_s=speed_m_s))
+        figure, panels = grid(names, f"Coefficients at {speed_m_s:g} m/s; {found.normalisation}")
+        series = {name: list(_series(found, name, speed_m_s)) for name in names}
+        labels = list(dict.fromkeys(label for own in series.values() for label, _ in own))
+        widest = max(found.entries[k].frequency_hz for k in found.rows(speed_m_s=speed_m_s))
         for name, panel in zip(names, panels, strict=True):
             used = []
-            for label, rows in _series(found, [name], speed_m_s):
-                aside = widest * beside(numbers[label], len(numbers))
-                at = [_place(found.entries[k].frequency_hz) + aside for k in rows]
-                joined = found.entries[rows[0]].method == LINEAR
-                points(panel, found, rows, at, label, numbers[label], joined=joined)
+            for label, rows in series[name]:
+                number = labels.index(label)
+                aside = widest * beside(number, len(labels))
+                at = [found.entries[k].frequency_hz + aside for k in rows]
+                points(panel, found, rows, at, label, number)
                 used += found.values[rows].tolist()
-            used += _draw_references(panel, found, name, speed_m_s)
+            _draw_band(panel, found, series[name])
+            most = MOST_SERIES - len(series[name])
+            used += _draw_references(panel, found, name, speed_m_s, most)
             panel.set_ylabel(axis_label(found, name))
             settle(panel, used)
-        left = min(0.0, *(panel.get_xlim()[0] for panel in panels))
-        right = max(panel.get_xlim()[1] for panel in panels)
-        for panel in panels:
-            panel.set_xlim(left, right + _MARGIN * (right - left))
+        _align(panels)
         label = f"frequency (Hz), series side by side; intervals of {100.0 * found.level:g} %"
         finish(figure, panels, [label] * len(panels))
     return figure
 
 
-def _place(frequency_hz: float) -> float:
-    """Return where a value stands: one that several frequencies share stands at none of them."""
-    return 0.0 if math.isnan(frequency_hz) else frequency_hz
+def _align(panels: Sequence["Axes"]) -> None:
+    """Give all panels one axis of frequency, from zero."""
+    left = min(0.0, *(panel.get_xlim()[0] for panel in panels))
+    right = max(panel.get_xlim()[1] for panel in panels)
+    for panel in panels:
+        panel.set_xlim(left, right + _MARGIN * (right - left))
 
 
 def _series(
-    found: CampaignCoefficients, names: Sequence[str], speed_m_s: float
+    found: CampaignCoefficients, name: str, speed_m_s: float
 ) -> Iterator[tuple[str, list[int]]]:
-    """Yield rows that belong together: a method, and for linear ones an amplitude."""
-    for name in names:
-        rows = found.rows(name, speed_m_s=speed_m_s)
-        for method in dict.fromkeys(found.entries[k].method for k in rows):
-            own = [k for k in rows if found.entries[k].method == method]
-            if method != LINEAR:
-                yield method, own
-                continue
-            for size, group in _by_amplitude(found, own):
-                yield f"{method}, {size}", group
+    """Yield the recommended values, then those of each frequency, then a static test's."""
+    every = found.rows(name, speed_m_s=speed_m_s)
+    first = [k for k in every if k in found.recommended]
+    if first:
+        yield RECOMMENDED, first
+    own = [k for k in found.at_each_frequency(name, speed_m_s) if k not in first]
+    if own:
+        yield _label(found, own), own
+    static = [k for k in every if found.entries[k].method == STATIC_DRIFT and k not in first]
+    if static:
+        yield STATIC_DRIFT, static
 
 
-def _by_amplitude(
-    found: CampaignCoefficients, rows: Sequence[int]
-) -> Iterator[tuple[str, list[int]]]:
-    sizes: list[tuple[float, list[int]]] = []
-    for k in sorted(rows, key=lambda k: found.entries[k].translation_amplitude_m):
-        own = _size(found, k)
-        if sizes and abs(own - sizes[-1][0]) <= _SAME_SIZE * own:
-            sizes[-1][1].append(k)
-        else:
-            sizes.append((own, [k]))
-    for own, group in sizes:
-        turning = found.entries[group[0]].translation_amplitude_m < 1e-9
-        yield (f"{math.degrees(own):.3g}°" if turning else f"{1e3 * own:.3g} mm"), group
+def _label(found: CampaignCoefficients, rows: Sequence[int]) -> str:
+    """Return the method, with the motion where it is of one amplitude and that is the same."""
+    entries = [found.entries[k] for k in rows]
+    methods = " or ".join(dict.fromkeys(one.method for one in entries))
+    motions = {
+        amplitudes(one.translation_amplitude_m, one.rotation_amplitude_rad).partition(",")[0]
+        for one in entries
+    }
+    several = any(len(one.runs) > 2 for one in entries) or len(motions) > 1
+    return methods if several else f"{methods}, {motions.pop()}"
 
 
-def _size(found: CampaignCoefficients, row: int) -> float:
-    entry = found.entries[row]
-    way = entry.translation_amplitude_m
-    return entry.rotation_amplitude_rad if way < 1e-9 else way
+def _draw_band(
+    panel: "Axes", found: CampaignCoefficients, series: Sequence[tuple[str, list[int]]]
+) -> None:
+    """Shade the interval of a recommended value of slow motion across all frequencies."""
+    rows = dict(series).get(RECOMMENDED, [])
+    if len(rows) == 1 and len(series) > 1 and np.isfinite(found.half_widths[rows[0]]):
+        value, half = float(found.values[rows[0]]), float(found.half_widths[rows[0]])
+        panel.axhspan(value - half, value + half, color=PALETTE[0], alpha=_BAND, lw=0.0)
 
 
 def _draw_references(
-    panel: "Axes", found: CampaignCoefficients, name: str, speed_m_s: float
+    panel: "Axes", found: CampaignCoefficients, name: str, speed_m_s: float, most: int
 ) -> list[float]:
     """Draw the tables' values at the measured frequencies; return them."""
     unit = next(entry.unit for entry in found.entries if entry.name == name)
@@ -114,9 +128,10 @@ def _draw_references(
         for one in found.references
         if one.name == name and one.unit == unit and abs(one.speed_m_s - speed_m_s) < 1e-9
     ]
-    for number, table in enumerate(dict.fromkeys(one.reference for one in rows)):
+    tables = list(dict.fromkeys(one.reference for one in rows))[:most]
+    for number, table in enumerate(tables):
         own = sorted({(one.frequency_hz, one.expected) for one in rows if one.reference == table})
         at, expected = zip(*own, strict=True)
         style = _DASHES[number % len(_DASHES)]
         panel.plot(at, expected, style, marker="_", color=TRACE, ms=9.0, label=table)
-    return [one.expected for one in rows]
+    return [one.expected for one in rows if one.reference in tables]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKS: Final = "osD^vP*X"
+MOST_SERIES: Final = 4  # of a panel: of more a reader loses which point belongs to what
 _COLUMNS: Final = 2
 _WIDTH, _HEIGHT = 10.5, 2.1
 _ASIDE: Final = 0.01

@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _CAPTIONS = {
-    "frequency": "Coefficients over frequency with their intervals; the value at zero frequency is "
-    "extrapolated. Lines are reference tables, where they were given.",
-    "terms": "Non-linear terms and those of other methods, with their intervals.",
+    "frequency": "Coefficients over frequency with their intervals: the recommended value, shaded "
+    "across where it is that of slow motion, beside each frequency's own. Dashed lines are "
+    "reference tables, where they were given.",
+    "terms": "Non-linear terms, drawn alike.",
     "amplitude": "Linear coefficients over the amplitude of the motion: what does not lie on a "
     "level line is not linear.",
-    "budget": "Where the uncertainty comes from: part of each value's variance by kind of input.",
+    "budget": "Left: the interval of each recommended value in per cent of it, hatched where it is "
+    "as large as the value. Right: where it comes from, by kind of input.",
 }
 
 

@@ -72,8 +72,9 @@ def effects_page() -> str:
 
 def _row(kind: type[Effect]) -> str:
     parameters = "<br>".join(
-        f"`{one.name}` {one.typical:.4g} ({one.low:.4g} to {one.high:.4g})"
+        f"`{one.name}` {one.typical:.4g} ({one.plausible})"
         + ("" if one.unit == "1" else f" {one.unit}")
+        + (f": {one.one_sign}" if one.one_sign else "")
         for one in kind.parameters()
     )
     cells = (kind.code, f"`{kind.name}`", kind.stage, kind.title, parameters, _agreement(kind))

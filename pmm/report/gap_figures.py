@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from analysis.gap.description import ForceMap
 from analysis.gap.where import CHAIN
 from pmm.gap.cells import HARMONIC, Cell
-from pmm.gap.report import GapReport, joined
+from pmm.gap.report import GapReport
+from pmm.gap.words import joined
 from pmm.report.heat import (
     AFTER,
     BEFORE,
@@ -31,7 +32,7 @@ FloatArray = NDArray[np.float64]
 
 
 def heat_map(report: GapReport) -> "Figure":
-    """Draw E/u of each channel's harmonics over the runs, before and after the best answer."""
+    """Draw E/u of each channel's harmonics over the runs, before and after the answer."""
     rows = sorted(dict.fromkeys(_row(one) for one in report.cells), key=_downstream)
     runs = list(dict.fromkeys(one.run for one in report.cells))
     breaks = [at for at in range(1, len(rows)) if rows[at][:2] != rows[at - 1][:2]]
@@ -74,12 +75,12 @@ def walk_figure(report: GapReport) -> "Figure":
     """Draw the gap step by step along the chain, before and after, over the noise's own 1."""
     from matplotlib.figure import Figure
 
-    after = {one.what: one.gap_u for one in report.remains}
+    after = {one.what: one.gap_u for one in report.conclusion.remains}
     with drawing():
-        count = len(report.walk)
+        count = len(report.conclusion.walk)
         figure = Figure(figsize=(10.5, 1.6 + 0.42 * count), layout="constrained")
         axes = figure.add_subplot()
-        for at, one in enumerate(report.walk):
+        for at, one in enumerate(report.conclusion.walk):
             axes.plot(max(one.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
             if one.what in after:
                 axes.plot(max(after[one.what], LEAST_U), at, "s", color=AFTER, markersize=5)
@@ -89,10 +90,13 @@ def walk_figure(report: GapReport) -> "Figure":
         )
         logarithmic(axes)
         axes.set_ylim(count - 0.5, -1.0)
-        axes.set_yticks(range(count), [one.what for one in report.walk])
-        axes.set_xlabel("E/u after the free coefficients, root mean square")
+        axes.set_yticks(range(count), [one.what for one in report.conclusion.walk])
+        axes.set_xlabel(
+            "E/u after the free coefficients, root mean square; "
+            f"{LEAST_U:g} and less are drawn at the left"
+        )
         axes.plot([], [], "o", color=BEFORE, label="without an effect")
-        axes.plot([], [], "s", color=AFTER, label="with the best answer")
+        axes.plot([], [], "s", color=AFTER, label="with the answer")
         figure.legend(loc="outside upper center", ncols=2)
     return figure
 
@@ -110,7 +114,7 @@ def ranking_figure(report: GapReport) -> "Figure":
 
 def withheld_figure(report: GapReport) -> "Figure":
     """Draw the gap of each withheld regime without and with each answer, noise taken off."""
-    named = "nearest, but not it" if report.verdict == "unknown" else "best answer"
+    named = "best answer" if report.conclusion.names else "nearest, but not it"
     marks = {
         "without an effect": ("before", "o", BEFORE),
         named: ("after", "s", AFTER),

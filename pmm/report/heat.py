@@ -43,12 +43,12 @@ class Grid:
     rows: Sequence[str]
     columns: Sequence[str]
     breaks: Sequence[int] = ()
-    titles: tuple[str, str] = ("without an effect", "with the best answer")
+    titles: tuple[str, str] = ("without an effect", "with the answer")
     across: str = ""
 
 
 def before_and_after(grid: Grid, maps: Sequence[FloatArray], label: str) -> "Figure":
-    """Draw E/u without an effect and with the best answer, side by side.
+    """Draw E/u without an effect and with the answer, side by side.
 
     Parameters
     ----------

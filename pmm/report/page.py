@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from analysis.resolver.analyse import Analysis
-from hardware.description.flags import Flag
+from pmm.flag_lines import FlagLine, flag_lines
 from pmm.report.inline import inline_svg
 from pmm.report.labels import plain
 from pmm.report.plots import FIGURES
 from pmm.report.style import render
 from pmm.report.tabulate import GateTable, gate_table, provenance, versions
+from pmm.whole_file import write_whole
 
 _CAPTIONS = {
     "gate": "The record, the window that was found or given and the gate, with the fit over the "
@@ -36,7 +37,7 @@ class _Section:
 
     name: str
     anchor: str
-    flags: tuple[Flag, ...]
+    flags: tuple[FlagLine, ...]
     tables: tuple[GateTable, ...]
     drawings: tuple[_Drawing, ...]
     provenance: list[tuple[str, str]]
@@ -85,14 +86,14 @@ def write_template(name: str, content: Mapping[str, Any], path: Path) -> None:
     page = template.render(style=style, **content)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A file name may hold bytes that are no text; they must not cost the page.
-    path.write_bytes(page.encode("utf-8", errors="replace"))
+    write_whole(path, page.encode("utf-8", errors="replace"))
 
 
 def _section(analysis: Analysis, anchor: str) -> _Section:
     return _Section(
         name=analysis.recording.name,
         anchor=anchor,
-        flags=analysis.flags,
+        flags=flag_lines(analysis.flags),
         tables=tuple(gate_table(analysis, reading) for reading in analysis.readings),
         drawings=tuple(_drawing(analysis, kind, anchor) for kind in FIGURES),
         provenance=provenance(analysis),

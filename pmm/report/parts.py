@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from pmm.report.inline import inline_svg
 from pmm.report.page import write_template
 from pmm.report.style import render
+from pmm.report.table import Section
 from pmm.report.tabulate import versions
 
 if TYPE_CHECKING:
@@ -23,23 +24,11 @@ class Drawing:
 
 
 @dataclass(frozen=True)
-class Table:
-    """A table whose first ``words`` columns are texts and the others numbers."""
-
-    caption: str
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    words: int = 1
-
-
-@dataclass(frozen=True)
 class Part:
-    """A section of the page."""
+    """A section of the page, with its figures."""
 
-    title: str
-    lines: tuple[str, ...] = ()
+    section: Section
     drawings: tuple[Drawing, ...] = ()
-    tables: tuple[Table, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,8 +56,8 @@ def drawn(figure: "Figure", name: str, caption: str) -> Drawing:
     return Drawing(inline_svg(render(figure, "svg", name), name, caption), caption)
 
 
-def write_parts(head: Head, parts: Sequence[Part | None], path: Path, *, command: str) -> None:
-    """Write a page; parts that are None are left out.
+def write_parts(head: Head, parts: Sequence[Part], path: Path, *, command: str) -> None:
+    """Write a page.
 
     Parameters
     ----------
@@ -82,7 +71,7 @@ def write_parts(head: Head, parts: Sequence[Part | None], path: Path, *, command
         "said": head.said,
         "note": head.note,
         "notices": head.notices,
-        "parts": [part for part in parts if part is not None],
+        "parts": parts,
         "command": command,
         "versions": versions(),
     }

@@ -4,11 +4,13 @@ import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hardware.description.errors import ConfigurationError
+from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,6 +27,12 @@ _NO_DATES: Final[dict[str, dict[str, str | None]]] = {
     "svg": {"Date": None},
     "png": {"Software": None},
     "pdf": {"CreationDate": None},
+}
+
+_CANVASES: Final = {
+    "svg": ("backend_svg", "FigureCanvasSVG"),
+    "png": ("backend_agg", "FigureCanvasAgg"),
+    "pdf": ("backend_pdf", "FigureCanvasPdf"),
 }
 
 _SETTINGS: Final[Any] = {
@@ -84,15 +92,31 @@ def render(figure: "Figure", kind: str, salt: str) -> bytes:
     """
     import matplotlib as mpl
 
-    if kind not in _NO_DATES:
+    if kind not in _CANVASES:
         raise ConfigurationError(
-            f"figures are not written as {kind!r}; choose from {', '.join(_NO_DATES)}"
+            f"figures are not written as {kind!r}; choose from {', '.join(_CANVASES)}"
         )
+    module, canvas = _CANVASES[kind]
     written = BytesIO()
     with drawing():
         mpl.rcParams["svg.hashsalt"] = salt
-        figure.savefig(written, format=kind, metadata=_NO_DATES[kind])
+        figure.dpi = mpl.rcParams["savefig.dpi"]
+        _lay_out(figure)
+        on = getattr(import_module(f"matplotlib.backends.{module}"), canvas)(figure)
+        getattr(on, f"print_{kind}")(written, metadata=_NO_DATES[kind])
     return compact(written.getvalue()) if kind == "svg" else written.getvalue()
+
+
+def _lay_out(figure: "Figure") -> None:
+    """Give the axes their places, once: later files of the figure find no more to be done.
+
+    ``savefig`` would lay out and draw anew for each file, and draw once more before it writes,
+    which is half of all the time that figures take.
+    """
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
 
 
 def write_figure(
@@ -108,7 +132,7 @@ def write_figure(
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{suffix}" for suffix in formats]
     for path, suffix in zip(paths, formats, strict=True):
-        path.write_bytes(render(figure, suffix, name))
+        write_whole(path, render(figure, suffix, name))
     return paths
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
-from hardware.description.flags import Flag
+from pmm.flag_lines import FlagLine, flag_lines
 from pmm.report.gated import caption
 from pmm.report.labels import display, loads_first, plain
 from pmm.report.rounding import rounded, rounded_phase
@@ -44,7 +44,7 @@ class GateTable:
     caption: str
     notes: tuple[str, ...]
     rows: tuple[Row, ...]
-    flags: tuple[Flag, ...]
+    flags: tuple[FlagLine, ...]
 
 
 def gate_table(analysis: Analysis, reading: Harmonics) -> GateTable:
@@ -59,7 +59,7 @@ def gate_table(analysis: Analysis, reading: Harmonics) -> GateTable:
         f"Estimator: {reading.estimator}.",
     )
     rows = tuple(row for channel in order for row in _channel_rows(reading, channel))
-    return GateTable(caption(reading), notes, rows, reading.flags)
+    return GateTable(caption(reading), notes, rows, flag_lines(reading.flags))
 
 
 def _channel_rows(reading: Harmonics, channel: int) -> list[Row]:

@@ -1,20 +1,20 @@
 """A campaign's folder: which runs it holds, what it was made from, and what is still to be done."""
 
-import json
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from pmm.plan.campaign_writer import FinishedRun
 from pmm.plan.plan import Plan
+from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.files import HEADER, MARKER, RECORDING, is_run
+from pmm.recorder.files import HEADER, RECORDING, is_run
 from pmm.recorder.header import RunHeader
+from pmm.recorder.marker import read_marker
+from pmm.recorder.recording import NOISE
 from pmm.recorder.run_recorder import Outcome
-
-KEPT: Final = "made-from"  # copies of plan and rig, as they were
+from pmm.run.identity import KEPT, Sources, check_unchanged
 
 
 def folder_of(plan: Plan, folder: str, output: str | None) -> Path:
@@ -30,16 +30,39 @@ def done_runs(folder: Path, runs: Sequence[RunPlan]) -> tuple[str, ...]:
 
 
 def chosen_runs(
-    plan: Plan, folder: Path, only: Sequence[str], *, resume: bool
+    plan: Plan,
+    rig: RigFile,
+    folder: Path,
+    only: Sequence[str] = (),
+    *,
+    resume: bool,
+    accept_changes: bool = False,
 ) -> tuple[RunPlan, ...]:
     """Return the runs that are to be made now.
 
     Raises
     ------
     ConfigurationError
-        If a name in ``only`` is no run, or the folder holds runs and nobody asked to resume.
+        If the folder holds these runs and nobody asked to resume, or runs of another plan, rig,
+        model or calibration and nobody accepts that.
     """
-    _check_names(plan, only)
+    runs = _wanted_runs(plan, folder, only, resume=resume)
+    if not accept_changes:
+        check_unchanged(folder, kept_runs(plan, rig, folder, runs), plan)
+    return runs
+
+
+def kept_runs(
+    plan: Plan, rig: RigFile, folder: Path, runs: Sequence[RunPlan]
+) -> tuple[FinishedRun, ...]:
+    """Return the runs of the folder that stay as they are when some are made."""
+    made = {one.name for one in runs}
+    return tuple(one for one in finished_runs(folder, plan, rig) if one.plan.name not in made)
+
+
+def _wanted_runs(
+    plan: Plan, folder: Path, only: Sequence[str], *, resume: bool
+) -> tuple[RunPlan, ...]:
     wanted = tuple(one for one in plan.runs if not only or one.name in only)
     if resume:
         done = done_runs(folder, wanted)
@@ -66,29 +89,56 @@ def keep_sources(plan: Plan, folder: Path) -> None:
         shutil.copyfile(path, copy)
 
 
-def finished_runs(folder: Path, runs: Sequence[RunPlan]) -> tuple[FinishedRun, ...]:
-    """Return the runs that have a recording, in the order in which they were made."""
-    found = []
-    for number, run in enumerate(runs):
-        own = folder / run.name
+def finished_runs(folder: Path, plan: Plan, rig: RigFile) -> tuple[FinishedRun, ...]:
+    """Return the runs that have a recording, in the order in which they were made.
+
+    Each has the plan that it was recorded with, and what plan and rig say otherwise now. Tries
+    that were moved aside are left out.
+
+    Raises
+    ------
+    DataError
+        If a header is damaged.
+    """
+    found, now = [], Sources(folder, plan, rig)
+    for path in folder.glob(f"*/{HEADER}"):
+        own = path.parent
         if not (own / RECORDING).exists():
             continue
-        header = RunHeader.from_json((own / HEADER).read_text(encoding="utf-8"), str(own / HEADER))
-        one = FinishedRun(run, f"{run.name}/{RECORDING}", header.readings, _outcome(own))
-        found.append((header.started_utc, number, one))
-    return tuple(one for *_, one in sorted(found, key=lambda each: each[:2]))
+        header = RunHeader.read(path)
+        if header.run_name != own.name:
+            continue
+        run = RunPlan.from_json(header.plan_json, str(path))
+        marker, made = read_marker(own) or {}, now.made(header, run)
+        one = FinishedRun(
+            run,
+            f"{run.name}/{RECORDING}",
+            header.readings,
+            str(marker.get("outcome", "")),
+            header.channels,
+            marker.get(NOISE, {}),
+            header.number,
+            made.differs,
+            made.recorded_with,
+        )
+        found.append((header.order, one))
+    return tuple(one for _, one in sorted(found, key=lambda each: each[0]))
 
 
 def _outcome(folder: Path) -> str:
     """Return how a run ended; empty if it is not there, not closed, or has no recording."""
-    try:
-        marker = json.loads((folder / MARKER).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return ""
-    return str(marker.get("outcome", "")) if (folder / RECORDING).exists() else ""
+    marker = read_marker(folder) if (folder / RECORDING).exists() else None
+    return str((marker or {}).get("outcome", ""))
 
 
-def _check_names(plan: Plan, only: Sequence[str]) -> None:
+def check_names(plan: Plan, only: Sequence[str]) -> None:
+    """Refuse names that are no runs of the plan.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming the nearest.
+    """
     from difflib import get_close_matches
 
     known = [one.name for one in plan.runs]

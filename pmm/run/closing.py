@@ -3,11 +3,11 @@
 from concurrent.futures import Executor, Future
 
 from hardware.description.errors import PmmError
-from hardware.errors import HardwareError
+from hardware.errors import as_fault
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.run_recorder import Outcome
 from pmm.run.measurement import Measurement
-from pmm.run.status import RunOutcome
+from pmm.run.status import HarmonicRow, RunOutcome
 
 
 class Closing:
@@ -31,11 +31,12 @@ class Closing:
     ) -> None:
         self._measurement, self._run = measurement, run
         self._outcome, self._reason = outcome, reason
-        try:
-            measurement.collect(final=True)
-        except HardwareError as error:
-            self._reason = self._reason or str(error)
-        self._rows = measurement.rows()
+        self._rows: tuple[HarmonicRow, ...] = ()
+        for last in (self._collect, self._read):
+            try:
+                last()
+            except Exception as error:  # closing is never skipped
+                self._reason = self._reason or str(as_fault(f"recorder of {run.name}", error))
         self._future: Future[str] | None = executor.submit(self._work) if executor else None
         self._file = "" if executor else self._work()
 
@@ -59,12 +60,22 @@ class Closing:
             self._reason,
         )
 
+    def _collect(self) -> None:
+        self._measurement.collect(final=True)
+
+    def _read(self) -> None:
+        self._rows = self._measurement.rows()
+
     def _work(self) -> str:
         """Complete the recording; what cannot be completed stays as journals and is said."""
         try:
             return str(self._measurement.journal.close(self._outcome, self._measurement.flags))
-        except (PmmError, OSError) as error:
-            said = f"the recording was not completed: {error}; `pmm recover` makes one"
-            self._reason = f"{self._reason}; {said}" if self._reason else said
+        except Exception as error:  # whatever it is, the loop goes on and the journals stay
+            why = error if isinstance(error, PmmError | OSError) else as_fault("recorder", error)
             self._outcome = Outcome.FAULT
+            if not self._measurement.journal.begun:
+                self._reason = self._reason or str(why)
+                return ""
+            said = f"the recording was not completed: {why}; `pmm recover` makes one"
+            self._reason = f"{self._reason}; {said}" if self._reason else said
             return ""

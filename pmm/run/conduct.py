@@ -25,6 +25,8 @@ class Conduct:
     ----------
     begin
         Opens the recorder of a run.
+    waits
+        Whether the loop may wait for the disk: on a rig whose time is counted in cycles.
     since
         Cycle in which the present state was entered.
     rested_since
@@ -33,6 +35,9 @@ class Conduct:
         Whether the present state has given its command.
     placed
         Where each axis was last sent.
+    restless, astray
+        For how many cycles the shaft has moved where it has to stand, or turned at a frequency that
+        is not the run's.
     pushed
         How far a push test has come: 0 nobody pushes, 1 pushed, 2 let go.
     """
@@ -40,6 +45,7 @@ class Conduct:
     rig: Rig
     rig_file: RigFile
     begin: Begin
+    waits: bool
     run: RunPlan | None = None
     measurement: Measurement | None = None
     surroundings: Surroundings = field(default_factory=Surroundings)
@@ -47,6 +53,8 @@ class Conduct:
     rested_since: int | None = None
     told: bool = False
     pushed: int = 0
+    restless: int = 0
+    astray: int = 0
     placed: dict[str, float] = field(default_factory=dict)
     questions: Questions = field(init=False)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Final, Protocol
 
-from hardware.errors import HardwareError, Reaction
+from hardware.errors import HardwareError, Reaction, as_fault
 from hardware.rig import Rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -20,7 +20,6 @@ from pmm.run.status import RunOutcome
 if TYPE_CHECKING:
     from pmm.run.run_control import RunControl
 
-OVERSPEED: Final = 1.05  # over the oscillator's highest frequency
 _FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
 _ALARMS: Final = 20  # kept for the screen; the recording keeps all
 
@@ -47,19 +46,21 @@ class Core:
         executor: Executor | None = None,
     ) -> None:
         self.rig, self.runs = rig, tuple(runs)
+        self._numbers = {one.name: number for number, one in enumerate(self.runs, 1)}
         self.outcomes: list[RunOutcome] = []
         self.fault: HardwareError | None = None
         self.free_bytes: Callable[[], int | None] = lambda: None
         self._clock, self._view = clock, view
         self._machine = Machine()
-        self._conduct = Conduct(rig, rig_file, begin)
+        self._conduct = Conduct(rig, rig_file, begin, waits=executor is None)
         self._ending = Outcome.COMPLETE
-        self._halting = self._winding_down = self._mute = False
+        self._halting = self._winding_down = self._braking = self._mute = False
         self._closing: Closing | None = None
         self._executor = executor
         self.alarm_count = 0
         self._alarms: deque[str] = deque(maxlen=_ALARMS)
-        self._highest_hz = OVERSPEED * rig_file.oscillator.frequency_hz.high
+        self._highest_hz = rig_file.oscillator.frequency_hz.high
+        rig.limit(rig_file.watched)
 
     def follow(self, before: "Core") -> None:
         """Go on where another plan's control left the rig: carriage, medium and loads stay."""
@@ -90,11 +91,12 @@ class Core:
             return
         try:
             measurement.cycle(lateness_s, self._clock())
-        except HardwareError as error:
+        except Exception as error:
             if self.state is not State.FAULT:
                 raise
-            self._worse(error)
-            self._mute = error.reaction < Reaction.QUICK_STOP
+            fault = as_fault(f"recorder of {measurement.run.name}", error)
+            self._worse(fault)
+            self._mute = fault.reaction < Reaction.QUICK_STOP or fault is not error
 
     def _worse(self, error: HardwareError) -> None:
         """Stop more quickly if what was found in a fault asks for more than the fault did."""

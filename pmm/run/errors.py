@@ -3,16 +3,10 @@
 from hardware.errors import HardwareError, Reaction
 
 
-class OverloadError(HardwareError):
-    """A gauge carries more than its safe load."""
+class FrequencyError(HardwareError):
+    """The shaft turns at another frequency than the run's while it is measured."""
 
-    reaction = Reaction.QUICK_STOP
-
-
-class OverspeedError(HardwareError):
-    """The shaft turns faster than the oscillator may."""
-
-    reaction = Reaction.QUICK_STOP
+    reaction = Reaction.PROFILE_STOP
 
 
 class PulseOverdueError(HardwareError):
@@ -31,12 +25,6 @@ class RecordingError(HardwareError):
     """The recorder cannot keep the data any more: disk full, folder gone, permission lost."""
 
     reaction = Reaction.PROFILE_STOP
-
-
-class NotAtRestError(HardwareError):
-    """After a stop nothing says that the axes stand: the bus is lost, or a drive does not obey."""
-
-    reaction = Reaction.QUICK_STOP
 
 
 class PushRefusedError(HardwareError):

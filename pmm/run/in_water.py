@@ -107,9 +107,10 @@ class _Found:
         if task.kind is not RunKind.RESTORING:
             self.tows.append(tow_of(task.kind, cycle))
             return
-        hull = self._campaign.hull
+        believed = self._campaign.as_recorded(task.name)
+        hull = believed.hull
         one = restoring_of(
-            cycle, self._campaign.model, np.array(hull.added_mass), np.array(hull.restoring)
+            cycle, believed.model, np.array(hull.added_mass), np.array(hull.restoring)
         )
         self.restoring.append(one)
         self.tracks.append(track_of(one, cycle))

@@ -23,6 +23,15 @@ FloatArray = NDArray[np.float64]
 class Journal(Protocol):
     """Keeps a run; :class:`pmm.recorder.run_recorder.RunRecorder` does it on disk."""
 
+    @property
+    def begun(self) -> bool:
+        """Whether there is something to keep, and to recover if it cannot be closed."""
+        ...
+
+    def opened(self, *, wait: bool) -> bool:
+        """Tell whether it is open; with ``wait`` when it is. Raise if it cannot be."""
+        ...
+
     def samples(self, first_sync: int, values: FloatArray) -> None:
         """Keep consecutive samples, shape ``(channels, n)``."""
         ...

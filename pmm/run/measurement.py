@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +16,14 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.rig import Rig
 from hardware.roles import Pulse
+from pmm.plan.force_estimate import Expected
 from pmm.plan.run_plan import LoadStep, RunPlan
 from pmm.recorder.live_path import as_record
-from pmm.run.errors import GateVoidError, OverloadError
+from pmm.run.errors import GateVoidError
 from pmm.run.gate import Gate, GateState
 from pmm.run.journal import Journal, kept
 from pmm.run.push import PushRecord
-from pmm.run.readings import needles, rows_at_rest, rows_of, worst_relative
+from pmm.run.readings import beside, far_text, needles, rows_at_rest, rows_of, worst_relative
 from pmm.run.sampler import Sampler, sampled_devices
 from pmm.run.status import HarmonicRow
 
@@ -44,8 +46,8 @@ class Measurement:
 
     Parameters
     ----------
-    safe_loads
-        Largest magnitude of each channel, in its unit; channels that are not named have none.
+    expected
+        What the plan estimates of gauges' first harmonics.
 
     Attributes
     ----------
@@ -63,22 +65,21 @@ class Measurement:
         run: RunPlan,
         journal: Journal,
         options: LiveOptions,
-        safe_loads: Mapping[str, float],
+        expected: Mapping[str, Expected] = MappingProxyType({}),
     ) -> None:
         self.run, self.journal = run, journal
         self.gate = Gate(max(run.max_periods, run.periods, 1))
         self.flags: list[Flag] = []
         self.reading: Harmonics | None = None
         self.voided = 0
-        self._rig, self._options = rig, options
+        self._rig, self._options, self._expected = rig, options, expected
         self._rate_hz = rig.configuration.sample_rate_hz
         self._every = max(1, round(_COLLECT_S * self._rate_hz))
         self._sampler = Sampler(sampled_devices(rig), rig.number + 1)
         self._sampler.skip(rig.number + 1)
-        self._limits = np.array([safe_loads.get(c.name, math.inf) for c in self._sampler.channels])
         self._forces = [i for i, c in enumerate(self.channels) if c.unit in ("N", "N m")]
         self._resolver: LiveResolver | None = None
-        self._usable_from_s = math.inf
+        self._resolver_from_s, self._usable_from_s = 0.0, math.inf
         self._judged = 0
         self._sum = np.zeros(len(self.channels))
         self._square, self._count = np.zeros(len(self.channels)), 0
@@ -96,6 +97,17 @@ class Measurement:
         """Samples that never came."""
         return self._sampler.lost
 
+    def opened(self, *, wait: bool) -> bool:
+        """Tell whether the recorder is open; with ``wait`` when it is.
+
+        Raises
+        ------
+        RecordingError
+            If its folder cannot be made, holds a run, or its disk has no room for this one.
+        """
+        with kept(self.run.name):
+            return self.journal.opened(wait=wait)
+
     def arm(self) -> None:
         """Begin to wait for the pulse that opens the gate; forget what was measured before."""
         self.collect()
@@ -110,6 +122,7 @@ class Measurement:
             latency_s=one.latency_s,
             angle_offset_rad=one.angle_offset_rad,
         )
+        self._resolver_from_s = start_s
         self._usable_from_s = start_s + REACH / self._rate_hz + one.latency_s
         self.reading, self._judged = None, 0
         self.gate.arm()
@@ -132,8 +145,6 @@ class Measurement:
 
         Raises
         ------
-        OverloadError
-            If a gauge carries more than its safe load.
         RecordingError
             If the recorder cannot keep it.
         """
@@ -158,7 +169,6 @@ class Measurement:
         if not self.run.oscillates and self.gate.state is GateState.OPEN:
             self._add(values)
             self._push.take(values)
-        self._check_loads(values)
 
     def pushing(self) -> None:
         """From here on somebody pushes."""
@@ -205,10 +215,13 @@ class Measurement:
         if found != self.gate.periods:
             text = f"{found} of the gate's {self.gate.periods} periods have all their samples"
             self.note("gate_short", Severity.WARNING, text)
+        for row in self.rows():
+            if row.far:
+                self.note("force_far", Severity.WARNING, far_text(row), row.channel)
 
-    def note(self, code: str, severity: Severity, text: str) -> None:
+    def note(self, code: str, severity: Severity, text: str, channel: str | None = None) -> None:
         """Keep a flag and write it down."""
-        self.flags.append(Flag(code, severity, text))
+        self.flags.append(Flag(code, severity, text, channel))
         self.event(code, text)
 
     def event(self, kind: str, text: str) -> None:
@@ -220,12 +233,13 @@ class Measurement:
     def rows(self) -> tuple[HarmonicRow, ...]:
         """Return what is known of the channels by now: final, else the needles, else nothing."""
         if self.gate.state is GateState.HELD and self.reading is not None:
-            return rows_of(self.reading)
+            return beside(rows_of(self.reading), self._expected)
         if self._resolver is not None:
             known = 0 if self.reading is None else self.reading.periods
             if self._resolver.finished > max(known, 1):
                 self.reading = self._resolver.so_far()
-            return needles(self.channels, self._resolver.provisional(), self.reading)
+            found = needles(self.channels, self._resolver.provisional(), self.reading)
+            return beside(found, self._expected)
         return rows_at_rest(self.channels, self._sum, self._square, self._count)
 
     def _take_pulses(self) -> None:
@@ -252,9 +266,21 @@ class Measurement:
         self._heard(found)
 
     def _heard(self, readings: Sequence[Harmonics]) -> None:
+        self._tell_spikes()
         for one in readings:
             self.reading = one
             self._keep(one)
+
+    def _tell_spikes(self) -> None:
+        spikes = self._resolver.spikes() if self._resolver is not None else []
+        for one in spikes:
+            channel = self.channels[one.row]
+            at_s = self._resolver_from_s + one.number / self._rate_hz
+            text = (
+                f"{channel.name}: a spike of {one.spike.size:+.4g} {channel.unit} at {at_s:.6g} s "
+                "was taken out of the live readings; the recording has it"
+            )
+            self.note("spike", Severity.WARNING, text)
 
     def _keep(self, reading: Harmonics) -> None:
         with kept(self.run.name):
@@ -280,15 +306,3 @@ class Measurement:
         self._sum += good.sum(axis=1)
         self._square += (good**2).sum(axis=1)
         self._count += good.shape[1]
-
-    def _check_loads(self, values: FloatArray) -> None:
-        over = np.abs(values) > self._limits[:, None]
-        if over.any():
-            row = int(np.argmax(over.any(axis=1)))
-            value = values[row][over[row]][0]
-            one = self.channels[row]
-            raise OverloadError(
-                one.name,
-                f"{value:g} {one.unit} is beyond its safe load, {self._limits[row]:g} {one.unit}; "
-                "reduce amplitude or frequency, and look at the gauge before the next run",
-            )

@@ -9,11 +9,13 @@ from typing import Final
 
 from analysis.resolver.weights import REACH
 from pmm.plan.kinds import RunKind
+from pmm.plan.run_plan import RunPlan
 from pmm.run.conduct import Conduct
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
 from pmm.run.sampler import PATIENCE_CYCLES
 from pmm.run.states import State
+from pmm.run.turning import check_frequency, check_standing
 
 _OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers
 _HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4  # for the samples beyond the gate's edge
@@ -26,7 +28,8 @@ def _enter_homing(c: Conduct) -> None:
 
 def _homing(c: Conduct) -> State | None:
     """Home the axes that are not, one after the other as the operator or the drive goes."""
-    if not all(one.enabled for one in c.rig.powered()):
+    turns = c.rig.shaft is not None and c.rig.shaft.moving
+    if turns or not all(one.enabled for one in c.rig.powered()):
         return None
     axes = [one for one in (c.rig.eccentricity, c.rig.phase) if one is not None]
     if not c.told:
@@ -47,6 +50,7 @@ def _enter_setting(c: Conduct) -> None:
 
 def _setting(c: Conduct) -> State | None:
     """Set eccentricity and phase, after the operator has done what is asked."""
+    check_standing(c)
     if not c.questions.done() or not all(one.enabled for one in c.rig.powered()):
         return None
     if not c.told:
@@ -61,6 +65,7 @@ def _setting(c: Conduct) -> State | None:
 
 def _pausing(c: Conduct) -> State | None:
     """Wait for calm water, from the moment in which the shaft came to rest."""
+    check_standing(c)
     if c.rested_since is None:
         return State.STARTING
     rested_s = (c.rig.number - c.rested_since) / c.rate_hz
@@ -73,8 +78,8 @@ def _enter_starting(c: Conduct) -> None:
 
 
 def _starting(c: Conduct) -> State | None:
-    """Bring carriage and shaft to speed."""
-    if not c.questions.done():
+    """Bring carriage and shaft to speed, once the recorder is open: nothing moves unrecorded."""
+    if not c.recording.opened(wait=c.waits) or not c.questions.done():
         return None
     shaft = c.rig.shaft
     if not c.present.oscillates or shaft is None:
@@ -106,22 +111,29 @@ def _enter_armed(c: Conduct) -> None:
 
 def _armed(c: Conduct) -> State | None:
     """Wait for the pulse that opens the gate."""
+    check_frequency(c)
     _check_overdue(c, "open")
     return State.GATE_OPEN if c.recording.gate.state is not GateState.ARMED else None
 
 
 def _gate_open(c: Conduct) -> State | None:
     """Measure until the gate closes by itself, is closed, or is void."""
+    check_frequency(c)
     gate = c.recording.gate
     if not _by_pulses(c):
         _push(c)
-        if c.elapsed_s >= c.present.measured_s and not c.questions.present:
+        if c.elapsed_s >= _gate_s(c.present) and not c.questions.present:
             c.recording.close_by_time()
     else:
         _check_overdue(c, "close")
     if gate.state is GateState.ARMED:
         return State.ARMED
     return State.HOLD if gate.state is GateState.HELD else None
+
+
+def _gate_s(run: RunPlan) -> float:
+    """Return how long a gate without pulses is open: one period more, wherever the first begins."""
+    return run.measured_s + (1.0 / run.set_point.frequency_hz if run.oscillates else 0.0)
 
 
 def _hold(c: Conduct) -> State | None:

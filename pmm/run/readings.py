@@ -1,7 +1,8 @@
 """Readings of the live resolver, for people and for the recorder."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import Provisional
 from hardware.description.channels import Channel
+from pmm.plan.force_estimate import Expected
 from pmm.run.status import HarmonicRow
 
 FloatArray = NDArray[np.float64]
@@ -59,6 +61,29 @@ def rows_at_rest(
             one.name, one.unit, float(mean), 0.0, 0.0, 1.96 * float(s) / math.sqrt(count), True
         )
         for one, mean, s in zip(channels, means, spread, strict=True)
+    )
+
+
+def beside(
+    rows: Sequence[HarmonicRow], expected: Mapping[str, Expected]
+) -> tuple[HarmonicRow, ...]:
+    """Return the rows with what the plan estimates; without an interval yet none is far."""
+    found = []
+    for row in rows:
+        one = expected.get(row.channel)
+        if one is not None:
+            far = math.isfinite(row.half_width) and one.is_far(row.amplitude)
+            row = replace(row, expected=one.amplitude_n, far=far)
+        found.append(row)
+    return tuple(found)
+
+
+def far_text(row: HarmonicRow) -> str:
+    """Return in words that a force is far from its estimate, and what to look at."""
+    return (
+        f"{row.channel}: first harmonic {row.amplitude:.4g} N, the plan estimates "
+        f"{row.expected:.4g} N; look whether [model] and [hull] of rig.toml are those of the rig, "
+        "then at scale and sign of the gauge and at the amplitude of its strut"
     )
 
 

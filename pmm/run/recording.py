@@ -1,8 +1,8 @@
 """Opening the recorder of a run: its folder, its header, the room on its disk."""
 
-import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Final
 
@@ -10,22 +10,29 @@ from hardware.opening import opening_of
 from hardware.rig import Rig
 from hardware.roles import Reading
 from pmm.calibrated import provenance_of
+from pmm.campaign_owner import own_campaign
+from pmm.plan.force_estimate import expected_readings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.disk import DiskWatch, bytes_per_s
+from pmm.plan.simulated_rig import (
+    Departure,
+    departure_flag,
+    departures,
+    provenance_of_departures,
+)
+from pmm.recorder.disk import DiskWatch, bytes_per_s, free_bytes
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.run_recorder import RunRecorder
 from pmm.run.journal import Taps, kept
 from pmm.run.measurement import LiveOptions, Measurement
 from pmm.run.sampler import header_channels, sampled_devices
 
-_SAFE_OVER_FULL: Final = 1.5
 _FRAMES_A_CYCLE: Final = 3.0  # of each node: process data both ways, and its share of the rest
 _MEGA: Final = 1e6
 
 
-@dataclass(frozen=True)
+@dataclass
 class Recording:
     """Opens recorders in a campaign's folder.
 
@@ -46,6 +53,7 @@ class Recording:
     utc: Callable[[], str]
     taps: Taps
     provenance: Mapping[str, str] = field(default_factory=dict)
+    _free_bytes: int | None = field(default=None, init=False)
 
     def __enter__(self) -> "Recording":
         return self
@@ -57,50 +65,56 @@ class Recording:
             recorder.__exit__(None, None, None)
 
     def begin(self, run: RunPlan) -> Measurement:
-        """Open the recorder of a run and begin to record.
+        """Begin to record a run, and to open its recorder: :meth:`Measurement.opened` tells when.
 
-        Raises
-        ------
-        DiskFullError
-            If there is no room for the whole run.
-        RecordingError
-            If its folder cannot be made or holds a run.
+        In the recorder's thread a run is refused for which there is no room, and what an earlier
+        try left is moved aside.
         """
+        watch = self._watch()
         with kept(run.name):
-            watch = self._watch()
-            watch.check_before(run.moving_s)
             recorder = RunRecorder(
-                free_folder(self.folder, run.name),
+                self.folder / run.name,
                 self._header(run),
                 flush_s=self.rig_file.recorder.flush_s,
                 disk=watch,
+                admit=partial(self._admit, run, watch),
             )
         self.taps.recorder = recorder
         offset = self.rig_file.photocell_offset
         options = LiveOptions(3, offset.latency_s, offset.angle_offset_rad)
-        return Measurement(self.rig, run, recorder, options, self._safe_loads())
+        expected = expected_readings(run, self.rig_file)
+        measurement = Measurement(self.rig, run, recorder, options, expected)
+        measurement.flags += departure_flag(self._departures)
+        return measurement
+
+    def _admit(self, run: RunPlan, watch: DiskWatch, header: RunHeader) -> RunHeader:
+        """Number a run for which there is room, and make way for its folder."""
+        watch.check_before(run.moving_s)
+        with own_campaign(self.folder, patience_s=0.0) as owned:
+            number = owned.next_number()
+        set_tried_aside(self.folder / run.name)
+        return replace(header, number=number)
+
+    @cached_property
+    def _departures(self) -> tuple[Departure, ...]:
+        """Where the rig that is simulated is not that of the rig's file."""
+        return departures(self.rig_file)
 
     def free_bytes(self) -> int | None:
-        """Return the room on the campaign's disk."""
-        try:
-            found = os.statvfs(self.folder)
-        except OSError:
-            return None
-        return found.f_bavail * found.f_frsize
+        """Return the room on the campaign's disk, as a recorder found it last."""
+        return self._free_bytes
+
+    def _look(self, path: Path) -> int:
+        """Return the room on the disk, and keep it for who must not wait for the disk."""
+        self._free_bytes = free_bytes(path)
+        return self._free_bytes
 
     def _watch(self) -> DiskWatch:
         rate = self.rig.configuration.sample_rate_hz
         nodes = len(self.rig.master.nodes) if self.rig.master is not None else 0
         per_s = bytes_per_s(len(header_channels(self.rig)), rate, _FRAMES_A_CYCLE * nodes * rate)
-        return DiskWatch(self.folder, per_s, self.rig_file.recorder.reserve_mb * _MEGA)
-
-    def _safe_loads(self) -> dict[str, float]:
-        return {
-            one.channel: one.safe_load_n
-            if one.safe_load_n is not None
-            else _SAFE_OVER_FULL * one.full_scale_n
-            for one in self.rig_file.gauges
-        }
+        reserve = self.rig_file.recorder.reserve_mb * _MEGA
+        return DiskWatch(self.folder, per_s, reserve, self._look)
 
     def _header(self, run: RunPlan) -> RunHeader:
         rig, offset = self.rig, self.rig_file.photocell_offset
@@ -113,7 +127,9 @@ class Recording:
             set_point=run.set_point,
             plan_json=run.to_json(),
             configuration_sha256=self._hashes(),
-            provenance=dict(self.provenance) | provenance_of(self.rig_file.calibration),
+            provenance=dict(self.provenance)
+            | provenance_of(self.rig_file.calibration)
+            | provenance_of_departures(self._departures),
             readings=self._readings(),
             sources={c.name: one.name for one in sampled_devices(rig) for c in one.channels},
             photocell=rig.photocell is not None,
@@ -138,13 +154,11 @@ class Recording:
         return {name: one for name, one in found.items() if one is not None}
 
 
-def free_folder(campaign: Path, name: str) -> Path:
-    """Return the folder for a run's next try; what an earlier try left is moved aside, not lost."""
-    folder = campaign / name
+def set_tried_aside(folder: Path) -> None:
+    """Move aside what an earlier try of a run left; it is not lost."""
     if not folder.exists():
-        return folder
+        return
     number = 1
-    while (aside := campaign / f"{name}.try{number}").exists():
+    while (aside := folder.with_name(f"{folder.name}.try{number}")).exists():
         number += 1
     folder.rename(aside)
-    return folder

@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.readers import read_recording
+from analysis.readers.damage import check_whole
 from analysis.recording import Recording
 from hardware.description.errors import DataError
 from pmm.recorder.files import EVENTS, HARMONICS, HEADER, RECORDING
 from pmm.recorder.header import RunHeader
+from pmm.recorder.marker import read_marker
 from pmm.recorder.texts import read_lines
 
 FloatArray = NDArray[np.float64]
@@ -48,8 +50,14 @@ class RunResult:
         return tuple(one.name for one in self.header.channels if one.unit in _FORCE_UNITS)
 
     def recording(self) -> Recording:
-        """Read the samples."""
-        return read_recording(self.folder / RECORDING)
+        """Read the samples.
+
+        Raises
+        ------
+        DataError
+            If they are not those that were recorded.
+        """
+        return check_whole(read_recording(self.folder / RECORDING))
 
     def gate_samples(self) -> tuple[Recording, slice]:
         """Return the recording and the samples of its gate, by the states that were written.
@@ -86,7 +94,7 @@ def read_results(folder: Path) -> tuple[RunResult, ...]:
     found = list(_results(folder))
     if not found:
         raise DataError(f"{folder}: no run of this campaign is complete; `pmm run` makes them")
-    return tuple(sorted(found, key=lambda one: (one.header.started_utc, one.header.first_sync)))
+    return tuple(sorted(found, key=lambda one: one.header.order))
 
 
 def of_kind(results: Sequence[RunResult], *kinds: str) -> tuple[RunResult, ...]:
@@ -97,10 +105,10 @@ def of_kind(results: Sequence[RunResult], *kinds: str) -> tuple[RunResult, ...]:
 def _results(folder: Path) -> Iterator[RunResult]:
     for marker in sorted(folder.glob("*/complete.json")):
         own = marker.parent
-        outcome = json.loads(marker.read_text(encoding="utf-8")).get("outcome")
+        outcome = (read_marker(own) or {}).get("outcome")
         if outcome != "complete" or not (own / RECORDING).exists() or ".try" in own.name:
             continue
-        header = RunHeader.from_json((own / HEADER).read_text(encoding="utf-8"), str(own / HEADER))
+        header = RunHeader.read(own / HEADER)
         yield RunResult(own, header, json.loads(header.plan_json), _first(own))
 
 

@@ -5,7 +5,7 @@ power off, the recording closed with what there is. Only an operator's reset lea
 nothing goes on by itself afterwards.
 """
 
-from hardware.errors import HardwareError
+from hardware.errors import HardwareError, as_fault
 from pmm.recorder.run_recorder import Outcome
 from pmm.run.phases import NEXT
 from pmm.run.states import Command, RunStateError, State
@@ -21,14 +21,14 @@ class RunControl(Stopping):
     runs
         In order.
     begin
-        Opens the recorder of a run, in the cycle in which recording begins.
+        Begins to open the recorder of a run, in the cycle in which recording begins.
     clock
         Monotonic seconds: only for flushing in time.
     view
         Looked at in every cycle; it decides itself how often it shows anything.
     executor
-        Where recordings are completed while the loop goes on; ``None`` to do it in the loop, for
-        a rig whose time is counted in cycles.
+        Where recordings are completed while the loop goes on; ``None`` to wait for the disk in the
+        loop, when one is opened too, for a rig whose time is counted in cycles.
 
     Attributes
     ----------
@@ -66,8 +66,15 @@ class RunControl(Stopping):
             Command.QUICK_STOP: self._quick_stop,
         }[command]()
 
+    def fail(self, error: HardwareError) -> None:
+        """Take a fault that was found outside: by what hands the commands in, for example."""
+        self._found(error)
+
     def step(self) -> None:
-        """Run one cycle of the rig, and what the present state makes of it."""
+        """Run one cycle of the rig, and what the present state makes of it.
+
+        Nothing is raised: an exception of the program's own is a fault like any other.
+        """
         lateness_s = 0.0
         try:
             lateness_s = self.rig.cycle().lateness_s
@@ -75,9 +82,12 @@ class RunControl(Stopping):
             self._found(error)
         try:
             self._follow(lateness_s)
-        except HardwareError as error:
-            self._found(error, own=True)
-        self._view.show(self)
+        except Exception as error:  # the loop must not end: nobody would stop the axes
+            self._found(as_fault("run control", error), own=True)
+        try:
+            self._view.show(self)
+        except Exception as error:  # nor by what only shows
+            self._found(as_fault("view", error))
 
     def status(self) -> Status:
         """Return a picture of this moment."""
@@ -89,7 +99,7 @@ class RunControl(Stopping):
             time_s=number / c.rate_hz,
             run=run.name if run else "",
             kind=str(run.kind) if run else "",
-            run_number=self.runs.index(run) + 1 if run else 0,
+            run_number=self._numbers[run.name] if run else 0,
             run_count=len(self.runs),
             frequency_hz=run.set_point.frequency_hz if run else 0.0,
             gate=measurement.gate.state if measurement else Status.gate,
@@ -109,13 +119,15 @@ class RunControl(Stopping):
         if self._closing is not None and self._closing.done():
             self._closed(self._closing)
         if self.state is State.FAULT:
-            self._wind_down()
+            try:
+                self._wind_down()
+            except Exception as error:  # the recording is closed all the same
+                self._give_up(as_fault("run control", error))
         elif self.state is State.STOPPING:
             self._come_to_rest()
         elif self.state is State.DONE:
             self._go_on()
         elif self.state in NEXT:
-            self._check_speed()
             following = NEXT[self.state](c)
             if following is not None:
                 self._go(following)
@@ -131,6 +143,10 @@ class RunControl(Stopping):
             self._go(State.SETTING)
 
     def _start(self) -> None:
+        if self._closing is not None:
+            raise RunStateError(
+                "the last run's recording is still being completed; start again soon"
+            )
         following = self._next()
         if following is None:
             raise RunStateError("all runs are done; nothing to start")
@@ -160,8 +176,7 @@ class RunControl(Stopping):
         """Stop along the profile; a run whose gate has closed already counts as complete."""
         self._halting = True
         if self.state is State.DONE:
-            for one in self.rig.powered():
-                one.disable()
+            self._power_off()
             self._machine.go(State.STOPPED, self.rig.number)
         elif self.state is not State.STOPPING:
             self._ending = Outcome.STOPPED
@@ -172,6 +187,8 @@ class RunControl(Stopping):
             self._stop()
         self._halting = True
         self.rig.quick_stop()
+        if self.state is State.STOPPING:
+            self._power_off()  # at rest; the deadline of a drive that does not brake begins now
         self._conduct.questions.withdraw()
 
     def _note_command(self, command: Command) -> None:

@@ -21,6 +21,10 @@ class HarmonicRow:
         Of the larger 95 % interval of the two; NaN while there is none.
     final
         Whether it covers whole periods; a needle between pulses is not final.
+    expected
+        Amplitude that the plan estimates; NaN where it does not.
+    far
+        Whether the amplitude is far from that.
     """
 
     channel: str
@@ -30,6 +34,8 @@ class HarmonicRow:
     quadrature: float
     half_width: float = math.nan
     final: bool = False
+    expected: float = math.nan
+    far: bool = False
 
     @property
     def amplitude(self) -> float:

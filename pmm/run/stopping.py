@@ -3,11 +3,12 @@
 from typing import Final
 
 from hardware.description.flags import Severity
-from hardware.errors import HardwareError, Reaction
+from hardware.errors import HardwareError, NotAtRestError, ProgramError, Reaction, as_fault
+from hardware.limits import COASTING_S, REST_DEADLINE_S
 from pmm.recorder.run_recorder import Outcome
 from pmm.run.closing import Closing
 from pmm.run.core import Core
-from pmm.run.errors import NotAtRestError, OverspeedError, RecordingError
+from pmm.run.errors import RecordingError
 from pmm.run.phases import at_rest
 from pmm.run.states import State
 
@@ -23,6 +24,8 @@ class Stopping(Core):
 
         A command of our ``own`` that is refused ends the run: it would never come to its end.
         """
+        if isinstance(error, ProgramError) and self._told(error):
+            return  # it comes again in every cycle
         self._alarm(str(error))
         refused = own and error.reaction is Reaction.REFUSE
         if error.reaction >= Reaction.PROFILE_STOP or refused:
@@ -33,8 +36,8 @@ class Stopping(Core):
     def _void(self, error: HardwareError) -> None:
         try:
             self._conduct.recording.void(str(error))
-        except HardwareError as last:
-            self._found(last)
+        except Exception as last:
+            self._found(as_fault("gate", last))
         else:
             if self.state is State.GATE_OPEN:
                 self._go(State.ARMED)
@@ -46,7 +49,7 @@ class Stopping(Core):
             self.rig.stop()
         if self.state is State.FAULT:
             return
-        self.fault, self._mute = error, False
+        self.fault, self._mute, self._braking = error, False, False
         self._conduct.questions.withdraw()
         self._winding_down = True
         self._machine.go(State.FAULT, self.rig.number)
@@ -60,8 +63,8 @@ class Stopping(Core):
         try:
             measurement.collect()
             measurement.note(type(error).__name__, Severity.VOID, str(error))
-        except HardwareError as also:
-            self._worse(also)
+        except Exception as also:  # the fault that led here is what counts
+            self._worse(as_fault("recorder", also))
 
     def _closed(self, closing: Closing) -> None:
         """Keep how a run ended; a recording that could not be completed is a fault."""
@@ -72,11 +75,18 @@ class Stopping(Core):
             self._found(RecordingError(f"recorder of {found.run}", found.reason))
 
     def _wind_down(self) -> None:
-        """In a fault: wait until the axes rest, take their power off, close the recording."""
+        """In a fault: wait until the axes rest, take their power off, close the recording.
+
+        What asks for a quick stop asks for the power to go, too: a drive takes both as one command,
+        and its deadline begins.
+        """
         if not self._winding_down:
             return
         c = self._conduct
-        patience_s = _REST_S + self._ramp_s()
+        if not self._braking and any(r.reaction >= Reaction.QUICK_STOP for r in self.rig.faults):
+            self._braking = True
+            self._power_off()
+        patience_s = self._ramp_s() + REST_DEADLINE_S + COASTING_S
         lost = self.fault is not None and self.fault.reaction is Reaction.END_RUN
         if lost:
             patience_s = _REST_S
@@ -84,11 +94,19 @@ class Stopping(Core):
             return
         if c.moving:
             self._alarm(str(_unseen(lost)))
-        for one in self.rig.powered():
-            one.disable()
+        self._power_off()
         self._winding_down = False
         c.rested_since = self.rig.number
         self._close(Outcome.FAULT)
+
+    def _give_up(self, error: HardwareError) -> None:
+        """Close the recording of a fault whose way to rest cannot be followed any more."""
+        self._worse(error)
+        self._winding_down = False
+        self._close(Outcome.FAULT)
+
+    def _told(self, error: HardwareError) -> bool:
+        return self.state is State.FAULT and str(error) in self._alarms
 
     def _come_to_rest(self) -> None:
         c = self._conduct
@@ -98,9 +116,12 @@ class Stopping(Core):
         self._close(self._ending)
         ended = {one.run for one in self.outcomes} | {c.present.name}
         if self._halting or all(one.name in ended for one in self.runs):
-            for one in self.rig.powered():
-                one.disable()
+            self._power_off()
         self._go(State.STOPPED if self._halting else State.DONE)
+
+    def _power_off(self) -> None:
+        for one in self.rig.powered():
+            one.disable()
 
     def _check_rest(self, limit_s: float) -> None:
         c = self._conduct
@@ -112,14 +133,6 @@ class Stopping(Core):
         part = self.rig.configuration.shaft
         acceleration = getattr(part.settings, "acceleration_hz_per_s", None) if part else None
         return 1.5 * self._highest_hz / acceleration if acceleration else 60.0
-
-    def _check_speed(self) -> None:
-        shaft = self.rig.shaft
-        if shaft is not None and shaft.measured_frequency_hz > self._highest_hz:
-            raise OverspeedError(
-                shaft.name,
-                f"turns at {shaft.measured_frequency_hz:g} Hz (limit {self._highest_hz:g} Hz)",
-            )
 
 
 def _unseen(lost: bool) -> NotAtRestError:

@@ -87,8 +87,8 @@ class Surroundings:
     def _change_drift(self, drift_rad: float) -> Iterator[Demand]:
         if drift_rad != self.drift_rad:
             self.drift_rad = drift_rad
-            text = f"drift: turn the model by {drift_rad:.4f} rad to the tow; press Enter"
-            yield Demand(text, "drift", drift_rad)
+            text = f"drift: turn the whole oscillator by {drift_rad:.4f} rad to the tow"
+            yield Demand(f"{text}; press Enter", "drift", drift_rad)
 
 
 class Questions:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import PRESETS
 from pmm.campaign_file import read_campaign
-from pmm.oscillator_table import PRESETS
-from pmm.start.recordings import FoundRun, find_columns, find_runs
+from pmm.start.found import FoundRun
+from pmm.start.recordings import find_campaign
 from pmm.start.writing import check_free, render, write_tried
 
 SIMULATED: Final = "pmm-simulated"
@@ -43,9 +43,18 @@ class Draft:
 
     files: Mapping[str, str]
     trial: Callable[[Path], object]
+    notes: tuple[str, ...] = ()
 
 
-def write(task: Task, *, force: bool = False) -> list[Path]:
+@dataclass(frozen=True)
+class Written:
+    """Files that were written, and what to look at in them."""
+
+    paths: Sequence[Path]
+    notes: tuple[str, ...] = ()
+
+
+def write(task: Task, *, force: bool = False) -> Written:
     """Write a job's files.
 
     Raises
@@ -61,7 +70,8 @@ def write(task: Task, *, force: bool = False) -> list[Path]:
     if missing:
         raise ConfigurationError(f"{', '.join(missing)}: no such recording")
     draft = _DRAFTS[task.job](task)
-    return write_tried(task.folder, draft.files, draft.trial, force=force)
+    paths = write_tried(task.folder, draft.files, draft.trial, force=force)
+    return Written(paths, draft.notes)
 
 
 def _rig(task: Task) -> Draft:
@@ -74,19 +84,19 @@ def _rig(task: Task) -> Draft:
 
 
 def _campaign(task: Task) -> Draft:
-    found: dict[str, object] = {"runs": [], "widened": {}, "channels": [], "others": []}
-    if task.recordings:
-        columns, others = find_columns(read_recording(task.recordings[0]))
-        runs = list(find_runs(task.recordings, columns, task.folder))
-        widened = _widened(task.answers["plane"], runs)
-        found = {"runs": runs, "widened": widened, "channels": columns, "others": others}
-    text = render("campaign.toml", task.values(**found))
-    return Draft({"campaign.toml": text}, lambda tried: read_campaign(tried / "campaign.toml"))
+    found = find_campaign(task.recordings, task.folder) if task.recordings else None
+    widened = _widened(task.answers["plane"], found.runs if found else ())
+    text = render("campaign.toml", task.values(found=found, widened=widened))
+    notes = tuple(found.notes()) if found else ()
+    return Draft(
+        {"campaign.toml": text}, lambda tried: read_campaign(tried / "campaign.toml"), notes
+    )
 
 
 def _widened(plane: str, runs: Sequence[FoundRun]) -> dict[str, tuple[float, float]]:
     """Return the preset's ranges made wide enough for what was recorded."""
     preset = PRESETS[f"{plane}-1963"]
+    runs = [one for one in runs if not one.doubt]
     wanted = {
         "frequency_hz": ([one.frequency_hz for one in runs], preset.frequency_hz),
         "eccentricity_m": ([1e-3 * one.eccentricity_mm for one in runs], preset.eccentricity_m),

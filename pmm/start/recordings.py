@@ -2,147 +2,252 @@
 
 import math
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from analysis.first_harmonics import seen_in
-from analysis.plausibility import Seen
-from analysis.readers import ColumnMap, read_recording
-from analysis.readers.columns import ChannelColumn
-from analysis.recording import Recording
-from analysis.resolver.analyse import analyse
-from hardware.description.channels import (
-    CARRIAGE_SPEED,
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    SHAFT_ANGLE,
-    Channel,
-)
-from hardware.description.errors import PmmError
+import numpy as np
+
+from analysis.readers import read_recording
+from analysis.readers.reader import NETCDF_SUFFIX
+from hardware.description.channels import CARRIAGE_SPEED, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
+from pmm.plan.kinds import RunKind
+from pmm.start import words
+from pmm.start.at_rest import at_rest
+from pmm.start.behaviour import Watched, watch
+from pmm.start.channels import as_columns, by_order_of_names
+from pmm.start.found import (
+    CHANNELS,
+    DISPLACEMENTS,
+    FORCES,
+    PHOTOCELL,
+    Column,
+    FoundCampaign,
+    FoundRest,
+    FoundRun,
+)
+from pmm.start.pulse_files import STEM, edges_beside, once_a_period, pulse_files, stem_of
+from pmm.start.roles import find_roles
+from pmm.start.sensors import noise_at_rest, smallest_step, step_of
 
-_FORE: Final = ("fore", "front", "vorn", "bow", "bug", "stb b", "avant")
-_KINDS: Final[tuple[tuple[tuple[Channel, ...], tuple[str, ...]], ...]] = (
-    ((FORCE_AFT, FORCE_FORE), ("force", "kraft", "load", "gauge", "fy", "fz", "f1", "f2")),
-    ((DISPLACEMENT_AFT, DISPLACEMENT_FORE),
-     ("disp", "stroke", "strut", "weg", "hub", "heave", "sway", "pos")),
-    ((SHAFT_ANGLE,), ("angle", "crank", "shaft", "winkel", "kurbel", "encoder")),
-    ((CARRIAGE_SPEED,), ("speed", "carriage", "wagen")),
-)  # fmt: skip
-_NO_UNIT: Final = "no unit in the header: if it is kN, write {!r}"
+_CALM_M_S: Final = 0.01  # a carriage that creeps no faster stands
+_NOT_SAID: Final = "not in the recordings: put in what it was"
+_PLACEHOLDER: Final = SetPoint(0.5, 0.02)
+_ZERO: Final = ("zero", "null", "tare", "ruhe", "rust", "rest", "zéro", "repos")
 
 
 @dataclass(frozen=True)
-class Column:
-    """A channel of the campaign and the column that it is taken from, as a column map has it."""
+class _Look:
+    """What was taken from one recording, so that its samples need not be kept."""
 
-    name: str
-    source: str
-    remark: str = ""
-
-
-@dataclass(frozen=True)
-class FoundRun:
-    """A recording as a run of the campaign; ``remark`` says where a number was not found."""
-
-    name: str
-    file: str
-    frequency_hz: float
-    eccentricity_mm: float
-    strut_phase_deg: float
-    remark: str = ""
+    path: Path
+    watched: Watched
+    duration_s: float
+    sample_rate_hz: float
+    set_point: SetPoint | None
+    pulses: bool
+    steps: dict[str, float | None]
+    noise: dict[str, float]
 
 
-def find_columns(recording: Recording) -> tuple[list[Column], list[str]]:
-    """Return the columns that seem to be channels of a rig, and the names of the others."""
-    taken: dict[str, Channel] = {}
-    for channels, words in _KINDS:
-        fitting = [
-            one
-            for one in recording.channels
-            if one.name not in taken and _fits(one, channels[0], words)
-        ]
-        taken |= _placed(fitting, channels)
-    found = [_column(wanted.name, name, recording) for name, wanted in taken.items()]
-    order = [channel.name for channels, _ in _KINDS for channel in channels]
-    found.sort(key=lambda one: order.index(one.name))
-    return found, [name for name in recording.channel_names if name not in taken]
+def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
+    """Return what recordings tell of a campaign.
 
-
-def _fits(one: Channel, wanted: Channel, words: Sequence[str]) -> bool:
-    """By its unit where it has one, else by its name."""
-    if one.unit:
-        return one.unit == wanted.unit
-    return any(word in one.name.casefold() for word in words)
-
-
-def _placed(fitting: Sequence[Channel], channels: Sequence[Channel]) -> dict[str, Channel]:
-    """Aft first, unless a name says fore."""
-    fore = [one for one in fitting if any(word in one.name.casefold() for word in _FORE)]
-    if len(channels) > 1 and len(fitting) > 1 and fore and fore[0] is fitting[0]:
-        fitting = [fitting[1], fitting[0]]
-    return {one.name: channel for one, channel in zip(fitting, channels, strict=False)}
-
-
-def _column(name: str, source: str, recording: Recording) -> Column:
-    if recording.channels[recording.index(source)].unit:
-        return Column(name, source)
-    if name == SHAFT_ANGLE.name:
-        turned = f"{source}:deg"
-        degrees = float(abs(recording.values(source)).max(initial=0.0)) > 4.0 * math.pi
-        return Column(name, turned if degrees else f"{source}:rad", "no unit in the header")
-    return Column(name, source, _NO_UNIT.format(f"{source}:kN"))
-
-
-def find_runs(paths: Sequence[Path], columns: Sequence[Column], folder: Path) -> Iterator[FoundRun]:
-    """Return each recording as a run, with frequency, amplitude and phase where they show.
+    Parameters
+    ----------
+    folder
+        Where the campaign's file will lie.
 
     Raises
     ------
     DataError, ConfigurationError
         If a recording cannot be read.
     """
-    channels = tuple(_mapped(one) for one in columns)
-    for path in paths:
-        recording = read_recording(path, ColumnMap(channels=channels))
-        seen = _seen(recording)
-        name = Path(path.name.removesuffix(".gz")).stem
-        file = Path(os.path.relpath(path, folder)).as_posix()
-        if seen is None:
-            yield FoundRun(name, file, 0.5, 20.0, 0.0, "not found in it: put in what was set")
-        else:
-            phase_deg = _phase_deg(seen)
-            amplitude_mm = 1e3 * abs(seen.first.get(DISPLACEMENT_AFT.name, 0.02))
-            yield FoundRun(
-                name, file, _rounded(seen.frequency_hz, 4), _rounded(amplitude_mm, 3), phase_deg
+    called = pulse_files(paths)
+    paths = [path for path in paths if not called or not path.name.endswith(called[len(STEM) :])]
+    looks = [_look(path) for path in paths]
+    rests = at_rest([one.watched for one in looks])
+    running = [one.watched for one, stands in zip(looks, rests, strict=True) if not stands]
+    columns = as_columns(find_roles(running), running)
+    sure = {one.name: one for one in columns if not one.doubt}
+    names = dict(zip(paths, _names(paths), strict=True))
+    taken = {one.column for one in columns}
+    everything = dict.fromkeys(name for one in looks for name in one.watched.columns)
+    edges_file = called if PHOTOCELL not in sure and _in_time(looks, called) else ""
+    pulses = PHOTOCELL in sure or bool(edges_file) or any(one.pulses for one in looks)
+    reference = _reference(columns, pulses)
+    digits = 4 if reference or pulses or {SHAFT_ANGLE.name, DISPLACEMENTS[0]} & set(sure) else 6
+    return FoundCampaign(
+        runs=tuple(
+            _run(one, names[one.path], folder, sure, digits)
+            for one, stands in zip(looks, rests, strict=True)
+            if not stands
+        ),
+        at_rest=tuple(
+            _rest(one, names[one.path], folder, sure)
+            for one, stands in zip(looks, rests, strict=True)
+            if stands
+        ),
+        columns=tuple(columns),
+        others=tuple(name for name in everything if name not in taken),
+        by_order=by_order_of_names(columns),
+        mapped=any(path.suffix.lower() != NETCDF_SUFFIX for path in paths),
+        reference=reference,
+        sample_rate_hz=Counter(one.sample_rate_hz for one in looks).most_common(1)[0][0],
+        sensors=dict(_sensors(looks, rests, sure)),
+        not_recorded=_without(columns),
+        photocell=pulses,
+        edges_file=edges_file,
+    )
+
+
+def _in_time(looks: Sequence[_Look], called: str) -> bool:
+    """Tell whether the pulses beside the runs come once in each period of theirs."""
+    if not called:
+        return False
+    timed = [(one.path, one.watched.line) for one in looks if one.watched.line is not None]
+    return bool(timed) and all(
+        once_a_period(edges_beside(path, called) or (), line.frequency_hz) for path, line in timed
+    )
+
+
+def _look(path: Path) -> _Look:
+    recording = read_recording(path)
+    names = recording.channel_names
+    return _Look(
+        path,
+        watch(recording),
+        recording.end_s - recording.start_s,
+        float(f"{recording.sample_rate_hz:.6g}"),
+        recording.set_point,
+        recording.photocell_edges_s is not None and bool(len(recording.photocell_edges_s)),
+        {name: step_of(recording.values(name)) for name in names},
+        {name: noise_at_rest(recording, name) for name in names},
+    )
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Return a name for each recording: its file's, with its folder's where that is not enough."""
+    stems = [stem_of(path) for path in paths]
+    folders = [path.resolve().parent.name for path in paths]
+    both = [f"{folder}-{stem}" for folder, stem in zip(folders, stems, strict=True)]
+    return next((one for one in (stems, folders) if len(set(one)) == len(one)), both)
+
+
+def _reference(columns: Iterable[Column], pulses: bool) -> str:
+    """Return the channel that tells the phase where no channel does that is asked by itself."""
+    sure = {one.name for one in columns if not one.doubt}
+    if pulses or {SHAFT_ANGLE.name, DISPLACEMENTS[0]} & sure:
+        return ""
+    if DISPLACEMENTS[1] in sure:
+        return DISPLACEMENTS[1]
+    guesses = (one.column for one in columns if one.doubt and one.name in DISPLACEMENTS)
+    return next((name for name in guesses if name in sure), "")
+
+
+def _without(columns: Sequence[Column]) -> tuple[str, ...]:
+    """Return the gauges that are not there beside one that is; what may be one is not said."""
+    seen = {one.name: one.doubt for one in columns if one.name in FORCES}
+    return tuple(name for name in FORCES if name not in seen) if "" in seen.values() else ()
+
+
+def _run(look: _Look, name: str, folder: Path, sure: dict[str, Column], digits: int) -> FoundRun:
+    line, told = look.watched.line, look.set_point
+    phasors = {
+        one: look.watched.columns[column.column].part.first * column.factor
+        for one, column in sure.items()
+        if column.column in look.watched.columns
+    }
+    speed_m_s, remarks = _speed_m_s(look, sure), {}
+    if told is None:
+        told = _PLACEHOLDER if line is None else _set_point(line.frequency_hz, phasors)
+        strut = next((one for one in DISPLACEMENTS if one in phasors), None)
+        if line is None:
+            remarks["frequency_hz"] = "NOT FOUND: put in what was set"
+        if strut is None:
+            remarks["eccentricity_mm"] = (
+                "NOT FOUND, since no displacement is sure: put in what was set"
             )
+        if not all(one in phasors for one in DISPLACEMENTS):
+            remarks["strut_phase_deg"] = _NOT_SAID
+        if speed_m_s is None:
+            remarks["carriage_speed_m_s"] = f"{_NOT_SAID}; without it the carriage stands"
+    else:
+        speed_m_s, digits = told.carriage_speed_m_s, 6
+    return FoundRun(
+        name,
+        Path(os.path.relpath(look.path, folder)).as_posix(),
+        _rounded(told.frequency_hz, digits),
+        _rounded(1e3 * told.eccentricity_m, 3),
+        float(round(math.degrees(told.strut_phase_rad))) % 360.0,
+        speed_m_s or 0.0,
+        told.medium,
+        remarks,
+        "nothing in it keeps time" if line is None else line.doubt,
+    )
 
 
-def _mapped(one: Column) -> ChannelColumn:
-    source, _, unit = one.source.partition(":")
-    return ChannelColumn(one.name, source, unit or None)
+def _set_point(frequency_hz: float, phasors: dict[str, complex]) -> SetPoint:
+    aft, fore = (phasors.get(one) for one in DISPLACEMENTS)
+    moved = aft if aft is not None else fore
+    turned = fore / aft if aft and fore else 1.0
+    return SetPoint(
+        frequency_hz,
+        _PLACEHOLDER.eccentricity_m if moved is None else abs(moved),
+        math.atan2(turned.imag, turned.real),
+    )
 
 
-def _seen(recording: Recording) -> Seen | None:
-    """Return the first harmonics, where displacement or encoder tells the phase."""
-    told = replace(recording, set_point=SetPoint(1.0, 0.02))
-    try:
-        return seen_in(told, analyse(recording))
-    except PmmError:
+def _speed_m_s(look: _Look, sure: dict[str, Column]) -> float | None:
+    column = sure.get(CARRIAGE_SPEED.name)
+    if column is None or column.column not in look.watched.columns:
         return None
+    mean = look.watched.columns[column.column].mean
+    return 0.0 if abs(mean) < _CALM_M_S else _rounded(mean, 4)
 
 
-def _phase_deg(seen: Seen) -> float:
-    """Return the fore strut's phase ahead of the aft one, in whole degrees."""
-    try:
-        ratio = seen.first[DISPLACEMENT_FORE.name] / seen.first[DISPLACEMENT_AFT.name]
-    except (KeyError, ZeroDivisionError):
-        return 0.0
-    return float(round(math.degrees(math.atan2(ratio.imag, ratio.real)))) % 360.0
+def _rest(look: _Look, name: str, folder: Path, sure: dict[str, Column]) -> FoundRest:
+    speed_m_s = _speed_m_s(look, sure)
+    known = speed_m_s is not None or words.says(name, _ZERO)
+    doubt = "" if known else "nothing says whether the carriage stood"
+    return FoundRest(
+        name,
+        Path(os.path.relpath(look.path, folder)).as_posix(),
+        RunKind.STRAIGHT_TOW if speed_m_s else RunKind.ZERO,
+        _rounded(look.duration_s, 4),
+        speed_m_s or 0.0,
+        doubt,
+    )
+
+
+def _sensors(
+    looks: Sequence[_Look], rests: Sequence[bool], sure: dict[str, Column]
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """Yield what the numbers of each channel tell of its sensor, in SI."""
+    for name, column in sure.items():
+        if name not in CHANNELS:
+            continue
+        holding = [one for one in looks if column.column in one.steps]
+        # A shaft that turns evenly is sampled at angles of a grid of its own.
+        turns = name == SHAFT_ANGLE.name
+        step = None if turns else smallest_step(one.steps[column.column] for one in holding)
+        quiet = [
+            one.noise[column.column]
+            for one, stands in zip(looks, rests, strict=True)
+            if stands and column.column in one.noise
+        ]
+        found = {}
+        if quiet:
+            rounding = 0.0 if step is None else step / math.sqrt(12.0)
+            white = math.sqrt(max(float(np.mean(np.square(quiet))) - rounding**2, 0.0))
+            found["noise_rms"] = _rounded(white * column.factor, 3)
+        if step is not None:
+            found["resolution"] = _rounded(step * column.factor, 6)
+        if found:
+            yield name, found
 
 
 def _rounded(value: float, digits: int) -> float:

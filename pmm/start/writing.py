@@ -1,5 +1,6 @@
 """Templates filled in, tried, and only then put where they belong."""
 
+import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -7,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hardware.description.errors import ConfigurationError
+from pmm.campaign_owner import own_campaign
 
 
 def render(template: str, values: Mapping[str, Any]) -> str:
@@ -21,16 +23,24 @@ def render(template: str, values: Mapping[str, Any]) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters["toml"] = toml_value
+    environment.filters |= {"toml": toml_value, "key": toml_key}
     return environment.get_template(template).render(values)
 
 
 def toml_value(value: object) -> str:
-    """Return a text or number as TOML has it."""
+    """Return a text, a number or a table of them as TOML has it, in one line."""
+    if isinstance(value, Mapping):
+        inside = ", ".join(f"{toml_key(key)} = {toml_value(one)}" for key, one in value.items())
+        return f"{{ {inside} }}"
     if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
         return f'"{escaped}"'
     return f"{value!r}" if isinstance(value, float) else str(value)
+
+
+def toml_key(name: str) -> str:
+    """Return the name of a key as TOML has it: in quotes where it needs them."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def check_free(folder: Path, names: Sequence[str], *, force: bool) -> None:
@@ -63,6 +73,8 @@ def write_tried(
     ConfigurationError
         If a file is there and ``force`` is not given. Whatever ``trial`` raises is passed on, and
         then nothing is written.
+    OwnedElsewhereError
+        If another process is writing into the folder.
     """
     check_free(folder, list(files), force=force)
     with TemporaryDirectory() as name:
@@ -70,5 +82,5 @@ def write_tried(
         for file, text in files.items():
             (tried / file).write_text(text, encoding="utf-8")
         trial(tried)
-        folder.mkdir(parents=True, exist_ok=True)
-        return [Path(shutil.copyfile(tried / file, folder / file)) for file in files]
+        with own_campaign(folder):
+            return [Path(shutil.copyfile(tried / file, folder / file)) for file in files]

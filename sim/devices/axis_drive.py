@@ -11,10 +11,12 @@ from sim.devices.drive import ACCELERATION, DECELERATION, SimulatedDrive, haltin
 from sim.devices.network import Wire
 from sim.devices.node import Number
 
+_TOP_SPEED = Entry(0x607F)
 _SPEED, _HOME_OFFSET, _METHOD = Entry(0x6081), Entry(0x607C), Entry(0x6098)
 _LOWEST, _HIGHEST = Entry(0x607D, 1), Entry(0x607D, 2)
 _HOMING_SPEED, _HOMING_ACCELERATION = Entry(0x6099, 1), Entry(0x609A)
 _HERE = (35, 37)  # methods that take the present position
+_COASTS_S = 0.5  # from its speed to rest without torque: a spindle's inertia in its dry friction
 
 
 class AxisDrive(SimulatedDrive):
@@ -41,8 +43,10 @@ class AxisDrive(SimulatedDrive):
     ) -> None:
         self.position = position
         self._moved = moved
+        self._demand = position
         self._goal: float | None = None
-        self._speed = 0.0
+        self._speed = self._top = self._slope = 0.0
+        self._friction = settings.speed / _COASTS_S
         self._reference = settings.home_position
         self._per_unit = settings.counts_per_unit
         self._per_speed = abs(settings.counts_per_unit) * settings.velocity_per_count
@@ -53,6 +57,11 @@ class AxisDrive(SimulatedDrive):
     def standing(self) -> bool:
         """Whether the axis neither moves nor is told to."""
         return self._goal is None and self._speed == 0.0
+
+    @property
+    def speed(self) -> float:
+        """How fast the axis really moves, in its unit per second."""
+        return 0.0 if self.blocked else self._speed
 
     def obey(self, control: int, risen: int) -> None:
         """Take a set-point or start homing."""
@@ -70,9 +79,10 @@ class AxisDrive(SimulatedDrive):
         """Decelerate to rest where it is."""
         self._goal = None
         self._slope = deceleration / self._per_speed
-        if not deceleration:
-            self._speed = 0.0
-            self.values[VELOCITY] = 0
+
+    def coast(self) -> None:
+        """Leave the axis to its inertia and friction."""
+        self._goal, self._slope = None, self._friction
 
     def move(self) -> None:
         """Go on by one sample."""
@@ -98,9 +108,6 @@ class AxisDrive(SimulatedDrive):
 
     def _begin(self) -> None:
         super()._begin()
-        self._demand = self.position
-        self._goal = None
-        self._speed = self._top = self._slope = 0.0
         self._shift = -self.position * self._per_unit  # at power-on the drive counts from 0
 
     def _take_set_point(self) -> None:
@@ -120,7 +127,7 @@ class AxisDrive(SimulatedDrive):
 
     def _go(self, goal: float, speed: Entry, acceleration: Entry) -> None:
         self._goal = goal
-        self._top = self.number(speed) / self._per_speed
+        self._top = min(self.number(speed), self.number(_TOP_SPEED)) / self._per_speed
         self._slope = self.number(acceleration) / self._per_speed
 
     def _step(self) -> None:

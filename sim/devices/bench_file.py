@@ -1,19 +1,20 @@
 """A simulated rig from a file: ``simulated.toml``."""
 
-import tomllib
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
-from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
+from hardware.description.toml import parse_toml
 from hardware.driver import GROUP, read_settings
-from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
+from hardware.rig_configuration import TABLES as DEVICES
+from hardware.rig_configuration import RigConfiguration, read_rig
+from hardware.simulated import SimulatedTables
 from sim.devices.plant import Surroundings
+from sim.devices.stated_rig import TABLES, stated_rig
 from sim.devices.world import Scene, World
-from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 
 # The drivers that have a simulated device, under the names that the package gives them.
 DRIVERS: Final = tuple(
@@ -33,17 +34,14 @@ DRIVERS: Final = tuple(
 
 @dataclass(frozen=True)
 class BenchSettings:
-    """The keys of ``simulated.toml`` beside ``rig`` and ``simulated``.
+    """The keys of ``simulated.toml`` beside ``rig`` and the tables of the simulated rig.
 
     Attributes
     ----------
-    plane
-        Which nominal oscillator, model and water are taken.
     eccentricity_m, strut_phase_rad
         Where the linkage stands when the power comes on.
     """
 
-    plane: Plane = Plane.VERTICAL
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     seed: int = 1
@@ -53,10 +51,17 @@ class BenchSettings:
 
 @dataclass(frozen=True)
 class Bench:
-    """What a file describes."""
+    """What a file describes.
+
+    Attributes
+    ----------
+    tables
+        The rig that is simulated, as it is said to whoever drives it.
+    """
 
     configuration: RigConfiguration
     scene: Scene
+    tables: SimulatedTables
 
     def world(self) -> World:
         """Return the rig with its power just switched on."""
@@ -66,8 +71,9 @@ class Bench:
 def read_bench(path: Path) -> Bench:
     """Read a file.
 
-    Its ``rig`` is the tables of ``rig.toml``, or the path of one, seen from the file;
-    ``simulated``, where it is given, takes the place of the nominal rig of a ``plane``.
+    Its ``rig`` is the tables of ``rig.toml``, or the path of one, seen from the file. The simulated
+    rig is that of these tables (:mod:`sim.devices.stated_rig`); the file's own tables, called as in
+    ``campaign.toml``, go before them.
 
     Raises
     ------
@@ -75,32 +81,27 @@ def read_bench(path: Path) -> Bench:
         If a file cannot be read, or a key is wrong.
     """
     tables = _load(path)
-    rig = tables.pop("rig", None)
+    rig, folder = tables.pop("rig", None), path.parent
     if isinstance(rig, str):
-        # The file says more than which devices there are; who runs the rig reads that.
-        rig = {key: one for key, one in _load(path.parent / rig).items() if key in TABLES}
+        folder = (path.parent / rig).parent
+        rig = _load(path.parent / rig)
     if not isinstance(rig, dict):
         raise ConfigurationError(f"{path}: rig = {rig!r} has to be a table or the path of a file")
-    simulated = tables.pop("simulated", None)
+    own = {key: tables.pop(key) for key in TABLES if key in tables}
     settings = read_settings(BenchSettings, tables, str(path))
-    around = Surroundings(settings.carriage_speed_m_s, settings.medium, settings.seed)
+    configuration = read_rig({key: one for key, one in rig.items() if key in DEVICES}, DRIVERS)
+    simulated = stated_rig(rig, own, folder, str(path))
     scene = Scene(
-        _rig(settings, simulated, path),
-        around,
+        simulated.rig,
+        Surroundings(settings.carriage_speed_m_s, settings.medium, settings.seed),
         settings.eccentricity_m,
         settings.strut_phase_rad,
     )
-    return Bench(read_rig(rig, DRIVERS), scene)
-
-
-def _rig(settings: BenchSettings, simulated: Any, path: Path) -> SimulatedRig:
-    if simulated is not None:
-        return read_settings(SimulatedRig, simulated, f"{path}: simulated")
-    return vertical_rig() if settings.plane is Plane.VERTICAL else horizontal_rig()
+    return Bench(configuration, scene, SimulatedTables(str(path), simulated.tables, own))
 
 
 def _load(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        return parse_toml(path.read_text(encoding="utf-8"))
+    except (OSError, ConfigurationError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"{path} cannot be read: {error}") from error

@@ -2,10 +2,13 @@
 
 import threading
 from collections import deque
+from pathlib import Path
 
 import can
 
 from hardware.driver import Prompt
+from hardware.simulated import SimulatedTables
+from sim.devices.bench_file import read_bench
 from sim.devices.operator import SimulatedOperator
 from sim.devices.registry import give_back, take
 
@@ -20,7 +23,14 @@ class SimulatedBus(can.BusABC):
     ----------
     channel
         Name of the simulated rig, or its file (see :mod:`sim.devices.registry`).
+
+    Attributes
+    ----------
+    private
+        Whether no other process can be on it.
     """
+
+    private = True
 
     def __init__(self, channel: str, **_options: object) -> None:
         self._name = channel
@@ -32,6 +42,17 @@ class SimulatedBus(can.BusABC):
         self._owner = threading.get_ident()
         self._world.wire.outlets.append(self._frames)
         self._take = self._world.wire.take
+
+    @staticmethod
+    def tables(channel: str) -> SimulatedTables | None:
+        """Return which rig is simulated behind a channel; ``None`` for a program's own world.
+
+        Raises
+        ------
+        ConfigurationError
+            If its file is wrong.
+        """
+        return read_bench(Path(channel)).tables if channel.endswith(".toml") else None
 
     @property  # type: ignore[misc]  # nobody sets the state of this bus
     def state(self) -> can.BusState:

@@ -23,7 +23,10 @@ QUICK_STOP_DECELERATION = Entry(0x6085)
 _FOLLOWING_ERROR = Entry(0x60F4)
 _WINDOW, _WINDOW_MS = Entry(0x6065), Entry(0x6066)
 _ABORT_CONNECTION, _QUICK_STOP_OPTION = Entry(0x6007), Entry(0x605A)
+# "Shutdown" and "disable voltage" take the torque off at once (605B = 0, transitions 8, 9, 12).
+_WITHOUT_TORQUE: Final = (State.READY_TO_SWITCH_ON, State.SWITCH_ON_DISABLED)
 _STOPPING: Final = (State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
+_WITH_TORQUE: Final = (State.OPERATION_ENABLED, *_STOPPING)
 _WORDS: Final = {
     state: state.value[1]
     | int(Status.REMOTE)
@@ -43,6 +46,8 @@ class SimulatedDrive(SimulatedNode):
         Bits of the status word beyond the state's.
     blocked
         Fault: the axis does not move whatever the drive does.
+    safe_torque_off
+        The emergency stop is pressed: no torque, and no way up.
     """
 
     modes: tuple[Mode, ...] = ()
@@ -53,7 +58,7 @@ class SimulatedDrive(SimulatedNode):
         super().__init__(wire, name, node_id, eds, sample_rate_hz)
         self.state = State.SWITCH_ON_DISABLED
         self.bits = 0
-        self.blocked = False
+        self.blocked = self.safe_torque_off = False
         self._control = 0
         self._astray = 0
         self._connected = True
@@ -64,6 +69,16 @@ class SimulatedDrive(SimulatedNode):
         """Whether nothing is demanded to move."""
         raise AssertionError("a drive says whether it stands")
 
+    @property
+    def speed(self) -> float:
+        """How fast the axis really moves: in Hz, m/s or rad/s."""
+        raise AssertionError("a drive knows how fast it moves")
+
+    @property
+    def torque(self) -> bool:
+        """Whether the drive makes torque."""
+        return self.state in _WITH_TORQUE
+
     def move(self) -> None:
         """Go on by one sample and bring position, velocity and ``bits`` up to date."""
 
@@ -73,10 +88,13 @@ class SimulatedDrive(SimulatedNode):
     def ramp_down(self, deceleration: Number) -> None:
         """Decelerate to rest, in the drive's units (0: at once)."""
 
+    def coast(self) -> None:
+        """Make no torque: inertia and friction alone decide."""
+
     def boot(self) -> None:
         """Lose power for a moment."""
         super().boot()
-        self.ramp_down(0)
+        self.coast()
         self._begin()
 
     def commanded(self) -> None:
@@ -85,7 +103,7 @@ class SimulatedDrive(SimulatedNode):
         self._control = control
         command = _command(control, before)
         following = TRANSITIONS.get((self.state, command)) if command is not None else None
-        if following is not None:
+        if following is not None and not (self.safe_torque_off and command is Command.SHUTDOWN):
             self._enter_state(following[1])
         mode = self.values.get(MODE, 0)
         if mode in self.modes:
@@ -105,6 +123,10 @@ class SimulatedDrive(SimulatedNode):
                 self._lose_master()
         self._show()
 
+    def disconnected(self) -> None:
+        """React to a stop of the node or a reset of its communication as object 6007 says."""
+        self._lose_master()
+
     def fault(self, code: int, register: int = 1) -> None:
         """Go to FAULT with an error code, by the quick-stop ramp."""
         self.values[ERROR_CODE] = code
@@ -112,6 +134,21 @@ class SimulatedDrive(SimulatedNode):
         self._enter_state(State.FAULT_REACTION_ACTIVE)
         self._after_stop()
         self._show()
+
+    def trip(self, code: int) -> None:
+        """Go to FAULT without torque: mains lost, short circuit."""
+        self.values[ERROR_CODE] = code
+        self.emergency(code, 1)
+        self.coast()
+        self.state = State.FAULT
+        self._show()
+
+    def cut_torque(self) -> None:
+        """Have the emergency stop pressed."""
+        self.safe_torque_off = True
+        if self.torque or self.state in (State.READY_TO_SWITCH_ON, State.SWITCHED_ON):
+            self._enter_state(State.SWITCH_ON_DISABLED)
+            self._show()
 
     def stray(self, counts: float) -> None:
         """Take the following error of this sample; beyond its window for its time is a fault."""
@@ -135,8 +172,10 @@ class SimulatedDrive(SimulatedNode):
         if before is State.FAULT:
             self.values[ERROR_CODE] = 0
             self.emergency(0, 0)
-        if before is State.OPERATION_ENABLED:
-            gentle = state in (State.SWITCHED_ON, State.READY_TO_SWITCH_ON)
+        if state in _WITHOUT_TORQUE and before not in _WITHOUT_TORQUE:
+            self.coast()
+        elif before is State.OPERATION_ENABLED:
+            gentle = state is State.SWITCHED_ON
             self.ramp_down(self.number(DECELERATION if gentle else QUICK_STOP_DECELERATION))
 
     def _after_stop(self) -> None:

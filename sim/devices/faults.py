@@ -15,6 +15,8 @@ from sim.devices.shaft_drive import ShaftDrive
 from sim.devices.talkers import Inclinometer, Talker, held
 from sim.devices.world import World
 
+_UNDERVOLTAGE: Final = 0x3220
+
 
 def inject(world: World, words: str) -> None:
     """Do to a simulated rig what the words say.
@@ -82,13 +84,47 @@ def _drive_fault(world: World, part: str, code: str) -> None:
     _drive(world, part).fault(int(code, 16))
 
 
+def _safe_torque_off(world: World, part: str) -> None:
+    """The emergency stop takes the torque off a drive: it coasts, and does not come up."""
+    _drive(world, part).cut_torque()
+
+
+def _release(world: World, part: str) -> None:
+    """The emergency stop is released."""
+    _drive(world, part).safe_torque_off = False
+
+
+def _mains(world: World) -> None:
+    """The mains fail: every drive trips without torque, their electronics live on."""
+    for node in world.nodes.values():
+        if isinstance(node, SimulatedDrive):
+            node.trip(_UNDERVOLTAGE)
+
+
+def _forced(world: World, part: str, frequency_hz: str, *, dragged: bool) -> None:
+    drive = _drive(world, part)
+    if not isinstance(drive, ShaftDrive):
+        raise ConfigurationError(f"{part} is no shaft")
+    drive.force(float(frequency_hz), dragged=dragged)
+
+
+def _runaway(world: World, part: str, frequency_hz: str) -> None:
+    """The shaft's drive turns at a speed of its own while it makes torque, until it is freed."""
+    _forced(world, part, frequency_hz, dragged=False)
+
+
+def _drag(world: World, part: str, frequency_hz: str) -> None:
+    """Somebody or something turns the shaft whatever its drive does, until it is freed."""
+    _forced(world, part, frequency_hz, dragged=True)
+
+
 def _block(world: World, part: str) -> None:
     """An axis does not move any more: the following error grows."""
     _drive(world, part).blocked = True
 
 
 def _free(world: World, part: str) -> None:
-    """A blocked axis moves again."""
+    """A blocked axis moves again; a shaft that runs away or is dragged obeys again."""
     drive = _drive(world, part)
     if isinstance(drive, ShaftDrive | AxisDrive):
         drive.unblock()
@@ -171,6 +207,11 @@ FAULTS: Final[dict[str, Callable[..., None]]] = {
     "boot": _boot,
     "emergency": _emergency,
     "drive-fault": _drive_fault,
+    "sto": _safe_torque_off,
+    "release": _release,
+    "mains": _mains,
+    "runaway": _runaway,
+    "drag": _drag,
     "block": _block,
     "free": _free,
     "stuck": _stuck,

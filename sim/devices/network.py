@@ -28,8 +28,8 @@ class Wire(canopen.Network):
         Simulated time, the time stamp of the frames.
     number
         Ticks so far.
-    beats
-        The tick in which each node's heartbeat last came.
+    hearing
+        Called with the node id of each heartbeat that a controller sends.
     """
 
     def __init__(self) -> None:
@@ -38,7 +38,7 @@ class Wire(canopen.Network):
         self.rpdos: dict[int, Callable[[bytes | bytearray], None]] = {}
         self.guarded: dict[int, Callable[[], int]] = {}
         self.on_sync: Callable[[], None] = _nothing
-        self.beats: dict[int, int] = {}
+        self.hearing: list[Callable[[int], None]] = []
         self.time_s = 0.0
         self.number = 0
 
@@ -54,7 +54,8 @@ class Wire(canopen.Network):
         elif (rpdo := self.rpdos.get(identifier)) is not None:
             rpdo(frame.data)
         elif identifier & 0x780 == HEARTBEAT:
-            self.beats[identifier & 0x7F] = self.number
+            for hear in self.hearing:
+                hear(identifier & 0x7F)
         else:
             self.notify(identifier, frame.data, self.time_s)
 

@@ -9,14 +9,17 @@ from canopen.sdo.exceptions import SdoAbortedError
 
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry, Layout, layout, load, variable
+from sim.devices.heartbeat import HeartbeatConsumer
 from sim.devices.network import HEARTBEAT, Wire
 
 Number = int | float
 _START, _STOP, _PRE_OPERATIONAL, _RESET, _RESET_COMMUNICATION = 1, 2, 128, 129, 130
 _STATES: Final = {_START: 5, _STOP: 4, _PRE_OPERATIONAL: 127}
 _NOT_VALID: Final = 1 << 31
+_COMMUNICATION: Final = range(0x1000, 0x2000)  # CiA 301's objects
 _CONSUMED_BEAT, _PRODUCED_BEAT = Entry(0x1016, 1), Entry(0x1017)
 _SYNC_PERIOD, _OUT_OF_RANGE = Entry(0x1006), 0x06090030
+_NO_SUCH_OBJECT: Final = 0x06020000
 _CANNOT_BE_MAPPED, _TOO_LONG = 0x06040041, 0x06040042
 
 
@@ -31,6 +34,8 @@ class SimulatedNode:
         Every object that has been written or that the device keeps up to date.
     beating, talking
         Faults: without heartbeat, without process data.
+    lacking
+        Indices of objects of the EDS that this device does not have.
     """
 
     def __init__(
@@ -44,11 +49,12 @@ class SimulatedNode:
         self.values: dict[tuple[int, int], Number] = {}
         self.operational = False
         self.beating = self.talking = True
+        self.lacking: set[int] = set()
         self._state = _STATES[_PRE_OPERATIONAL]
         self._toggle = 0x80  # the first answer has the bit at 0
         self._packed: tuple[tuple[int, Callable[..., bytes], tuple[Entry, ...]], ...] = ()
-        self._beat_every = self._watched = 0
-        self._patience = 0.0  # ticks that the watched heartbeat may stay away; 0: not watched
+        self._beat_every = 0
+        self._master = HeartbeatConsumer(wire, sample_rate_hz)
         self._local = canopen.LocalNode(node_id, self.dictionary)
         wire[node_id] = self._local
         self._local.add_read_callback(self._read)
@@ -96,15 +102,27 @@ class SimulatedNode:
         self._enter(_STATES[_PRE_OPERATIONAL])
         self.values.clear()
         self._local.data_store.clear()
-        self._beat_every, self._patience = 0, 0.0
+        self._beat_every = 0
+        self._master.watch(0)
+        self.wire.emit(HEARTBEAT + self.node_id, b"\0")
+
+    def disconnected(self) -> None:
+        """Act on an NMT command that ends process data: stop, or reset of the communication."""
+
+    def _restart_communication(self) -> None:
+        """Forget the communication's objects, and say so as after power-on; the device goes on."""
+        self.disconnected()
+        self._enter(_STATES[_PRE_OPERATIONAL])
+        for at in [one for one in self.values if one[0] in _COMMUNICATION]:
+            del self.values[at]
+            self._local.data_store.get(at[0], {}).pop(at[1], None)
+        self._beat_every = 0
+        self._master.watch(0)
         self.wire.emit(HEARTBEAT + self.node_id, b"\0")
 
     def master_lost(self) -> bool:
         """Tell whether the heartbeat that this node watches has stayed away for too long."""
-        if not self.operational or not self._patience:
-            return False
-        last = self.wire.beats.get(self._watched)
-        return last is not None and self.wire.number - last > self._patience
+        return self._master.lost
 
     def _guard(self) -> int:
         """Return the state, with a toggle bit that changes at each question (CiA 301)."""
@@ -115,10 +133,14 @@ class SimulatedNode:
         command, node_id = data[0], data[1]
         if node_id not in (0, self.node_id):
             return
-        if command in (_RESET, _RESET_COMMUNICATION):
+        if command == _RESET:
             self.boot()
+        elif command == _RESET_COMMUNICATION:
+            self._restart_communication()
         elif command in _STATES:
             self._enter(_STATES[command])
+            if command == _STOP:
+                self.disconnected()
 
     def _enter(self, state: int) -> None:
         self._state, self.operational = state, state == _STATES[_START]
@@ -156,9 +178,11 @@ class SimulatedNode:
         return take
 
     def _read(self, index: int, subindex: int, od: Any) -> Number | None:
+        self._refuse_lacking(index)
         return self.values.get((index, subindex))
 
     def _write(self, index: int, subindex: int, od: Any, data: bytes) -> None:
+        self._refuse_lacking(index)
         if od.data_type not in datatypes.NUMBER_TYPES:
             return
         at, value = Entry(index, subindex), od.decode_raw(data)
@@ -168,11 +192,14 @@ class SimulatedNode:
             raise SdoAbortedError(_OUT_OF_RANGE)
         self.values[at] = value
         if at == _CONSUMED_BEAT:
-            self._watched = int(value) >> 16 & 0x7F
-            self._patience = (int(value) & 0xFFFF) * self.sample_rate_hz / 1000.0
+            self._master.watch(int(value))
         if at == _PRODUCED_BEAT:
             self._beat_every = max(1, int(value * self.sample_rate_hz / 1000.0)) if value else 0
         self.written(at, value)
+
+    def _refuse_lacking(self, index: int) -> None:
+        if index in self.lacking:
+            raise SdoAbortedError(_NO_SUCH_OBJECT)
 
     def _check_mapping(self, at: Entry, word: int) -> None:
         """Refuse, as a device does, what cannot be mapped or does not fit into 8 bytes."""

@@ -12,11 +12,13 @@ from typing import Final
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.chain import Chain, ChainState
-from sim.devices.profile import SpeedProfile, following
+from sim.devices.profile import Friction, SpeedProfile, following
 from sim.rig import SimulatedRig
 from sim.signals import Signals
 
 _LARGEST_BLOCK: Final = 256
+# A shaft at 1 Hz coasts for 2.8 s and 1.1 turns, as one with a flywheel's inertia in its bearings.
+SHAFT_FRICTION: Final = Friction(time_constant_s=2.0, deceleration=1.0)
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,11 @@ class Plant:
     def turn(self, target_rad_s: float, acceleration_rad_s2: float) -> None:
         """Command a speed: from the present sample on."""
         self.profile = self.profile.then(self.time_s, target_rad_s, acceleration_rad_s2)
+        self._changed = True
+
+    def coast(self) -> None:
+        """Take the torque off the shaft: from the present sample on."""
+        self.profile = self.profile.without_torque(self.time_s, SHAFT_FRICTION)
         self._changed = True
 
     def set_linkage(

@@ -57,6 +57,57 @@ class SpeedProfile:
         angle, speed = self.angle_and_speed(time_s)
         return SpeedProfile(time_s, angle, speed, target_rad_s, acceleration_rad_s2)
 
+    def without_torque(self, time_s: float, friction: "Friction") -> "Coasting":
+        """Return what follows if the torque is taken off at ``time_s``."""
+        angle, speed = self.angle_and_speed(time_s)
+        return Coasting(time_s, angle, speed, friction=friction)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What slows an axis whose drive makes no torque.
+
+    Attributes
+    ----------
+    time_constant_s
+        Inertia over viscous friction (water, oil): the speed falls to 1/e in it.
+    deceleration
+        By dry friction (seals, gears), in the axis's unit per second squared.
+    """
+
+    time_constant_s: float
+    deceleration: float
+
+    def stops_after_s(self, speed: float) -> float:
+        """Return how long an axis coasts from a speed to rest."""
+        dry = self.deceleration * self.time_constant_s
+        return self.time_constant_s * math.log1p(abs(speed) / dry)
+
+
+@dataclass(frozen=True)
+class Coasting(SpeedProfile):
+    """A shaft without torque: viscous and dry friction bring it to rest; ``target`` is 0."""
+
+    friction: Friction = field(default_factory=lambda: Friction(1.0, 1.0))
+
+    @property
+    def ramp_s(self) -> float:
+        """How long it coasts."""
+        return self.friction.stops_after_s(self.speed_rad_s)
+
+    def at(self, time_s: FloatArray) -> Shaft:
+        """Return angle, speed and acceleration at each time, none before the start."""
+        tau = self.friction.time_constant_s
+        dry = math.copysign(self.friction.deceleration * tau, self.speed_rad_s)
+        since = np.minimum(time_s - self.start_s, self.ramp_s)
+        left = np.exp(-since / tau)
+        coasting = time_s - self.start_s < self.ramp_s
+        return Shaft(
+            self.angle_rad + (self.speed_rad_s + dry) * tau * (1.0 - left) - dry * since,
+            np.where(coasting, (self.speed_rad_s + dry) * left - dry, 0.0),
+            np.where(coasting, -(self.speed_rad_s + dry) * left / tau, 0.0),
+        )
+
 
 @dataclass(frozen=True)
 class ProfiledDrive(DriveSettings):

@@ -14,7 +14,14 @@ from hardware.drive import (
     VELOCITY,
 )
 from hardware.shaft import ShaftSettings
-from sim.devices.drive import ACCELERATION, DECELERATION, SimulatedDrive, halting, wrapped
+from sim.devices.drive import (
+    ACCELERATION,
+    DECELERATION,
+    QUICK_STOP_DECELERATION,
+    SimulatedDrive,
+    halting,
+    wrapped,
+)
 from sim.devices.network import Wire
 from sim.devices.node import Number
 from sim.devices.plant import Passage, Plant
@@ -25,6 +32,7 @@ _TOP_SPEED = Entry(0x607F)
 _ON, _CONTINUOUS, _POSITIVE_EDGE = 0x01, 0x02, 0x10
 _INPUT_1: Final = 1
 _AT_ONCE: Final = 1e9  # rad/s2
+_FORCED: Final = 60.0  # rad/s2: a drive that runs away
 _REACHED, _STANDSTILL = int(Status.TARGET_REACHED), int(Status.STANDSTILL)
 
 
@@ -36,6 +44,7 @@ class ShaftDrive(SimulatedDrive):
     def __init__(self, wire: Wire, name: str, settings: ShaftSettings, plant: Plant) -> None:
         self._plant = plant
         self._armed = self._limit = 0
+        self._forced: tuple[float, bool] | None = None
         self._set_demand(plant.profile)
         self._counts_per_rad = settings.counts_per_turn / (2.0 * math.pi)
         self._per_rad_s = self._counts_per_rad * settings.velocity_per_count
@@ -49,6 +58,17 @@ class ShaftDrive(SimulatedDrive):
     def standing(self) -> bool:
         """Whether the shaft is told to stand, and the ramp down is over."""
         return self._demand.target_rad_s == 0.0 and self._arrived
+
+    @property
+    def speed(self) -> float:
+        """How fast the shaft really turns, in Hz."""
+        return self._plant.speed_rad_s / (2.0 * math.pi)
+
+    def force(self, frequency_hz: float, *, dragged: bool) -> None:
+        """Turn the shaft whatever is commanded, while there is torque; ``dragged``: always."""
+        self._forced = (2.0 * math.pi * frequency_hz, dragged)
+        if dragged or self.torque:
+            self._turn(0.0, 0)
 
     @property
     def _arrived(self) -> bool:
@@ -66,6 +86,15 @@ class ShaftDrive(SimulatedDrive):
     def ramp_down(self, deceleration: Number) -> None:
         """Bring the shaft to rest."""
         self._turn(0.0, deceleration)
+
+    def coast(self) -> None:
+        """Leave the shaft to its inertia and friction."""
+        if self._forced is not None and self._forced[1]:
+            return
+        self._told = (math.nan, math.nan)
+        if not self.blocked:
+            self._plant.coast()
+            self._set_demand(self._plant.profile)
 
     def move(self) -> None:
         """Read the encoder; say whether the target is reached."""
@@ -105,6 +134,8 @@ class ShaftDrive(SimulatedDrive):
     def _turn(self, target_rad_s: float, deceleration: Number) -> None:
         """Command a speed; a repetition of the last command changes nothing."""
         acceleration = deceleration / abs(self._per_rad_s) if deceleration else _AT_ONCE
+        if self._forced is not None:
+            target_rad_s, acceleration = self._forced[0], _FORCED
         told = (target_rad_s, acceleration)
         if target_rad_s == self._demand.target_rad_s and (self._arrived or told == self._told):
             return
@@ -129,7 +160,14 @@ class ShaftDrive(SimulatedDrive):
         self.stray((self._demand.angle_and_speed(now)[0] - there) * self._counts_per_rad)
 
     def unblock(self) -> None:
-        """Let the shaft go: the demand begins where it stands."""
+        """Let the shaft go: the demand begins where it stands, or what forced it ends."""
         self.blocked = False
+        if self._forced is not None:
+            self._forced, self._told = None, (math.nan, math.nan)
+            if self.torque:
+                self.ramp_down(self.number(QUICK_STOP_DECELERATION))
+            else:
+                self.coast()
+            return
         angle, _ = self._plant.profile.angle_and_speed(self._plant.time_s)
         self._set_demand(SpeedProfile(self._plant.time_s, angle))

@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Digitiser
 from sim.amplifier import FilterKind, LowPass
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -28,8 +28,10 @@ class AmplifierLag(Effect):
     title: ClassVar[str] = "Low-pass of the force amplifiers"
     stage: ClassVar[StageName] = StageName.ACQUISITION
 
-    cutoff_hz: float = parameter(10.0, 0.5, 10000.0, "Hz", "3 dB down")
-    poles: float = parameter(1.0, 1.0, 8.0, "1", "number of poles, rounded", held=True)
+    cutoff_hz: float = parameter(10.0, 0.5, 10000.0, "Hz", "3 dB down", one_sign=OneSign.RATE)
+    poles: float = parameter(
+        1.0, 1.0, 8.0, "1", "number of poles, rounded", held=True, one_sign=OneSign.COUNT
+    )
 
     @property
     def order(self) -> int:

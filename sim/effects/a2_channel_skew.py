@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measured import of_forces, with_force_channels
+from sim.effects.measured import later, of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -16,7 +16,9 @@ from sim.rig import SimulatedRig
 class ChannelSkew(Effect):
     """Samples of a force that show what it was a little earlier: ``exp(-i n w dt)``.
 
-    In one channel, a part of the inertia becomes damping there, with w^3.
+    In one channel, a part of the inertia becomes damping there, with w^3. A force that is ahead, a
+    negative delay, is one that is sampled before the other channels and the photocell: these are
+    then late.
     """
 
     code: ClassVar[str] = "A2"
@@ -24,14 +26,16 @@ class ChannelSkew(Effect):
     title: ClassVar[str] = "Sampling skew of the force channels"
     stage: ClassVar[StageName] = StageName.ACQUISITION
 
-    aft_s: float = parameter(0.0, 0.0, 0.02, "s", "delay of the aft force")
-    fore_s: float = parameter(1e-3, 0.0, 0.02, "s", "delay of the fore force")
+    aft_s: float = parameter(0.0, -0.02, 0.02, "s", "delay of the aft force")
+    fore_s: float = parameter(1e-3, -0.02, 0.02, "s", "delay of the fore force")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these delays on top of what the channels have."""
         delays = (self.aft_s, self.fore_s)
+        # No sample shows what is yet to come: where a force is ahead, all others are later.
+        ahead_s = max(0.0, *(-one for one in delays))
         return with_force_channels(
-            rig, lambda one, i: replace(one, delay_s=one.delay_s + delays[i])
+            later(rig, ahead_s), lambda one, i: replace(one, delay_s=one.delay_s + delays[i])
         )
 
     def signature(self, situation: Situation) -> Signature:

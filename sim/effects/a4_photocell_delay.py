@@ -17,7 +17,8 @@ class PhotocellDelay(Effect):
     """A pulse that comes a time after the mark turns order n of every channel by ``n w t``.
 
     As an angular offset, but rising with the frequency; as an amplifier's lag with the opposite
-    sign, but in the displacements too.
+    sign, but in the displacements too. Where the channels are later than the pulse, as behind the
+    same filter each, the delay is negative.
     """
 
     code: ClassVar[str] = "A4"
@@ -25,7 +26,9 @@ class PhotocellDelay(Effect):
     title: ClassVar[str] = "Delay of the photocell's pulse"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
 
-    delay_s: float = parameter(1e-3, 0.0, 0.05, "s", "from the mark to the pulse")
+    delay_s: float = parameter(
+        1e-3, -0.05, 0.05, "s", "from the mark to the pulse, beyond that of the channels"
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the pulse delayed; one without a photocell stays as it is."""

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -31,7 +31,9 @@ class TriggerJitter(Effect):
     by_chance: ClassVar[bool] = True
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.PERIODS, Trace.CYCLES)
 
-    jitter_rad: float = parameter(5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft")
+    jitter_rad: float = parameter(
+        5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft", one_sign=OneSign.SCATTER
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this scatter on top of what its pulses have."""

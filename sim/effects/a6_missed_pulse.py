@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -35,6 +35,7 @@ class MissedPulse(Effect):
         "N, rounded: one pulse in so many is missing",
         starts=(5.0, 10.0, 20.0),
         held=True,
+        one_sign=OneSign.COUNT,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import MOST, of_waves
 from sim.effects.situation import Situation
 from sim.linear import ComplexArray
@@ -30,9 +30,22 @@ class LateGate(Effect):
     stage: ClassVar[StageName] = StageName.PHOTOCELL
     repeats: ClassVar[bool] = False
 
-    fraction: float = parameter(0.1, 0.001, 0.9, "1", "d: part of a cycle by which it is too long")
+    fraction: float = parameter(
+        0.1,
+        0.001,
+        0.9,
+        "1",
+        "d: part of a cycle by which it is too long",
+        one_sign="too short by d is too long by 1 - d of one cycle fewer",
+    )
     cycles: float = parameter(
-        10.0, 1.0, 1000.0, "1", "m: cycles that are wanted, rounded", held=True
+        10.0,
+        1.0,
+        1000.0,
+        "1",
+        "m: cycles that are wanted, rounded",
+        held=True,
+        one_sign=OneSign.COUNT,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -9,7 +9,16 @@ import numpy as np
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.acquisition import Digitiser
-from sim.effects.effect import Effect, Lines, Measurement, Signature, StageName, Trace, parameter
+from sim.effects.effect import (
+    Effect,
+    Lines,
+    Measurement,
+    OneSign,
+    Signature,
+    StageName,
+    Trace,
+    parameter,
+)
 from sim.effects.measured import with_force_channels
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.rig import SimulatedRig
@@ -33,7 +42,9 @@ class Hum(Effect):
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES)
     shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST, Measurement.INJECTION)
 
-    amplitude_n: float = parameter(0.2, 0.0, 20.0, "N", "amplitude in both force channels")
+    amplitude_n: float = parameter(
+        0.2, 0.0, 20.0, "N", "amplitude in both force channels", one_sign=OneSign.AMPLITUDE
+    )
     frequency_hz: float = parameter(
         50.0,
         1.0,
@@ -42,6 +53,7 @@ class Hum(Effect):
         "frequency of the mains, or of what",
         held=True,
         starts=(50.0, 60.0),
+        one_sign=OneSign.RATE,
     )
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 

@@ -40,7 +40,7 @@ def simulated_signature(
     keys
         Channel name and order of the harmonics that are wanted.
     points
-        Of the period; the error of a law that jumps falls with their square.
+        Of the period, for what neither jumps nor bends.
     """
     nominal = steady_run(rig, set_point, orders=orders, points=points)
     real = switch_on((effect,), rig, set_point)

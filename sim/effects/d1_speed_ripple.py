@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.drive import SpeedRipple
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import uneven_signature
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -26,9 +26,18 @@ class SpeedRippleEffect(Effect):
     title: ClassVar[str] = "Speed that varies over a revolution"
     stage: ClassVar[StageName] = StageName.DRIVE
 
-    relative: float = parameter(0.005, 0.0, 0.03, "1", "amplitude of the speed over its mean")
+    relative: float = parameter(
+        0.005, 0.0, 0.03, "1", "amplitude of the speed over its mean", one_sign=OneSign.AMPLITUDE
+    )
     order: float = parameter(
-        1.0, 0.1, 10.0, "1", "times a revolution", starts=(1.0, 2.0, 3.0), held=True
+        1.0,
+        0.1,
+        10.0,
+        "1",
+        "times a revolution",
+        starts=(1.0, 2.0, 3.0),
+        held=True,
+        one_sign=OneSign.COUNT,
     )
     phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.drive import SpeedRipple
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import uneven_signature
 from sim.effects.situation import Situation
 from sim.motor import Cogging
@@ -27,13 +27,28 @@ class TorqueCogging(Effect):
     title: ClassVar[str] = "Torque that varies with the shaft's angle"
     stage: ClassVar[StageName] = StageName.DRIVE
 
-    torque_n_m: float = parameter(0.5, 0.0, 20.0, "N m", "amplitude of the torque, at the crank")
+    torque_n_m: float = parameter(
+        0.5, 0.0, 20.0, "N m", "amplitude of the torque, at the crank", one_sign=OneSign.AMPLITUDE
+    )
     order: float = parameter(
-        1.0, 1.0, 10.0, "1", "times a revolution, a whole number", starts=(1.0, 2.0, 3.0), held=True
+        1.0,
+        1.0,
+        10.0,
+        "1",
+        "times a revolution, a whole number",
+        starts=(1.0, 2.0, 3.0),
+        held=True,
+        one_sign=OneSign.COUNT,
     )
     phase_rad: float = parameter(0.0, -np.pi, np.pi, "rad", "phase at the shaft's zero")
     inertia_kg_m2: float = parameter(
-        5.0, 0.5, 500.0, "kg m2", "of the motor, at the crank, where the rig has none", held=True
+        5.0,
+        0.5,
+        500.0,
+        "kg m2",
+        "of the motor, at the crank, where the rig has none",
+        held=True,
+        one_sign=OneSign.MASS,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.motor import droop
@@ -26,9 +26,21 @@ class SpeedDroop(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
 
-    droop_rad_s_n_m: float = parameter(0.02, 1e-7, 0.5, "rad/(s N m)", "speed lost per mean torque")
+    droop_rad_s_n_m: float = parameter(
+        0.02,
+        1e-7,
+        0.5,
+        "rad/(s N m)",
+        "speed lost per mean torque",
+        one_sign="a motor that a load made faster would run away",
+    )
     inertia_kg_m2: float = parameter(
-        20.0, 0.5, 1e5, "kg m2", "of the flywheel, where the rig says nothing of its motor"
+        20.0,
+        0.5,
+        1e5,
+        "kg m2",
+        "of the flywheel, where the rig says nothing of its motor",
+        one_sign=OneSign.MASS,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

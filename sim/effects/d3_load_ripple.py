@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.motor import droop
@@ -28,9 +28,16 @@ class LoadRipple(Effect):
     stage: ClassVar[StageName] = StageName.DRIVE
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
 
-    inertia_kg_m2: float = parameter(5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank")
+    inertia_kg_m2: float = parameter(
+        5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank", one_sign=OneSign.MASS
+    )
     hold_hz: float = parameter(
-        0.05, 0.001, 2.0, "Hz", "bandwidth of what brings the mean speed back, critically damped"
+        0.05,
+        0.001,
+        2.0,
+        "Hz",
+        "bandwidth of what brings the mean speed back, critically damped",
+        one_sign=OneSign.RATE,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

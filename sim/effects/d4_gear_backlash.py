@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
@@ -38,16 +38,36 @@ class GearBacklash(Effect):
     # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain
     # their own give first, and across a worn one the cranks may strike too hard to be solved.
     backlash_rad: float = parameter(
-        0.003, 1e-7, 0.02, "rad", "whole clearance, at the crank, beta", starts=(3e-4,)
+        0.003,
+        1e-7,
+        0.02,
+        "rad",
+        "whole clearance, at the crank, beta",
+        starts=(3e-4,),
+        one_sign=OneSign.PLAY,
     )
     inertia_kg_m2: float = parameter(
-        0.02, 0.005, 500.0, "kg m2", "of the cranks behind the gear", starts=(20.0,), held=True
+        0.02,
+        0.005,
+        500.0,
+        "kg m2",
+        "of the cranks behind the gear",
+        starts=(20.0,),
+        held=True,
+        one_sign=OneSign.MASS,
     )
     stiffness_n_m_rad: float = parameter(
-        1e4, 500.0, 1e9, "N m/rad", "of the teeth", starts=(1e7,), held=True
+        1e4,
+        500.0,
+        1e9,
+        "N m/rad",
+        "of the teeth",
+        starts=(1e7,),
+        held=True,
+        one_sign=OneSign.SPRING,
     )
     damping_n_m_s: float = parameter(
-        20.0, 1.0, 1e6, "N m s", "of the teeth", starts=(2e3,), held=True
+        20.0, 1.0, 1e6, "N m s", "of the teeth", starts=(2e3,), held=True, one_sign=OneSign.DAMPING
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -22,8 +22,12 @@ class GuideFriction(Effect):
     title: ClassVar[str] = "Friction of the guides above the dynamometers"
     stage: ClassVar[StageName] = StageName.DRIVE
 
-    friction_n: float = parameter(5.0, 0.0, 50.0, "N", "friction force at each strut")
-    viscous_n_s_m: float = parameter(0.0, 0.0, 200.0, "N s/m", "viscous friction at each strut")
+    friction_n: float = parameter(
+        5.0, 0.0, 50.0, "N", "friction force at each strut", one_sign=OneSign.FRICTION
+    )
+    viscous_n_s_m: float = parameter(
+        0.0, 0.0, 200.0, "N s/m", "viscous friction at each strut", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction as a load of its shaft."""

@@ -78,6 +78,11 @@ class Parameter:
         empty: a whole number, or what hardly shows beside the other parameters.
     resonance
         True for a resonance's frequency: a diagnosis begins among those of the runs, too.
+    least
+        Of one that has either sign but is never 0, such as a length to either side: its smallest
+        size. 0 for all others.
+    one_sign
+        Why no rig has the other sign, or has it less far; empty where both are alike.
     """
 
     name: str
@@ -89,6 +94,34 @@ class Parameter:
     starts: tuple[float, ...] = ()
     held: bool = False
     resonance: bool = False
+    least: float = 0.0
+    one_sign: str = ""
+
+    @property
+    def plausible(self) -> str:
+        """The range in words, without the unit."""
+        if self.least:
+            sides = f"{self.low:.4g} to {-self.least:.4g}", f"{self.least:.4g} to {self.high:.4g}"
+            return " or ".join(sides)
+        return f"{self.low:.4g} to {self.high:.4g}"
+
+
+class OneSign(StrEnum):
+    """Why a parameter has one sign only."""
+
+    AMPLITUDE = "an amplitude: its phase has the sign"
+    COUNT = "a number of things"
+    DAMPING = "damping only takes energy out"
+    FRICTION = "friction only opposes the motion"
+    LENGTH = "a length"
+    LOSS = "a loop only takes energy out"
+    MASS = "a mass, or an inertia"
+    PLAY = "a clearance is open, or there is none"
+    RATE = "a frequency, or a rate"
+    SCATTER = "a standard deviation"
+    SHARE = "a share of a whole"
+    SPRING = "a spring pulls back, or its model would run away"
+    TIME = "time goes one way"
 
 
 def _unit(one: Parameter) -> str:
@@ -105,6 +138,8 @@ def parameter(
     starts: tuple[float, ...] = (),
     held: bool = False,
     resonance: bool = False,
+    least: float = 0.0,
+    one_sign: str = "",
 ) -> Any:
     """Declare a field of an effect, a :class:`Parameter`; its default is the typical value.
 
@@ -121,7 +156,8 @@ def parameter(
             )
     told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
     sought = {"starts": starts, "held": held, "resonance": resonance}
-    return field(default=typical, metadata=told | sought)
+    signs = {"least": least, "one_sign": one_sign}
+    return field(default=typical, metadata=told | sought | signs)
 
 
 @dataclass(frozen=True)
@@ -181,10 +217,10 @@ class Effect(ABC):
     def __post_init__(self) -> None:
         for one in self.parameters():
             value = getattr(self, one.name)
-            if not one.low <= value <= one.high:
+            if not one.low <= value <= one.high or abs(value) < one.least:
                 raise ConfigurationError(
                     f"effect {self.name}: {one.name} = {value:g}{_unit(one)} is outside the "
-                    f"plausible range {one.low:g} to {one.high:g}"
+                    f"plausible range {one.plausible}"
                 )
 
     @classmethod

@@ -24,7 +24,14 @@ class Blockage(Effect):
     title: ClassVar[str] = "Blockage by a narrow tank"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    section_ratio: float = parameter(0.01, 0.0, 0.1, "1", "section of the model over the tank's")
+    section_ratio: float = parameter(
+        0.01,
+        0.0,
+        0.1,
+        "1",
+        "section of the model over the tank's",
+        one_sign="a model only narrows the tank",
+    )
 
     @property
     def factor(self) -> float:

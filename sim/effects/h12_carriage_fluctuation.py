@@ -10,7 +10,7 @@ from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.carriage import Fluctuation
-from sim.effects.effect import Effect, Lines, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.hydrodynamic import per_speed
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.rig import SimulatedRig
@@ -32,8 +32,10 @@ class CarriageFluctuation(Effect):
     # A wave of few periods is a trend, too.
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
 
-    relative: float = parameter(0.003, 0.0, 0.05, "1", "r, of the mean speed")
-    frequency_hz: float = parameter(0.37, 0.005, 50.0, "Hz", "W/(2 pi)")
+    relative: float = parameter(
+        0.003, 0.0, 0.05, "1", "r, of the mean speed", one_sign=OneSign.AMPLITUDE
+    )
+    frequency_hz: float = parameter(0.37, 0.005, 50.0, "Hz", "W/(2 pi)", one_sign=OneSign.RATE)
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "p, at the first sample")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

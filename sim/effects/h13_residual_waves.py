@@ -9,7 +9,16 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.acting import Point
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Lines, Measurement, Signature, StageName, Trace, parameter
+from sim.effects.effect import (
+    Effect,
+    Lines,
+    Measurement,
+    OneSign,
+    Signature,
+    StageName,
+    Trace,
+    parameter,
+)
 from sim.effects.hydrodynamic import with_laws
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.laws import Tone
@@ -37,12 +46,24 @@ class ResidualWaves(Effect):
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
     shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
 
-    force_n: float = parameter(3.0, 0.0, 100.0, "N", "amplitude when the run before has ended")
-    decay_s: float = parameter(200.0, 10.0, 3600.0, "s", "time in which it falls to 1/e", held=True)
-    waited_s: float = parameter(
-        300.0, 0.0, LONGEST_WAIT_S, "s", "since the run before has ended", held=True
+    force_n: float = parameter(
+        3.0, 0.0, 100.0, "N", "amplitude when the run before has ended", one_sign=OneSign.AMPLITUDE
     )
-    frequency_hz: float = parameter(0.63, 0.01, 3.0, "Hz", "of the waves", held=True)
+    decay_s: float = parameter(
+        200.0, 10.0, 3600.0, "s", "time in which it falls to 1/e", held=True, one_sign=OneSign.TIME
+    )
+    waited_s: float = parameter(
+        300.0,
+        0.0,
+        LONGEST_WAIT_S,
+        "s",
+        "since the run before has ended",
+        held=True,
+        one_sign=OneSign.TIME,
+    )
+    frequency_hz: float = parameter(
+        0.63, 0.01, 3.0, "Hz", "of the waves", held=True, one_sign=OneSign.RATE
+    )
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 
     @property

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Lines, Signature, StageName, parameter
+from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
 from sim.laws import Coulomb, ForceLaw, Tone
@@ -38,17 +38,36 @@ class VortexShedding(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     lift_n_s2_m2: float = parameter(
-        0.5, 0.0, 50.0, "N s2/m2", "amplitude at each strut, root 2 of its r.m.s., over U^2"
+        0.5,
+        0.0,
+        50.0,
+        "N s2/m2",
+        "amplitude at each strut, root 2 of its r.m.s., over U^2",
+        one_sign=OneSign.AMPLITUDE,
     )
-    diameter_m: float = parameter(0.04, 0.005, 0.5, "m", "d of a strut")
-    strouhal: float = parameter(0.2, 0.1, 0.35, "1", "St", held=True)
+    diameter_m: float = parameter(0.04, 0.005, 0.5, "m", "d of a strut", one_sign=OneSign.LENGTH)
+    strouhal: float = parameter(0.2, 0.1, 0.35, "1", "St", held=True, one_sign=OneSign.RATE)
     step_n: float = parameter(0.0, -20.0, 20.0, "N", "mean at each strut when it ventilates")
-    ventilation_m_s: float = parameter(1.5, 0.1, 20.0, "m/s", "speed at which that begins")
+    ventilation_m_s: float = parameter(
+        1.5, 0.1, 20.0, "m/s", "speed at which that begins", one_sign="a speed"
+    )
     bandwidth: float = parameter(
-        0.1, 0.0, 0.3, "1", "standard deviation of the band over St U/d", held=True
+        0.1,
+        0.0,
+        0.3,
+        "1",
+        "standard deviation of the band over St U/d",
+        held=True,
+        one_sign=OneSign.SCATTER,
     )
     run_index: float = parameter(
-        0.0, 0.0, _LAST_RUN, "1", "number of the run, which seeds the phases", held=True
+        0.0,
+        0.0,
+        _LAST_RUN,
+        "1",
+        "number of the run, which seeds the phases",
+        held=True,
+        one_sign=OneSign.COUNT,
     )
 
     def at_run(self, run: CampaignRun) -> Self:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Spring
@@ -29,7 +29,7 @@ class DynamicTrim(Effect):
     load_n_s2_m2: float = parameter(2.0, -100.0, 100.0, "N s2/m2", "mean force over U^2")
     k1_n_s2_m3: float = parameter(100.0, -3000.0, 3000.0, "N s2/m3", "stiffness over U^2")
     k2_n_s2_m4: float = parameter(500.0, -3e4, 3e4, "N s2/m4", "its quadratic part over U^2")
-    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these loads, at the set-point's speed, along the hull."""

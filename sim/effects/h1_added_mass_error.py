@@ -25,8 +25,22 @@ class AddedMassError(Effect):
     title: ClassVar[str] = "Added mass other than believed"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    translation: float = parameter(0.1, -0.5, 1.0, "1", "of heave or sway, relative")
-    rotation: float = parameter(0.1, -0.5, 1.0, "1", "of pitch or yaw, relative")
+    translation: float = parameter(
+        0.1,
+        -0.5,
+        1.0,
+        "1",
+        "of heave or sway, relative",
+        one_sign="added mass stays positive: it is short of a belief by less than it may exceed it",
+    )
+    rotation: float = parameter(
+        0.1,
+        -0.5,
+        1.0,
+        "1",
+        "of pitch or yaw, relative",
+        one_sign="added mass stays positive: it is short of a belief by less than it may exceed it",
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this added mass on top of what its water has."""

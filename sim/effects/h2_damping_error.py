@@ -25,8 +25,22 @@ class DampingError(Effect):
     title: ClassVar[str] = "Linear damping other than believed"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    translation: float = parameter(0.2, -0.9, 3.0, "1", "of heave or sway, relative")
-    rotation: float = parameter(0.2, -0.9, 3.0, "1", "of pitch or yaw, relative")
+    translation: float = parameter(
+        0.2,
+        -0.9,
+        3.0,
+        "1",
+        "of heave or sway, relative",
+        one_sign="damping stays positive: it is short of a belief by less than it may exceed it",
+    )
+    rotation: float = parameter(
+        0.2,
+        -0.9,
+        3.0,
+        "1",
+        "of pitch or yaw, relative",
+        one_sign="damping stays positive: it is short of a belief by less than it may exceed it",
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping on top of what its water has."""

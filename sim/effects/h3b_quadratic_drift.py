@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import of_law, with_laws
 from sim.effects.situation import Situation
 from sim.laws import Quadratic
@@ -33,7 +33,12 @@ class QuadraticDrift(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     translation_n_s2_m2: float = parameter(
-        300.0, 0.0, 20000.0, "N s2/m2", "of heave or sway through the water: C_D rho S/2"
+        300.0,
+        0.0,
+        20000.0,
+        "N s2/m2",
+        "of heave or sway through the water: C_D rho S/2",
+        one_sign=OneSign.DAMPING,
     )
     drift_m_s: float = parameter(0.01, -0.3, 0.3, "m/s", "v0, mean velocity across")
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import of_law, with_laws
 from sim.effects.situation import Situation
 from sim.laws import Cubic
@@ -30,9 +30,16 @@ class CubicDamping(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     translation_n_s3_m3: float = parameter(
-        500.0, 0.0, 50000.0, "N s3/m3", "of heave or sway through the water"
+        500.0,
+        0.0,
+        50000.0,
+        "N s3/m3",
+        "of heave or sway through the water",
+        one_sign=OneSign.DAMPING,
     )
-    rotation_n_m_s3: float = parameter(80.0, 0.0, 20000.0, "N m s3", "of pitch or yaw")
+    rotation_n_m_s3: float = parameter(
+        80.0, 0.0, 20000.0, "N m s3", "of pitch or yaw", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Spring
@@ -28,7 +28,7 @@ class NonlinearRestoring(Effect):
 
     k2_n_m2: float = parameter(5000.0, -1e5, 1e5, "N/m2", "quadratic part, in heave")
     k3_n_m3: float = parameter(50000.0, -2e6, 2e6, "N/m3", "cubic part, in heave")
-    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this restoring along the hull."""

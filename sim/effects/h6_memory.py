@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import load, radiation_of
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -25,9 +25,15 @@ class Memory(Effect):
     title: ClassVar[str] = "Memory of the water"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    translation_n_m: float = parameter(200.0, 0.0, 50000.0, "N/m", "K of heave or sway")
-    rotation_n_m_rad: float = parameter(60.0, 0.0, 20000.0, "N m/rad", "K of pitch or yaw")
-    rate_1_s: float = parameter(5.0, 0.1, 100.0, "1/s", "beta, at which it fades")
+    translation_n_m: float = parameter(
+        200.0, 0.0, 50000.0, "N/m", "K of heave or sway", one_sign="waves only carry energy away"
+    )
+    rotation_n_m_rad: float = parameter(
+        60.0, 0.0, 20000.0, "N m/rad", "K of pitch or yaw", one_sign="waves only carry energy away"
+    )
+    rate_1_s: float = parameter(
+        5.0, 0.1, 100.0, "1/s", "beta, at which it fades", one_sign=OneSign.RATE
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this memory, one state for each motion, beside what its water has."""

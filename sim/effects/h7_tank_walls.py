@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import damping_at, load, radiation_of
 from sim.effects.situation import Situation
 from sim.linear import ComplexArray
@@ -32,10 +32,19 @@ class TankWalls(Effect):
     title: ClassVar[str] = "Reflection from the tank's walls"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    breadth_m: float = parameter(4.2, 0.5, 50.0, "m", "of the tank")
-    depth_m: float = parameter(2.5, 0.1, 20.0, "m", "of the water")
-    strength: float = parameter(0.3, 0.0, 3.0, "1", "damping of a mode over open water's there")
-    damping_ratio: float = parameter(0.02, 0.002, 0.3, "1", "of the modes")
+    breadth_m: float = parameter(4.2, 0.5, 50.0, "m", "of the tank", one_sign=OneSign.LENGTH)
+    depth_m: float = parameter(2.5, 0.1, 20.0, "m", "of the water", one_sign=OneSign.LENGTH)
+    strength: float = parameter(
+        0.3,
+        0.0,
+        3.0,
+        "1",
+        "damping of a mode over open water's there",
+        one_sign="waves only carry energy away",
+    )
+    damping_ratio: float = parameter(
+        0.02, 0.002, 0.3, "1", "of the modes", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the modes beside what its water remembers."""

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Exponential
@@ -29,8 +29,10 @@ class SurfaceSuction(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
-    rate_1_m: float = parameter(8.0, 0.5, 60.0, "1/m", "2 k: twice the wave number")
-    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
+    rate_1_m: float = parameter(
+        8.0, 0.5, 60.0, "1/m", "2 k: twice the wave number", one_sign="a wave number"
+    )
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the suction along the hull."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
 from sim.laws import Proximity
@@ -30,8 +30,10 @@ class GroundSuction(Effect):
     stage: ClassVar[StageName] = StageName.MODEL
 
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
-    clearance_m: float = parameter(0.2, 0.01, 10.0, "m", "h, below the keel at rest")
-    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS)
+    clearance_m: float = parameter(
+        0.2, 0.01, 10.0, "m", "h, below the keel at rest", one_sign=OneSign.LENGTH
+    )
+    at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the suction along the hull.

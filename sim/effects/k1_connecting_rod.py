@@ -18,7 +18,9 @@ class ConnectingRod(Effect):
     squared; as inertia it is r times the first harmonic of the force. A guide that misses the
     crank's centre by o adds ``-e (o/L) cos(theta)`` and a third harmonic r^2/8 as large. A yoke
     whose slot is bowed to a radius L moves its strut likewise, so that L may be far longer than any
-    rod: the range ends where no sensor tells the slot from a straight one.
+    rod: the range ends where no sensor tells the slot from a straight one. A rod to the other side
+    of the crank, or a slot that is bowed the other way, has a negative length: the root is then
+    taken off, and the even harmonics change their sign.
     """
 
     code: ClassVar[str] = "K1"
@@ -26,7 +28,14 @@ class ConnectingRod(Effect):
     title: ClassVar[str] = "Crank with a connecting rod of finite length"
     stage: ClassVar[StageName] = StageName.MECHANISM
 
-    rod_length_m: float = parameter(1.5, 0.1, 1e4, "m", "length of the rod, or the slot's radius")
+    rod_length_m: float = parameter(
+        1.5,
+        -1e4,
+        1e4,
+        "m",
+        "length of the rod, or the slot's radius; negative to the other side of the crank",
+        least=0.1,
+    )
     rod_offset_m: float = parameter(
         0.0, -0.05, 0.05, "m", "by how much the rod's guide misses the crank's centre"
     )

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -28,7 +28,9 @@ class JointPlay(Effect):
     stage: ClassVar[StageName] = StageName.MECHANISM
     taken_up: ClassVar[bool] = True
 
-    half_play_m: float = parameter(5e-5, 0.0, 1e-3, "m", "clearance to either side, h")
+    half_play_m: float = parameter(
+        5e-5, 0.0, 1e-3, "m", "clearance to either side, h", one_sign=OneSign.PLAY
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both struts."""

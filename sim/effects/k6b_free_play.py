@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
 from sim.linear import ComplexArray
@@ -34,13 +34,23 @@ class FreePlay(Effect):
     shows_in: ClassVar[tuple[Trace, ...]] = (Trace.STEADY,)
     taken_up: ClassVar[bool] = True
 
-    half_play_m: float = parameter(5e-5, 1e-7, 1e-3, "m", "clearance to either side, h")
-    preload_n: float = parameter(0.0, 0.0, 1000.0, "N", "force that presses the joint to one side")
+    half_play_m: float = parameter(
+        5e-5, 1e-7, 1e-3, "m", "clearance to either side, h", one_sign=OneSign.PLAY
+    )
+    preload_n: float = parameter(
+        0.0, -1000.0, 1000.0, "N", "force that presses the joint to one side, or to the other"
+    )
     stiffness_n_m: float = parameter(
-        2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid", held=True
+        2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid", held=True, one_sign=OneSign.SPRING
     )
     damping_n_s_m: float = parameter(
-        5000.0, 100.0, 5e4, "N s/m", "of a gauge, where it is rigid", held=True
+        5000.0,
+        100.0,
+        5e4,
+        "N s/m",
+        "of a gauge, where it is rigid",
+        held=True,
+        one_sign=OneSign.DAMPING,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
@@ -28,7 +28,12 @@ class GaugeHysteresis(Effect):
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
 
     beta_1_n: float = parameter(
-        2e-6, 0.0, 1e-4, "1/N", "beta of both gauges; 0.05 % of a full scale of 500 N is 2e-6"
+        2e-6,
+        0.0,
+        1e-4,
+        "1/N",
+        "beta of both gauges; 0.05 % of a full scale of 500 N is 2e-6",
+        one_sign=OneSign.LOSS,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

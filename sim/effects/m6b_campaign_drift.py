@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Signature, StageName, Trace, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.measured import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
@@ -37,7 +37,13 @@ class CampaignDrift(Effect):
     aft_n_s: float = parameter(2e-4, -0.01, 0.01, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.01, 0.01, "N/s", "drift of the fore dynamometer")
     since_zero_s: float = parameter(
-        1800.0, _LEAST_S, 1e7, "s", "from taking the zero to the beginning of the run", held=True
+        1800.0,
+        _LEAST_S,
+        1e7,
+        "s",
+        "from taking the zero to the beginning of the run",
+        held=True,
+        one_sign=OneSign.TIME,
     )
 
     def at_run(self, run: CampaignRun) -> Self:

@@ -26,8 +26,22 @@ class Saturation(Effect):
     title: ClassVar[str] = "Saturation of the dynamometers"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
 
-    upper_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest positive reading")
-    lower_n: float = parameter(100.0, 0.1, 10000.0, "N", "largest negative reading, its size")
+    upper_n: float = parameter(
+        100.0,
+        0.1,
+        10000.0,
+        "N",
+        "largest positive reading",
+        one_sign="a limit to either side has its own",
+    )
+    lower_n: float = parameter(
+        100.0,
+        0.1,
+        10000.0,
+        "N",
+        "largest negative reading, its size",
+        one_sign="a limit to either side has its own",
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these limits, or the narrower ones that the gauges have."""

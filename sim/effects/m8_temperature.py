@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.dynamometer import Gauge
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import radiation_of, scaled, through_water
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
@@ -38,12 +38,25 @@ class Temperature(Effect):
 
     rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature", held=True)
     hours: float = parameter(
-        4.0, 0.0, 240.0, "h", "time since it was as in the calibration", held=True
+        4.0,
+        0.0,
+        240.0,
+        "h",
+        "time since it was as in the calibration",
+        held=True,
+        one_sign=OneSign.TIME,
     )
     gain_1_k: float = parameter(2e-4, -2e-3, 2e-3, "1/K", "gain of the gauges")
     zero_n_k: float = parameter(0.05, -1.0, 1.0, "N/K", "zero of the gauges")
     damping_1_k: float = parameter(-3e-3, -0.02, 0.02, "1/K", "damping, by the viscosity")
-    density_1_k: float = parameter(-2e-4, -4e-4, 0.0, "1/K", "density of the water")
+    density_1_k: float = parameter(
+        -2e-4,
+        -4e-4,
+        0.0,
+        "1/K",
+        "density of the water",
+        one_sign="water grows lighter as it warms, above 4 degrees",
+    )
 
     @property
     def rise_k(self) -> float:

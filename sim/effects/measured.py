@@ -37,6 +37,20 @@ def with_force_channels(
     return replace(rig, acquisition=replace(old, force_aft=aft, force_fore=fore))
 
 
+def later(rig: SimulatedRig, delay_s: float) -> SimulatedRig:
+    """Return the rig with all its channels and the photocell's pulses later by as much."""
+    if not delay_s:
+        return rig
+    channels = {
+        line.channel.name: replace(line.digitiser, delay_s=line.digitiser.delay_s + delay_s)
+        for line in rig.acquisition.lines
+    }
+    cell = rig.photocell
+    if cell is not None:
+        cell = replace(cell, latency_s=cell.latency_s + delay_s)
+    return replace(rig, acquisition=replace(rig.acquisition, **channels), photocell=cell)
+
+
 def of_forces(
     situation: Situation, change: Callable[[int, ComplexArray], ComplexArray]
 ) -> Signature:

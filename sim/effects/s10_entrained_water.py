@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.rig import SimulatedRig
 from sim.water.radiation import constant
@@ -24,9 +24,15 @@ class EntrainedWater(Effect):
     title: ClassVar[str] = "Water that sloshes in the model"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    mass_kg: float = parameter(1.5, 0.0, 20.0, "kg", "mass of the water that sloshes")
-    slosh_hz: float = parameter(1.2, 0.1, 10.0, "Hz", "frequency of its sloshing", resonance=True)
-    damping_ratio: float = parameter(0.03, 0.001, 0.5, "1", "of its sloshing, to critical")
+    mass_kg: float = parameter(
+        1.5, 0.0, 20.0, "kg", "mass of the water that sloshes", one_sign=OneSign.MASS
+    )
+    slosh_hz: float = parameter(
+        1.2, 0.1, 10.0, "Hz", "frequency of its sloshing", resonance=True, one_sign=OneSign.RATE
+    )
+    damping_ratio: float = parameter(
+        0.03, 0.001, 0.5, "1", "of its sloshing, to critical", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the sloshing as two more states of the water's memory.

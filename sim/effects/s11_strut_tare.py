@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.laws import Quadratic, Viscous
 from sim.rig import SimulatedRig
@@ -25,9 +25,15 @@ class StrutTare(Effect):
     title: ClassVar[str] = "Struts and brackets below the dynamometers"
     stage: ClassVar[StageName] = StageName.MODEL
 
-    mass_kg: float = parameter(1.0, 0.0, 10.0, "kg", "mass of each strut below its dynamometer")
-    viscous_n_s_m: float = parameter(2.0, 0.0, 50.0, "N s/m", "linear drag of each strut")
-    quadratic_n_s2_m2: float = parameter(5.0, 0.0, 200.0, "N s2/m2", "quadratic drag of each strut")
+    mass_kg: float = parameter(
+        1.0, 0.0, 10.0, "kg", "mass of each strut below its dynamometer", one_sign=OneSign.MASS
+    )
+    viscous_n_s_m: float = parameter(
+        2.0, 0.0, 50.0, "N s/m", "linear drag of each strut", one_sign=OneSign.DAMPING
+    )
+    quadratic_n_s2_m2: float = parameter(
+        5.0, 0.0, 200.0, "N s2/m2", "quadratic drag of each strut", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the struts' mass in the body, and their drag in water."""

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation
 from sim.effects.springs import in_series, yielding_signature
 from sim.rig import SimulatedRig
@@ -25,8 +25,12 @@ class GaugeCompliance(Effect):
     title: ClassVar[str] = "Struts and dynamometers give way"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    stiffness_n_m: float = parameter(5e5, 2e4, 1e8, "N/m", "stiffness of each strut and gauge")
-    damping_n_s_m: float = parameter(200.0, 0.0, 5e3, "N s/m", "its damping")
+    stiffness_n_m: float = parameter(
+        5e5, 2e4, 1e8, "N/m", "stiffness of each strut and gauge", one_sign=OneSign.SPRING
+    )
+    damping_n_s_m: float = parameter(
+        200.0, 0.0, 5e3, "N s/m", "its damping", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig on these springs, in series with those that it has."""

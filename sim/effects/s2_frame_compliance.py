@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation
 from sim.effects.springs import in_series, yielding_signature
 from sim.rig import SimulatedRig
@@ -24,9 +24,15 @@ class FrameCompliance(Effect):
     title: ClassVar[str] = "Carriage or frame gives way"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    stiffness_n_m: float = parameter(5e6, 2e5, 1e9, "N/m", "stiffness of the frame")
-    mass_kg: float = parameter(500.0, 10.0, 5e3, "kg", "what of the frame moves")
-    damping_n_s_m: float = parameter(2e3, 0.0, 1e5, "N s/m", "its damping")
+    stiffness_n_m: float = parameter(
+        5e6, 2e5, 1e9, "N/m", "stiffness of the frame", one_sign=OneSign.SPRING
+    )
+    mass_kg: float = parameter(
+        500.0, 10.0, 5e3, "kg", "what of the frame moves", one_sign=OneSign.MASS
+    )
+    damping_n_s_m: float = parameter(
+        2e3, 0.0, 1e5, "N s/m", "its damping", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig on this frame, in series with the stiffness that it has."""

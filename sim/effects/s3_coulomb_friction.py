@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.laws import Coulomb
 from sim.rig import SimulatedRig
@@ -27,7 +27,9 @@ class CoulombFriction(Effect):
     title: ClassVar[str] = "Coulomb friction below the dynamometer"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    friction_n: float = parameter(0.3, 0.0, 5.0, "N", "friction force at each strut")
+    friction_n: float = parameter(
+        0.3, 0.0, 5.0, "N", "friction force at each strut", one_sign=OneSign.FRICTION
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""

@@ -27,9 +27,21 @@ class StribeckFriction(Effect):
     title: ClassVar[str] = "Friction that is larger near standstill"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    excess_n: float = parameter(0.15, 0.0, 5.0, "N", "static less sliding friction, at each strut")
+    excess_n: float = parameter(
+        0.15,
+        0.0,
+        5.0,
+        "N",
+        "static less sliding friction, at each strut",
+        one_sign="what slides is not held faster than what sticks",
+    )
     stribeck_speed_m_s: float = parameter(
-        0.02, 0.001, 0.2, "m/s", "speed at which 1/e of the excess is left"
+        0.02,
+        0.001,
+        0.2,
+        "m/s",
+        "speed at which 1/e of the excess is left",
+        one_sign="a speed, whichever way",
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

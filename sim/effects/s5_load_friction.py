@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.laws import LoadFriction
 from sim.rig import SimulatedRig
@@ -31,7 +31,9 @@ class LoadDependentFriction(Effect):
     title: ClassVar[str] = "Friction in proportion to the load on a guide"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    friction: float = parameter(0.02, 0.0, 0.3, "1", "coefficient of friction")
+    friction: float = parameter(
+        0.02, 0.0, 0.3, "1", "coefficient of friction", one_sign=OneSign.FRICTION
+    )
     side_load_n: float = parameter(0.0, -500.0, 500.0, "N", "steady load on the guide")
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.laws import Viscous
 from sim.rig import SimulatedRig
@@ -20,7 +20,9 @@ class ViscousGuides(Effect):
     title: ClassVar[str] = "Viscous friction below the dynamometer"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    viscous_n_s_m: float = parameter(2.0, 0.0, 50.0, "N s/m", "at each strut")
+    viscous_n_s_m: float = parameter(
+        2.0, 0.0, 50.0, "N s/m", "at each strut", one_sign=OneSign.DAMPING
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.acting import Acting, Point
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.laws import Coulomb, ForceLaw, RubbingSpring, Spring
 from sim.rig import SimulatedRig
@@ -31,14 +31,25 @@ class Cable(Effect):
     title: ClassVar[str] = "Cable between model and carriage"
     stage: ClassVar[StageName] = StageName.STRUCTURE
 
-    stiffness_n_m: float = parameter(5.0, 0.0, 100.0, "N/m", "stiffness")
-    rubbing_n_m: float = parameter(1.0, 0.0, 50.0, "N/m", "friction per displacement")
-    sliding_n: float = parameter(0.0, 0.0, 20.0, "N", "friction of strands that slide throughout")
+    stiffness_n_m: float = parameter(5.0, 0.0, 100.0, "N/m", "stiffness", one_sign=OneSign.SPRING)
+    rubbing_n_m: float = parameter(
+        1.0, 0.0, 50.0, "N/m", "friction per displacement", one_sign=OneSign.FRICTION
+    )
+    sliding_n: float = parameter(
+        0.0, 0.0, 20.0, "N", "friction of strands that slide throughout", one_sign=OneSign.FRICTION
+    )
     preload_n: float = parameter(0.0, -20.0, 20.0, "N", "force in the middle position")
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")
-    stiffness_n_m3: float = parameter(0.0, 0.0, 1e5, "N/m3", "stiffening")
+    stiffness_n_m3: float = parameter(
+        0.0, 0.0, 1e5, "N/m3", "stiffening", one_sign="a cable grows stiffer as it is drawn taut"
+    )
     at_struts: float = parameter(
-        0.0, 0.0, 1.0, "1", "share that hangs on the struts, half on each; the rest midway"
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share that hangs on the struts, half on each; the rest midway",
+        one_sign=OneSign.SHARE,
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -95,3 +96,16 @@ def test_a_strut_phase_of_many_turns_is_taken_for_degrees() -> None:
 
 def test_a_single_run_says_nothing() -> None:
     assert plausibility_flags([run(0.9, 0.0, {"force_aft": -1e3}, 1.0, 0.3)], BODY) == ()
+
+
+@pytest.mark.parametrize("channel", ["force_aft", "force_fore", "displacement_fore"])
+def test_a_channel_that_is_nothing_throughout_breaks_nothing(channel: str) -> None:
+    assert all(named == channel for _, named in flags(**{channel: 0.0}))
+
+
+@pytest.mark.parametrize("eccentricity_m", [0.0, math.nan])
+def test_a_set_point_that_moves_nothing_says_nothing(eccentricity_m: float) -> None:
+    sound = [run(frequency_hz, 0.0, FACTORS, 1.0, 0.3) for frequency_hz in FREQUENCIES_HZ]
+    still = replace(sound[0], set_point=replace(sound[0].set_point, eccentricity_m=eccentricity_m))
+    assert plausibility_flags([*sound, still], BODY, SPACING_M) == ()
+    assert plausibility_flags([still] * 3, BODY, SPACING_M) == ()

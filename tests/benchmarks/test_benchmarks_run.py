@@ -11,8 +11,8 @@ from benchmarks.outcome import Outcome, judge
 from benchmarks.page import figure, keep, write_page
 
 # Left out: compiling and timing rivals takes longer than all others together, and so does watching
-# browsers in real time, which tests/pmm/console does besides.
-_QUICK = [name for name in NAMES if name not in ("speed", "console")]
+# browsers or the loop in real time, which tests/pmm/console and tests/pmm/run do besides.
+_QUICK = [name for name in NAMES if name not in ("speed", "console", "crowd", "latency")]
 
 
 @pytest.mark.parametrize("name", _QUICK)

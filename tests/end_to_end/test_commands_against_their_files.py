@@ -108,7 +108,8 @@ def test_runs_that_are_not_recorded_yet_are_said(folder: Path) -> None:
 
 
 def test_simulate_writes_a_campaign_folder(folder: Path) -> None:
-    assert sorted(path.name for path in folder.iterdir()) == ["campaign.toml", "heave-1.20.nc"]
+    seen = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
+    assert seen == ["campaign.toml", "heave-1.20.nc"]
     shipped = (SHIPPED / "vertical" / "campaign.toml").read_bytes()
     assert (folder / "campaign.toml").read_bytes() == shipped
     recording = read_recording(folder / "heave-1.20.nc")
@@ -277,6 +278,28 @@ def test_plots_are_written(folder: Path, tmp_path: Path) -> None:
     names = {path.name for path in (tmp_path / "plots").iterdir()}
     kinds = ("gate", "phasors", "spectrum")
     assert names == {f"heave-1.20-{kind}.{end}" for kind in kinds for end in ("svg", "png")}
+
+
+def test_plots_by_two_processes_are_those_of_one(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file that cannot be read is named, in its place, and does not stop the others."""
+    recording = folder / "heave-1.20.nc"
+    other, broken = tmp_path / "other.nc", tmp_path / "broken.nc"
+    other.write_bytes(recording.read_bytes())
+    broken.write_bytes(b"no recording")
+    drawn, texts = [], []
+    for cores in (1, 2):
+        monkeypatch.setattr(pmm.cli.analysing, "cores", lambda cores=cores: cores)
+        plots = tmp_path / f"by-{cores}"
+        done = run("analyse", recording, broken, other, "--channel", "force_aft", "--plot", plots)
+        assert done.exit_code == 1
+        assert done.stderr.count("\n") == done.stderr.count("broken.nc") == 1
+        texts.append(done.stdout)
+        drawn.append({path.name: path.read_bytes() for path in plots.iterdir()})
+    assert len(drawn[0]) == 12
+    assert drawn[0] == drawn[1]
+    assert texts[0] == texts[1]
 
 
 @pytest.mark.parametrize("option", ["--plot", "--save"])

@@ -72,7 +72,8 @@ class _Contract:
         device.close()
 
     def test_a_reset_without_fault_leaves_it_in_order(self, bench: Bench) -> None:
-        bench.cycles(2)
+        bench.rig.stop()  # where a person has to say so: the axis stands
+        bench.until(lambda: not any(one.moving for one in bench.rig.powered()), "rest")
         bench.rig.reset()
         bench.cycles(60)
         assert not bench.rig.faults

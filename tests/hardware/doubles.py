@@ -228,6 +228,7 @@ class Amplifier(Node):
 class PumpedBus(can.BusABC):
     """A bus whose other end are doubles; whoever receives lets them answer."""
 
+    private = True
     networks: ClassVar[dict[str, Network]] = {}
 
     def __init__(self, channel: str, **kwargs: object) -> None:

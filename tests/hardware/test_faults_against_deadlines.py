@@ -90,6 +90,7 @@ def test_an_emergency_stops_all_axes_and_is_latched(running) -> None:
     assert_stopped(rig, drives)
     with pytest.raises(NotReadyError, match="4210"):
         rig.shaft.enable()
+    rig.run_until(lambda: not any(one.moving for one in rig.powered()), 400, "rest")
     rig.reset()
     rig.shaft.enable()
     rig.run_until(lambda: rig.shaft.enabled, 20, "enable")
@@ -116,6 +117,7 @@ def test_a_drive_fault_is_raised_with_its_code_and_stops_the_others(running) -> 
     with pytest.raises(DriveFaultError, match="0x3210"):
         rig.cycle()
     assert_stopped(rig, drives)
+    rig.run_until(lambda: not any(one.moving for one in rig.powered()), 400, "rest")
     rig.reset()
     for _ in range(4):
         rig.cycle()

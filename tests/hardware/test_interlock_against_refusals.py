@@ -39,12 +39,12 @@ def test_the_axes_stay_while_the_shaft_turns_and_move_again_when_it_stands() -> 
         rig.cycle()
         drives[0].velocity = 5000  # it still coasts
         drives[0].commanded = lambda: None
-        drives[0].step = drives[0]._show
-        rig.cycle()
+        for _ in range(5):
+            rig.cycle()
         with pytest.raises(InterlockError):
             rig.phase.move_to(0.1)
         drives[0].velocity = 0
-        rig.cycle()
+        rig.run_until(lambda: not rig.shaft.moving, 5, "rest")
         rig.phase.move_to(0.1)
         rig.run_until(lambda: rig.phase.settled, 50, "move")
         assert rig.phase.reading.value == pytest.approx(0.1, abs=1e-3)
@@ -77,7 +77,7 @@ def test_the_shaft_stays_while_an_axis_moves() -> None:
 
 
 def test_a_manual_axis_is_behind_the_same_interlock() -> None:
-    answers = iter(["0", "30,05"])
+    answers = iter(["0", "0", "30,05"])
     questions = []
 
     def operator(question: str) -> str | None:
@@ -87,6 +87,9 @@ def test_a_manual_axis_is_behind_the_same_interlock() -> None:
     shaft = {"driver": "manual-shaft", "lowest_frequency_hz": 0.1, "highest_frequency_hz": 2.0}
     with open_rig({"shaft": shaft, "eccentricity": MANUAL}, operator) as rig:
         enabled(rig)
+        with pytest.raises(InterlockError, match="shaft turns"):
+            rig.eccentricity.home()
+        rig.run_until(lambda: not rig.shaft.moving, 5, "the shaft stands, says the operator")
         homed(rig, rig.eccentricity)
         rig.eccentricity.move_to(0.03)
         with pytest.raises(InterlockError, match="eccentricity moves"):
@@ -98,7 +101,7 @@ def test_a_manual_axis_is_behind_the_same_interlock() -> None:
         rig.shaft.turn(1.0)
         with pytest.raises(InterlockError):
             rig.eccentricity.move_to(0.02)
-    assert "set the micrometer to 30 mm and read it [mm]" in questions[1]
+    assert "set the micrometer to 30 mm and read it [mm]" in questions[2]
 
 
 @pytest.mark.parametrize("typed", ["x", "", "nan", "35", "-1"])
@@ -119,6 +122,7 @@ def test_the_loop_goes_on_while_the_operator_thinks() -> None:
     tables = {"shaft": SHAFT, "eccentricity": MANUAL}
     with on_bus(tables, lambda n: Drive(n, 1)) as (rig, _):
         assert nobody("?") is None
+        rig.run_until(lambda: not rig.shaft.moving, 10, "rest is seen")
         rig.eccentricity.enable()
         rig.eccentricity.home()
         for _ in range(500):

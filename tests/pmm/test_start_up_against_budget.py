@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HOUSE = Path(__file__).parents[2]
 HELP = "import sys; sys.argv = ['pmm', '--help']; from pmm.cli import main; main()"
 HEAVY = ("numpy", "scipy", "pandas", "xarray", "pydantic", "matplotlib", "rich", "h5py", "h5netcdf")
@@ -20,3 +22,10 @@ def test_help_imports_nothing_heavy() -> None:
     loaded = _run(code).stdout.split()
     assert "pmm.cli.analyse" in loaded
     assert not set(HEAVY) & set(loaded)
+
+
+@pytest.mark.parametrize("job", ["gap_diagnose", "gap_add", "gap_answer"])
+def test_one_thread_is_asked_for_before_the_libraries_are_there(job: str) -> None:
+    loaded = _run(f"import sys, pmm.cli.{job}; print(*sys.modules)").stdout.split()
+    assert f"pmm.cli.{job}" in loaded
+    assert not {"numpy", "scipy"} & set(loaded)

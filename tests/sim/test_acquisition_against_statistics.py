@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.signal import welch
 
 from sim.acquisition import Acquisition, Digitiser
 from sim.chain import Chain
@@ -89,3 +90,15 @@ def test_gauge_has_gain_and_offset() -> None:
     _, out = chain.run(chain.start(1.0, 0), 2, fed)
     assert out["dynamometer_force_aft"] == pytest.approx([2.0, 103.0])
     assert out["dynamometer_force_fore"] == pytest.approx([-1.0, 98.0])
+
+
+def test_a_walk_that_forgets_has_the_spectrum_of_one_pole() -> None:
+    """Welch's estimate from a long record against w² / ((2 pi f)² + (2 pi c)²), two-sided."""
+    rate_hz, walk, corner_hz = 100.0, 0.3, 1.5
+    how = Digitiser(walk_per_sqrt_s=walk, walk_corner_hz=corner_hz)
+    found = record(how, np.zeros(400_000), rate=rate_hz)
+    at_hz, power = welch(found, rate_hz, nperseg=2000, return_onesided=False)
+    for low, high in ((0.1, 0.4), (1.2, 1.8), (4.0, 6.0)):
+        inside = (at_hz > low) & (at_hz < high)
+        told = walk**2 / (2.0 * np.pi) ** 2 / (at_hz[inside] ** 2 + corner_hz**2)
+        assert power[inside].mean() == pytest.approx(told.mean(), rel=0.06)

@@ -75,7 +75,8 @@ def test_a_compiled_law_is_its_array_form(
     instants = Instants(np.array([1.3]), 0.005, np.array([1.0]))
     expected = law_forces(laws, cross_flow, system, ModelMotion(*np.split(row, 4, 1)), instants)
     found = np.zeros((1, 2))
-    law_force(*table_of(laws, cross_flow, system), row, 0, 1.3, 0.005, 1.0, found, found, 0)
+    table = table_of(laws, cross_flow, system)
+    law_force(table.laws, table.cross_flow, row, 0, 1.3, 0.005, 1.0, found, 0)
     np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-12)
 
 

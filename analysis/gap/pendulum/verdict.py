@@ -167,6 +167,11 @@ def told_apart(first: Law, other: Law) -> bool:
     return first.name != other.name and not other.possible and not foretells_better(other, first)
 
 
+def open_laws(laws: Sequence[Law]) -> tuple[Law, ...]:
+    """Return the laws of damping that cannot be told from the one of the best evidence."""
+    return tuple(law for law in laws[1:] if not told_apart(laws[0], law))
+
+
 def foretells_better(one: Law, other: Law) -> bool:
     """Whether a law foretells any withheld swings better than another one by more than chance."""
     gaps = zip(one.withheld, other.withheld, strict=False)
@@ -248,7 +253,20 @@ class KindOfGap:
     @property
     def beyond(self) -> bool:
         """Whether what is left is more than noise, by four standard deviations of its square."""
-        return self.after**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
+        return self._shows(self.after)
+
+    @property
+    def gap(self) -> bool:
+        """The same of the simulation as it is stated."""
+        return self._shows(self.stated)
+
+    @property
+    def out_of_tolerance(self) -> bool:
+        """The same without a cause, what is known within tolerances fitted."""
+        return self._shows(self.before)
+
+    def _shows(self, rms: float) -> bool:
+        return rms**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
 
 
 def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:

@@ -9,20 +9,22 @@ import { Traces } from "./traces.js";
 
 const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
 const finished = new Finished(), coefficients = new Coefficients();
-const FIGURES = 4; // figures change in every fourth frame: nobody reads 25 numbers a second
+const FIGURES = 4; // figures change in every fourth picture: nobody reads 25 numbers a second
+let drawn = 0;
 let holder = "nobody", priority = "", latest = null, due = false, shown = false, ended = false;
 
 function draw() {
   due = false;
-  const frame = latest;
+  const frame = latest, figures = drawn % FIGURES === 0;
   if (!frame) return;
+  drawn += 1;
   traces.mark(frame.opened_s, frame.closed_s);
   traces.draw();
-  readings.show(frame.needles, frame.n % FIGURES === 0);
+  readings.show(frame.needles, figures);
   showState(frame);
   alarms.show(frame);
   showButtons(frame);
-  if (frame.n % FIGURES === 0 || !shown) {
+  if (figures || !shown) {
     shown = true;
     facts.show({ ...frame, priority });
     showProgress(frame, plans.known);
@@ -40,7 +42,7 @@ function soon() {
 function takeFrame(frame) {
   if (latest && frame.run && frame.run !== latest.run) readings.clear();
   latest = frame;
-  traces.add(frame.trace);
+  frame.traces.forEach((one) => traces.add(one));
   soon();
 }
 
@@ -97,7 +99,7 @@ function begin(snapshot) {
   document.title = `${snapshot.hello.rig}: console`;
   readings.begin(snapshot.hello);
   traces.begin(snapshot.hello);
-  traces.add(snapshot.trace);
+  snapshot.traces.forEach((one) => traces.add(one));
   finished.begin(snapshot.hello, snapshot.finished);
   coefficients.take(snapshot.figures);
   alarms.begin(snapshot.notices);

@@ -30,9 +30,9 @@ export class Stream {
 
   closed(event) {
     this.remember();
-    this.handlers.lost(event.code === 4001
-      ? "This session was opened in another window; reload to come back."
-      : "What is shown is old. The rig runs on; this page tries to come back.");
+    const says = { 4001: "This session was opened in another window; reload to come back.", 1013: event.reason };
+    this.handlers.lost(says[event.code]
+      ?? "What is shown is old. The rig runs on; this page tries to come back.");
     if (event.code === 4001) return;
     this.askAgain();
     setTimeout(() => this.open(), this.wait);

@@ -9,6 +9,7 @@ from pmm.gap.scoring.tables import tables
 from pmm.report.inline import inline_svg
 from pmm.report.style import render
 from pmm.report.tabulate import versions
+from pmm.whole_file import write_whole
 
 
 def write_page(score: Score, path: Path, *, title: str, command: str) -> None:
@@ -43,7 +44,7 @@ def write_page(score: Score, path: Path, *, title: str, command: str) -> None:
         versions=versions(),
     )
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
 
 
 def _style() -> str:

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.coefficients.campaign import Request, campaign_coefficients
-from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER, QUASI, STATIC_DRIFT
-from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY
+from analysis.coefficients.campaign_nonlinear import QUASI, STATIC_DRIFT
+from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import with_dimensions, without_dimensions
 from analysis.coefficients.cycle import Cycle
@@ -94,23 +94,22 @@ def test_surge_and_form_of_a_campaign(horizontal: CampaignCoefficients) -> None:
     for name, put_in in SURGE_TRUTH.items():
         for k in horizontal.rows(name):
             assert horizontal.values[k] == pytest.approx(put_in, abs=4 * horizontal.half_widths[k])
-    assert [one.forms[0] for one in horizontal.choices] == ["cubic"] * 4
+    assert [one.fitted for one in horizontal.choices] == ["cubic"] * 6  # two of them of static runs
     assert {one.verdict for one in horizontal.choices} <= {"cubic", "not separable"}
 
 
 def test_linear_coefficients_over_amplitude_show_the_cubic_term(
     horizontal: CampaignCoefficients,
 ) -> None:
-    """Y_v by amplitude grows with 3/4 Y_vvv V^2; neighbouring amplitudes are said to differ."""
+    """Y_v by amplitude grows with 3/4 Y_vvv V^2; that is no disagreement between the runs."""
     for k in horizontal.rows("Y_v", method=LINEAR):
         entry = horizontal.entries[k]
         if not any(run.startswith("mixed") for run in entry.runs):
             pace = 2.0 * math.pi * entry.frequency_hz * entry.translation_amplitude_m
             expected = -120.0 - 0.75 * 900.0 * pace**2
             assert horizontal.values[k] == pytest.approx(expected, rel=0.06)
-    told = [c for c in horizontal.checks if c.kind == "two tests" and c.name == "Y_v"]
-    assert told
-    assert not any(one.agrees for one in told)
+    assert not [c for c in horizontal.checks if c.kind == "two tests"]
+    assert all(one.agrees for one in horizontal.checks)
 
 
 def test_static_drift_agrees_with_pure_sway(horizontal: CampaignCoefficients) -> None:
@@ -124,7 +123,7 @@ def test_static_drift_agrees_with_pure_sway(horizontal: CampaignCoefficients) ->
 def test_single_runs_are_held_against_all_together(horizontal: CampaignCoefficients) -> None:
     told = [c for c in horizontal.checks if c.kind == "single and multiple runs"]
     assert len(told) > 20
-    assert np.mean([one.agrees for one in told]) > 0.8
+    assert all(one.agrees for one in told)
 
 
 @pytest.mark.parametrize("kind", ["prime", "mmg"])

@@ -53,7 +53,7 @@ def campaign(*, drawn: bool = True) -> CampaignCoefficients:
         choices=(
             FormChoice(
                 "force", ("a", "b"), ("cubic", "quadratic"), (3, 3), (4.0, 9.5), (10.0, math.inf),
-                (0.9, 0.1), 1.0, "not separable", 9.0, "take a larger amplitude",
+                (0.9, 0.1), 1.0, "not separable", "linear", 9.0, "take a larger amplitude",
             ),
         ),
         checks=(

@@ -13,6 +13,7 @@ from analysis.gap.noise import pooled
 from analysis.gap.observe import observe
 from analysis.gap.priors import Priors
 from analysis.readers.dataset import from_dataset
+from analysis.resolver.choice import ReferenceChoice
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.applied import switch_on
@@ -32,15 +33,27 @@ POINTS = (
 
 
 def record(
-    rig: SimulatedRig, effects: Sequence[Effect], seed: int, points: Sequence[SetPoint] = POINTS
+    rig: SimulatedRig,
+    effects: Sequence[Effect],
+    seed: int,
+    points: Sequence[SetPoint] = POINTS,
+    phase: str | None = None,
 ) -> tuple[GapRun, ...]:
     """Simulate and observe a campaign of eight periods a run, its pulses scattered as usual."""
     every = (TriggerJitter(Priors().pulse_scatter_rad), *effects)
-    return tuple(one_run(rig, every, seed, number, point) for number, point in enumerate(points))
+    told = ReferenceChoice(channel=phase)
+    return tuple(
+        one_run(rig, every, seed, number, point, told) for number, point in enumerate(points)
+    )
 
 
 def one_run(
-    rig: SimulatedRig, effects: Sequence[Effect], seed: int, number: int, point: SetPoint
+    rig: SimulatedRig,
+    effects: Sequence[Effect],
+    seed: int,
+    number: int,
+    point: SetPoint,
+    told: ReferenceChoice = ReferenceChoice(),
 ) -> GapRun:
     place = CampaignRun(number, 400.0 * number, 300.0 if number else 0.0, None)
     changed, really = switch_on(effects, rig, point, place)
@@ -52,7 +65,7 @@ def one_run(
         seed=1000 * seed + number,
         name=f"r{number}",
     )
-    seen = observe(replace(from_dataset(dataset), set_point=point))
+    seen = observe(replace(from_dataset(dataset), set_point=point), told)
     periods = seen.analysis.stretch.period_count
     return GapRun(f"r{number}", point, place, seen.observation, periods, 64.0, seen.lead_s)
 

@@ -16,7 +16,7 @@ from analysis.gap.look import Looked
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, proposals
 from analysis.gap.screen import worth_a_look
-from analysis.gap.search import fitted
+from analysis.gap.search import Engine, fitted
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from sim.effects.catalogue import catalogue, find, load_file
@@ -85,7 +85,7 @@ def test_what_is_costly_has_to_promise_more(
     leaders = [Looked(one, begun(problem, find(one)), 9.0) for one in ("coulomb-friction", "cable")]
     for kind in both(name, tmp_path):
         seen = [*leaders, Looked(kind.name, begun(problem, kind), 1.0)]
-        names = [one.names for one in fitted(problem, seen, 0.0, None)]
+        names = [one.names for one in fitted(problem, seen, 0.0, Engine())]
         assert ((kind.name,) not in names) is costs
 
 

@@ -5,11 +5,12 @@ import pytest
 
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.fit import Problem, most_probable
-from analysis.gap.forward import DRAWS, Simulator, grown
+from analysis.gap.forward import DRAWS, Simulator
 from analysis.gap.free import columns, free_numbers
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.look import look
 from analysis.gap.noise import pooled
+from analysis.gap.powers import grown
 from analysis.gap.priors import Priors
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.rig import SimulatedRig

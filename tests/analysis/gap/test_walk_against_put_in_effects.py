@@ -141,7 +141,7 @@ def test_a_force_as_phase_reference_is_that_of_the_fed_chain(rig: SimulatedRig) 
     lines = replace(rig.acquisition, displacement_aft=None, displacement_fore=None)
     blind = replace(rig, photocell=None, acquisition=lines)
     points = [one for one in POINTS if not one.strut_phase_rad]
-    runs = record(blind, [build(RIPPLE)], 44, points)
+    runs = record(blind, [build(RIPPLE)], 44, points, FORCES[0])
     found = walk(problem_of(blind, runs, FORCES[0]))
     assert beyond(found)[FORCE]
     assert not beyond(found)[FORCE_BY_SHAFT]

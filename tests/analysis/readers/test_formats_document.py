@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.readers import ColumnMap, from_dataset, read_recording
 from analysis.readers.photocell import read_edges
 from hardware.description import dataset as schema
 from hardware.description.channels import Channel
+from hardware.description.flags import DAMAGED
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import unit
+from pmm.plan.simulated_rig import CODE as SIMULATED_DIFFERS
 
 ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
@@ -92,16 +95,22 @@ def test_flag_codes_are_those_of_the_code() -> None:
     used = set(re.findall(rf'Flag\(\s*"(\w+)",\s*{severity}', text)) | {
         "time_rounded",
         "time_jitter",
+        DAMAGED,
     }
     assert {row[0].strip("`") for row in cells("Flags")} == used
 
 
 def test_flag_codes_of_reference_and_gate_are_those_of_the_code() -> None:
-    """Every code that the resolver can give is in a table, and no other."""
+    """Every code of the resolver and of a recorded run is in a table, and no other."""
     sources = [*(ROOT / "analysis" / "resolver").glob("*.py"), ROOT / "sim" / "run.py"]
     text = "".join(path.read_text(encoding="utf-8") for path in sources)
     used = set(re.findall(r'Flag\(\s*"([\w-]+)"', text))
     assert len(re.findall(r"\bFlag\(", text)) == len(re.findall(r'\bFlag\(\s*"', text))
+    recorded = (ROOT / "pmm" / "run" / "measurement.py").read_text(encoding="utf-8")
+    assert "force_far" in re.findall(r'note\("([\w-]+)"', recorded)
+    door = (ROOT / "pmm" / "campaign_recording.py").read_text(encoding="utf-8")
+    used |= {"force_far", SIMULATED_DIFFERS, OWN_MODEL}
+    used |= set(re.findall(r'Flag\(\s*"([\w-]+)"', door))
     assert {row[0].strip("`") for row in cells("Flags of reference and gate", 5)} == used
 
 

@@ -138,7 +138,7 @@ def test_another_ending(tmp_path: Path) -> None:
 
 
 def test_no_such_folder(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match="cannot write the recording"):
+    with pytest.raises(DataError, match="the recording is not written"):
         write_recording(example(), tmp_path / "none" / "run.nc")
 
 

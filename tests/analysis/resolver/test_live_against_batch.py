@@ -1,12 +1,14 @@
 """The live resolver's final readings are the batch's, however samples and pulses arrive."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.readers.conditioning import without_spikes
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
@@ -304,3 +306,35 @@ def test_missing_samples_cost_their_periods_and_no_more(periods: int) -> None:
         ours[-3:],
         [resolve(record, sums[k : k + periods]) for k in range(9 - periods - 3, 9 - periods)],
     )
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(st.integers(1, 200), min_size=1, max_size=6),
+    st.lists(st.floats(-0.9, 0.3), min_size=1, max_size=5),
+    st.sampled_from([1, 2, 8]),
+    st.integers(170, 800),
+    st.integers(1, 3),
+    st.sampled_from([-50.0, 1e4]),
+)
+def test_a_spike_is_taken_out_of_both(
+    blocks: list[int],
+    delays: list[float],
+    periods: int,
+    at: int,
+    length: int,
+    size: float,
+) -> None:
+    """Wherever it stands, on a period's edge too, and however the samples arrive."""
+    record = run()
+    spoilt = np.array(record.samples[:, 0:COUNT])
+    spoilt[1, at : at + length] += size
+    record = replace(record, samples=spoilt)
+    whole = without_spikes(record)
+    assert [flag.code for flag in whole.flags] == ["spike"]
+    live = LiveResolver(record.channels, RATE_HZ, periods=periods)
+    same(feed(live, record, EDGES, blocks, delays), list(batch(whole, EDGES, periods)))
+    (taken,) = live.spikes()
+    assert (taken.row, taken.number) == (1, at)
+    assert taken.spike.size == pytest.approx(size, abs=3.0)
+    assert live.spikes() == []

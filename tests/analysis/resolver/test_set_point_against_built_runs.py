@@ -15,6 +15,7 @@ from hardware.description.flags import Flag
 from hardware.description.setpoint import SetPoint
 
 TIME_S = np.arange(4000) / 100.0
+QUARTER = np.pi / 2.0  # the fore strut's cosine, ahead of the aft one's sine
 NAMES = ("displacement_aft", "displacement_fore", "force_aft")
 
 
@@ -31,32 +32,46 @@ def found(recording: Recording, code: str, **choice: float) -> list[Flag]:
 
 
 def test_a_run_that_did_what_it_was_told_is_not_flagged() -> None:
-    assert not found(run(SetPoint(0.83, 0.02)), "set_point_differs")
-    assert not found(run(SetPoint(0.825, 0.0205)), "set_point_differs")
+    assert not found(run(SetPoint(0.83, 0.02, QUARTER)), "set_point_differs")
+    assert not found(run(SetPoint(0.825, 0.0205, QUARTER)), "set_point_differs")
     assert not found(run(None), "set_point_differs")
 
 
 def test_another_frequency_is_named_with_both_values() -> None:
-    (flag,) = found(run(SetPoint(0.8, 0.02)), "set_point_differs")
+    (flag,) = found(run(SetPoint(0.8, 0.02, QUARTER)), "set_point_differs")
     assert "frequency is 0.8 Hz, found are 0.83 Hz, +3.8 % (limit 1 %)" in flag.message
     assert (flag.severity, flag.channel) == ("warning", None)
 
 
 def test_another_eccentricity_is_named_for_each_strut_reference_or_not() -> None:
-    flags = found(run(SetPoint(0.83, 0.03)), "set_point_differs")
+    flags = found(run(SetPoint(0.83, 0.03, QUARTER)), "set_point_differs")
     assert [flag.channel for flag in flags] == ["displacement_aft", "displacement_fore"]
     assert all("is 30 mm, found are 20 mm, -33.3 % (limit 5 %)" in flag.message for flag in flags)
 
 
+@pytest.mark.parametrize("told_rad", [0.0, -QUARTER, np.pi, QUARTER + 0.06])
+def test_another_strut_phase_is_named(told_rad: float) -> None:
+    (flag,) = found(run(SetPoint(0.83, 0.02, told_rad)), "set_point_differs")
+    told, seen = flag.message.split("phase is ")[1].split(" deg, found are ")
+    assert float(told) == pytest.approx(np.degrees(told_rad), abs=0.1)
+    off = float(seen.split(" deg")[0]) - 90.0
+    assert (off + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_strut_phase_as_set_is_not_flagged_whatever_full_turns() -> None:
+    for told_rad in (QUARTER - 0.04, QUARTER + 2.0 * np.pi, QUARTER - 2.0 * np.pi):
+        assert not found(run(SetPoint(0.83, 0.02, told_rad)), "set_point_differs")
+
+
 def test_a_displacement_of_unknown_unit_is_not_compared() -> None:
-    recording = run(SetPoint(0.83, 0.03))
+    recording = run(SetPoint(0.83, 0.03, QUARTER))
     plain = tuple(Channel(name) for name in NAMES)
     assert not found(replace(recording, channels=plain), "set_point_differs")
 
 
 def test_a_displacement_that_is_not_resolved_is_compared_all_the_same() -> None:
     chosen = Settings(channels=("force_aft",))
-    flags = analyse(run(SetPoint(0.83, 0.03)), settings=chosen).flags
+    flags = analyse(run(SetPoint(0.83, 0.03, QUARTER)), settings=chosen).flags
     assert sum(flag.code == "set_point_differs" for flag in flags) == 2
 
 

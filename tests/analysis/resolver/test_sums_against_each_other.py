@@ -1,4 +1,8 @@
-"""Every way to sum gives the same: compiled, lazily read, at the ends; and what must be refused."""
+"""Every way to sum gives the same: in threads, lazily read, at the ends; and what must be refused.
+
+The oracle of the quick sums is the general way, which takes a sine and a cosine of each sample and
+order and sums the basis itself instead of a series in closed form.
+"""
 
 import numpy as np
 import pytest
@@ -7,11 +11,13 @@ from hypothesis import strategies as st
 
 from analysis.recording import Recording
 from analysis.resolver import sums as sums_module
-from analysis.resolver.compiled import available
 from analysis.resolver.estimate import resolve, solve_periods
+from analysis.resolver.general import sum_any
+from analysis.resolver.inside import ROW
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import PhaseReference, ReferenceSource, from_frequency
-from analysis.resolver.sums import PeriodSums, period_sums
+from analysis.resolver.straight import Gates
+from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.resolver.signals import FloatArray, recording, series
 
@@ -40,28 +46,122 @@ class Lazy:
         return self.values[rows, first:last].copy()
 
 
-def same(one: PeriodSums, other: PeriodSums, tolerance: float = 1e-11) -> None:
+def encoder(reference: PhaseReference) -> PhaseReference:
+    """Return a reference with knots within the periods, as an encoder gives them."""
+    knots = reference.cycles[0] + np.arange(0.0, 44.0, 0.1)
+    times = reference.times_at(knots) + 1e-3 * np.sin(2.0 * np.pi * knots)
+    return PhaseReference(ReferenceSource.ENCODER, times, knots)
+
+
+def exactly(one: PeriodSums, other: PeriodSums) -> None:
     for name in ("gram", "moment", "ramp"):
-        exact = getattr(other, name)
-        assert getattr(one, name) == pytest.approx(exact, abs=tolerance * np.abs(exact).max())
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes(), name
 
 
-@pytest.mark.skipif(not available(), reason="numba is not installed")
+def same(one: PeriodSums, other: PeriodSums, tolerance: float = 1e-11) -> None:
+    near(one, (other.gram, other.moment, other.ramp), tolerance)
+
+
+def near(one: PeriodSums, exact: tuple[FloatArray, ...], tolerance: float = 1e-11) -> None:
+    for found, wanted in zip((one.gram, one.moment, one.ramp), exact, strict=True):
+        assert found == pytest.approx(wanted, abs=tolerance * np.abs(wanted).max())
+
+
+def plainly(
+    run: Recording, reference: PhaseReference, harmonics: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Sum with a sine and a cosine of every sample; each period in its own straight line."""
+    cycles = whole_periods(run, reference)
+    numbers = np.clip(run.sample_number(reference.times_at(cycles)), 0.0, run.sample_count - 1.0)
+    gates = Gates(numbers[:-1], numbers[1:], cycles[:-1], cycles[1:])
+    orders = np.arange(1.0, harmonics + 1.0)
+    found = []
+    for k in range(len(cycles) - 1):
+        gate = gates[slice(k, k + 1)]
+        samples = run.samples[:, 0 : run.sample_count]
+        found.append(sum_any(samples, gate, gate.cycles_of_first, orders))
+    gram, moment, ramp = (np.stack(part) for part in zip(*found, strict=True))
+    return gram, moment, ramp / run.sample_rate_hz
+
+
 @pytest.mark.parametrize("harmonics", [1, 3, 12])
-@pytest.mark.parametrize("rate_hz", [100.0, 3000.0])
-def test_compiled_sums_are_those_of_numpy(harmonics: int, rate_hz: float) -> None:
-    """At 3000 samples a period too: more than fit one run of the compiled code."""
-    run = recording(np.repeat(VALUES, int(rate_hz / 100.0), axis=1)[:, :12_000], rate_hz)
-    reference = from_photocell(EDGES[run.end_s > EDGES])
-    fast = period_sums(run, reference, harmonics, compiled=True)
-    same(fast, period_sums(run, reference, harmonics, compiled=False))
-
-
-@pytest.mark.skipif(not available(), reason="numba is not installed")
-def test_compiled_sums_take_rows_that_are_not_contiguous() -> None:
-    run = recording(np.asfortranarray(VALUES), RATE_HZ)
+@pytest.mark.parametrize("times", [1, 30])
+@pytest.mark.parametrize("channels", [1, 4])
+def test_quick_sums_against_a_sine_of_every_sample(
+    harmonics: int, times: int, channels: int
+) -> None:
+    """Periods of 98 samples, less than a row of the quick sums, and of 2940, several rows."""
+    values = np.repeat(VALUES[:channels], times, axis=1)
+    run = recording(values, times * RATE_HZ)
     reference = from_photocell(EDGES)
-    same(period_sums(run, reference, compiled=True), period_sums(run, reference, compiled=False))
+    near(period_sums(run, reference, harmonics), plainly(run, reference, harmonics))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(20, 4 * ROW), st.integers(1, 4), st.floats(0.0, 0.999))
+def test_quick_sums_at_any_length_of_a_period(
+    samples: int, harmonics: int, opening_cycle: float
+) -> None:
+    """Whole rows with nothing over, one sample over, one missing, and all in between."""
+    run = recording(VALUES[:2, : 3 * samples], RATE_HZ)
+    reference = from_frequency(RATE_HZ / samples, 0.0, run.end_s, 2.0 * np.pi * opening_cycle)
+    near(period_sums(run, reference, harmonics), plainly(run, reference, harmonics))
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(20, 6 * ROW),
+    st.lists(st.integers(0, 2 * ROW), min_size=1, max_size=8),
+    st.integers(0, 49),
+)
+def test_quick_sums_of_periods_of_unlike_lengths(least: int, more: list[int], missing: int) -> None:
+    """Neighbours that are summed together, and apart; a missing sample is its own periods' only."""
+    edges_s = (3.3 + np.cumsum([0, *(least + np.array(more))])) / RATE_HZ
+    values = np.tile(VALUES[:2], 4)[:, : int(edges_s[-1] * RATE_HZ) + 5]
+    values[1, missing * values.shape[1] // 50] = np.nan
+    run = recording(values, RATE_HZ)
+    knots = np.arange(float(len(edges_s)))
+    reference = PhaseReference(ReferenceSource.ENCODER, edges_s, knots)
+    sums, exact = period_sums(run, reference), plainly(run, reference, 3)
+    for found, wanted in zip((sums.gram, sums.moment, sums.ramp), exact, strict=True):
+        near = pytest.approx(wanted, abs=1e-11 * np.nanmax(np.abs(wanted)), nan_ok=True)
+        assert found == near
+
+
+def test_quick_sums_take_samples_that_are_not_contiguous() -> None:
+    run, reference = recording(np.asfortranarray(VALUES), RATE_HZ), from_photocell(EDGES)
+    exactly(period_sums(run, reference), period_sums(recording(VALUES, RATE_HZ), reference))
+
+
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize("at_once", [40, 700, 200_000])
+def test_any_number_of_threads_gives_the_same_bits(
+    bent: bool, at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where fewer threads than stretches, or more, share the work."""
+    monkeypatch.setattr(sums_module, "_STRETCH_SAMPLES", at_once)
+    gap = VALUES.copy()
+    gap[1, 2345] = np.nan
+    run, reference = recording(gap, RATE_HZ), from_photocell(EDGES)
+    if bent:
+        reference = encoder(reference)
+    alone = period_sums(run, reference, threads=1)
+    for threads in (2, 4, 100):
+        exactly(period_sums(run, reference, threads=threads), alone)
+
+
+def test_an_error_in_a_thread_reaches_who_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Damaged(Lazy):
+        def __getitem__(self, key: tuple[slice, slice]) -> FloatArray:
+            if (key[1].start or 0) > 2000:
+                raise DataError("damaged.nc: the file has changed since it was opened")
+            return super().__getitem__(key)
+
+    monkeypatch.setattr(sums_module, "_STRETCH_SAMPLES", 300)
+    run = recording(VALUES, RATE_HZ)
+    read = Recording("damaged", run.channels, Damaged(VALUES), RATE_HZ)
+    with pytest.raises(DataError, match="has changed"):
+        period_sums(read, from_photocell(EDGES), threads=3)
 
 
 @pytest.mark.parametrize("at_once", [300, 1000, 200_000])
@@ -69,15 +169,13 @@ def test_compiled_sums_take_rows_that_are_not_contiguous() -> None:
 def test_samples_read_lazily_give_the_same(
     at_once: int, bent: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sums_module, "_READ_SAMPLES", at_once)
+    monkeypatch.setattr(sums_module, "_STRETCH_SAMPLES", at_once)
     lazy, run = Lazy(VALUES), recording(VALUES, RATE_HZ)
     reference = from_photocell(EDGES)
-    if bent:  # knots within the periods, as an encoder gives them
-        knots = reference.cycles[0] + np.arange(0.0, 44.0, 0.1)
-        times = reference.times_at(knots) + 1e-3 * np.sin(2.0 * np.pi * knots)
-        reference = PhaseReference(ReferenceSource.ENCODER, times, knots)
+    if bent:
+        reference = encoder(reference)
     read = Recording("lazy", run.channels, lazy, RATE_HZ)
-    same(period_sums(read, reference), period_sums(run, reference))
+    exactly(period_sums(read, reference), period_sums(run, reference))
     asked = np.array(lazy.asked)
     assert (asked[:, 1] - asked[:, 0]).max() <= at_once + 10
     # All is read once, but for the few samples that two neighbouring stretches share.
@@ -85,7 +183,7 @@ def test_samples_read_lazily_give_the_same(
 
 
 def test_a_period_longer_than_what_is_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sums_module, "_READ_SAMPLES", 40)
+    monkeypatch.setattr(sums_module, "_STRETCH_SAMPLES", 40)
     run = recording(VALUES, RATE_HZ)
     read = Recording("lazy", run.channels, Lazy(VALUES), RATE_HZ)
     reference = from_photocell(EDGES)

@@ -174,8 +174,9 @@ def test_files_hold_the_same_numbers(campaign: Path, tmp_path: Path) -> None:
 def test_tables_for_people_name_their_system(campaign: Path) -> None:
     result = run(campaign)
     assert result.exit_code == 0
-    assert "linear (dimensional)" in result.output
-    assert "intervals hold 95 %" in result.output
+    assert "Recommended values: dimensional" in result.output
+    assert "Alternatives, linear: dimensional" in result.output
+    assert "Intervals hold the value with 95 %" in result.output
     assert "Z_wdot" in result.output
 
 

@@ -56,7 +56,7 @@ def test_a_recorded_campaign_gives_the_simulated_hull(tmp_path: Path) -> None:
     (tmp_path / "plan.toml").write_text(plan, encoding="utf-8")
     made = pmm("run", tmp_path / "plan.toml", "--output", tmp_path / "c", "--json")
     assert made.returncode == 0, made.stderr
-    water = vertical_rig().water  # simulated.toml: plane = "vertical"
+    water = vertical_rig().water  # as rig.toml has it
     for inertia in ("model", "dry"):
         done = pmm("coefficients", tmp_path / "c", "--inertia", inertia, "--json")
         assert done.returncode == 0, done.stderr

@@ -1,14 +1,12 @@
 """Drift, tow and yaw with drift: plan, ``pmm run`` on simulated devices, ``pmm coefficients``."""
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hardware.description.oscillator import HORIZONTAL_1963
 from tests.pmm.coefficients.test_recorded_campaign_against_known_rig import pmm
 from tests.sim.devices.benches import ROOT
 
@@ -58,18 +56,12 @@ drifts_deg = [-6.0, 6.0]
 SIMULATED = """
 rig = "rig.toml"
 seed = 5
-[simulated]
-oscillator = { preset }
-body = { mass_kg = 70.0, inertia_kg_m2 = 27.5, cg_x_m = -0.02, cg_z_m = 0.02 }
-[simulated.water]
-added_mass = [[62.0, 2.0], [2.0, 18.0]]
-damping = [[120.0, -15.0], [40.0, 35.0]]
-[simulated.surge]
+[surge]
 x_uu = -8.0
 x_vv = -60.0
 x_vr = 45.0
 x_rr = -8.0
-[simulated.acquisition]
+[acquisition]
 shaft_angle = { resolution = 9.587379924285257e-5 }
 displacement_aft = { noise_rms = 2e-5 }
 displacement_fore = { noise_rms = 2e-5 }
@@ -91,18 +83,9 @@ def folder_of(tmp_path: Path) -> Path:
     """The example's rig with a surge gauge, a plan with drift, and the truth behind its devices."""
     rig = (ROOT / "examples" / "horizontal" / "rig.toml").read_text(encoding="utf-8")
     (tmp_path / "rig.toml").write_text(rig + GAUGE, encoding="utf-8")
-    keys = {k: v for k, v in asdict(HORIZONTAL_1963).items() if v is not None}
-    written = ", ".join(f"{k} = {toml_of(v)}" for k, v in keys.items())
-    text = SIMULATED.replace("{ preset }", f"{{ {written} }}")
-    (tmp_path / "simulated.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "simulated.toml").write_text(SIMULATED, encoding="utf-8")
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf-8")
     return tmp_path
-
-
-def toml_of(value: object) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {toml_of(v)}" for k, v in value.items()) + " }"
-    return json.dumps(value)
 
 
 def put_in(row: dict[str, Any]) -> float:

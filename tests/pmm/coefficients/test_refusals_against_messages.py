@@ -164,7 +164,14 @@ def test_a_run_left_out_is_said_to_be(tmp_path: Path) -> None:
     (flag,) = [
         one for one in json.loads(result.stdout)["left_out"] if one["code"] == "run_left_out"
     ]
-    assert flag["channel"] == "one-0.9-20"
+    assert flag["runs"] == ["one-0.9-20"]
+
+
+def test_a_misspelt_run_to_leave_out_is_refused_with_the_nearest(tmp_path: Path) -> None:
+    vertical_campaign(tmp_path, (0.6, 0.9), only=1)
+    result = run(tmp_path, "--leave-out", "one-0.9-02")
+    assert result.exit_code == 2
+    assert "no run 'one-0.9-02'; did you mean 'one-0.9-20'?" in result.stderr
 
 
 def test_a_tow_without_zero_runs(tmp_path: Path) -> None:

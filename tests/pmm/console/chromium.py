@@ -81,16 +81,17 @@ def console(rig: Path, output: Path, *options: str) -> Iterator[Console]:
     command = [sys.executable, str(COMMAND), "console", str(rig), "--output", str(output)]
     command += ["--port", "0", *options]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"}
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
+    # Unbuffered: what a buffer holds beside the first line would be lost to communicate().
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, bufsize=0, env=environment)
     try:
         assert process.stderr is not None
-        line = process.stderr.readline()
+        line = process.stderr.readline().decode()
         found = re.search(r"https?://\S+", line)
-        assert found, line + process.stderr.read()
+        assert found, line + process.stderr.read().decode()
         one = Console(found.group(), output, process.pid)
         yield one
         process.send_signal(signal.SIGINT)
-        one.said = process.communicate(timeout=30)[1]
+        one.said = process.communicate(timeout=30)[1].decode()
         assert process.returncode == 0, one.said
     finally:
         if process.poll() is None:

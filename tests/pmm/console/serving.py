@@ -13,7 +13,8 @@ from starlette.testclient import TestClient
 
 from pmm.console.app import application
 from pmm.console.app_settings import Settings
-from pmm.console.messages import Order, Reply
+from pmm.console.messages import Order, OrderKind, Reply
+from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "vertical"
@@ -45,8 +46,12 @@ class Served:
         return answer.status_code, answer.json() if "json" in kind else {"error": answer.text}
 
 
-def _loop(connection: Connection, orders: list[Order], end: threading.Event) -> None:
+def _loop(
+    connection: Connection, quick_stop: QuickStop, orders: list[Order], end: threading.Event
+) -> None:
     while not end.is_set():
+        if quick_stop.take():
+            orders.append(Order(0, OrderKind.COMMAND, "quick stop"))
         if connection.poll(0.02):
             order = connection.recv()
             orders.append(order)
@@ -69,11 +74,12 @@ def served(
         log_folder=folder,
         door=Door(host, PORT, token),
     )
+    quick_stop = QuickStop()
     orders: list[Order] = []
     end, ended = threading.Event(), threading.Event()
-    thread = threading.Thread(target=_loop, args=(ours, orders, end))
+    thread = threading.Thread(target=_loop, args=(ours, quick_stop, orders, end))
     thread.start()
-    app = application(settings, theirs, ended.set)
+    app = application(settings, theirs, quick_stop, ended.set)
     try:
         with TestClient(app, base_url=origin, client=("127.0.0.1", 50000)) as browser:
             yield Served(browser, folder, orders)

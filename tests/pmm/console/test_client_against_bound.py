@@ -1,38 +1,194 @@
-"""A browser that does not keep up: what waits is bounded, and a snapshot replaces what was lost."""
+"""Browsers that do not keep up: what waits is bounded, and nobody waits for them."""
 
 import asyncio
+import json
+import math
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
 
 from pmm.console.client import WAITING, Client
 from pmm.console.desk import Desk, Holder
+from pmm.console.hub import Hub
+from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, Trace
+from pmm.console.pump import send_round
+from pmm.console.traces import POINTS
+from pmm.recorder.lateness import CycleStatistics
+from pmm.run.states import State
+from pmm.run.status import Status
+
+EACH = 4  # points a frame
 
 
-def _client() -> Client:
-    return Client("s", lambda session: f"snapshot for {session}")
+@dataclass
+class Browser:
+    """Takes what is sent, or nothing until it is told to."""
+
+    session: str
+    took: list[dict[str, Any]] = field(default_factory=list)
+    open: asyncio.Event = field(default_factory=asyncio.Event)
+    closed: tuple[int, str] | None = None
+
+    async def send(self, text: str) -> None:
+        await self.open.wait()
+        self.took.append(json.loads(text))
+
+    async def close(self, code: int, reason: str) -> None:
+        self.closed = code, reason
+
+    @property
+    def frames(self) -> list[dict[str, Any]]:
+        return [one for one in self.took if one["type"] == "frame"]
 
 
-async def _taken(client: Client, count: int) -> list[str]:
-    return [await client.next() for _ in range(count)]
+@dataclass
+class Room:
+    """A hub and its browsers."""
+
+    hub: Hub
+    number: int = 0
+
+    def join(self, session: str, *, slow: bool = False) -> Browser:
+        one = Browser(session)
+        if not slow:
+            one.open.set()
+        self.hub.join(Client(session, one.send, one.close))
+        return one
+
+    async def frame(self) -> None:
+        """Take the next frame and send it to whoever takes it."""
+        self.number += 1
+        first = self.number * EACH
+        values = np.arange(first, first + EACH, dtype=float)[None, :]
+        self.hub.take(_frame(self.number, Trace(first, first / 100.0, values)))
+        await self.round()
+
+    async def round(self) -> None:
+        await send_round(self.hub)
+        for _ in range(3):
+            await asyncio.sleep(0)
 
 
-def test_begins_with_a_snapshot_and_then_gets_every_message() -> None:
-    client = _client()
-    client.offer("before")
-    first = asyncio.run(_taken(client, 1))
-    client.offer("a")
-    client.offer("b")
-    assert first + asyncio.run(_taken(client, 2)) == ["snapshot for s", "a", "b"]
+def _frame(number: int, trace: Trace) -> Frame:
+    nothing = math.nan
+    return Frame(number, Status(State.IDLE, number, number / 25.0), 0, (), None, nothing, nothing,
+                 nothing, (), (), "", Bus(True, 0, 0), CycleStatistics(0, 0.0, 0.0, 0.0, 0), None,
+                 trace)  # fmt: skip
 
 
-def test_a_slow_browser_gets_a_snapshot_instead_of_a_long_queue() -> None:
-    client = _client()
-    asyncio.run(_taken(client, 1))
-    for number in range(1000):
-        client.offer(str(number))
-    assert len(client._waiting) <= WAITING
-    assert client.dropped == 1000
-    assert asyncio.run(_taken(client, 1)) == ["snapshot for s"]
-    client.offer("later")
-    assert asyncio.run(_taken(client, 1)) == ["later"]
+def _in_room(act: Callable[[Room], Coroutine[Any, Any, None]]) -> None:
+    async def run() -> None:
+        hub = Hub(lambda _: None, lambda _: None, lambda: "2026-01-01T00:00:00+00:00")
+        channels = (ChannelInfo("force", "N"),)
+        hub.take(Hello("rig", __file__, False, channels, 100.0, 100.0, 3, 1.0))  # type: ignore[arg-type]
+        await act(Room(hub))
+        for one in list(hub.clients.values()):
+            hub.part(one)
+
+    asyncio.run(run())
+
+
+def _points(messages: list[dict[str, Any]]) -> list[float]:
+    return [x for one in messages for piece in one.get("traces", ()) for x in piece["values"][0]]
+
+
+def test_begins_with_a_snapshot_and_then_gets_every_frame_and_message() -> None:
+    async def act(room: Room) -> None:
+        one = room.join("a")
+        await room.round()
+        for _ in range(3):
+            await room.frame()
+        room.hub.add_notice(Notice("state", 0.0, "homing"))
+        await room.round()
+        kinds = [message["type"] for message in one.took]
+        assert kinds == ["snapshot", "frame", "frame", "frame", "notice"]
+        assert one.took[0]["hello"]["rig"] == "rig"
+
+    _in_room(act)
+
+
+def test_a_slow_browser_gets_the_latest_picture_with_all_points_and_nobody_waits_for_it() -> None:
+    async def act(room: Room) -> None:
+        first, slow = room.join("a"), room.join("b", slow=True)
+        for _ in range(100):
+            await room.frame()
+        assert [one["n"] for one in first.frames] == list(range(1, 101))[-len(first.frames) :]
+        assert len(first.frames) >= 99
+        assert not slow.took
+        slow.open.set()
+        await room.frame()
+        await room.frame()
+        assert [one["n"] for one in slow.frames] == [102]
+        assert _points(slow.took) == _points(first.took)
+
+    _in_room(act)
+
+
+def test_who_has_control_is_sent_to_before_each_batch_of_those_who_watch() -> None:
+    async def act(room: Room) -> None:
+        first = room.join("in control")
+        for number in range(99):
+            room.join(str(number))
+        await room.frame()
+        await room.frame()
+        frames = len(first.frames)
+        room.hub.desk.take_over("98")  # the last of the round
+        last = room.hub.clients["98"]
+        room.number += 1
+        room.hub.take(_frame(room.number, Trace(0, 0.0, np.empty((1, 0)))))
+        sending = asyncio.ensure_future(send_round(room.hub))
+        await asyncio.sleep(0)
+        assert last.frame == room.number
+        assert room.hub.clients["50"].frame == room.number - 1
+        await sending
+        assert len(first.frames) == frames + 1
+
+    _in_room(act)
+
+
+def test_messages_that_are_not_taken_are_replaced_by_a_snapshot() -> None:
+    async def act(room: Room) -> None:
+        slow = room.join("a", slow=True)
+        await room.round()
+        for number in range(10 * WAITING):
+            room.hub.add_notice(Notice("alarm", 0.0, str(number)))
+        client = room.hub.clients["a"]
+        assert len(client._waiting) <= WAITING
+        assert client.dropped == 10 * WAITING
+        slow.open.set()
+        await room.round()
+        await room.round()
+        assert [one["type"] for one in slow.took] == ["snapshot", "snapshot"]
+        assert slow.took[1]["notices"][-1]["text"] == str(10 * WAITING - 1)
+
+    _in_room(act)
+
+
+def test_a_snapshot_holds_the_points_of_one_window() -> None:
+    async def act(room: Room) -> None:
+        room.join("a")
+        for _ in range(2 * POINTS // EACH):
+            await room.frame()
+        late = room.join("b")
+        await room.round()
+        assert len(_points(late.took)) == POINTS
+
+    _in_room(act)
+
+
+def test_a_session_that_is_opened_twice_ends_in_its_first_window() -> None:
+    async def act(room: Room) -> None:
+        old = room.join("a")
+        await room.round()
+        new = room.join("a")
+        await room.frame()
+        assert old.closed == (4001, "this session was opened in another window")
+        assert not old.frames
+        assert new.took[0]["type"] == "snapshot"
+
+    _in_room(act)
 
 
 def test_control_stays_with_the_first_until_it_is_taken() -> None:

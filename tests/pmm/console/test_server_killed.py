@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -45,6 +46,7 @@ def test_runs_go_on_to_their_end_and_are_recorded_whole(tmp_path: Path) -> None:
         with Watcher(one.address) as watcher:
             watcher.start(TWO_RUNS)
             watcher.see(lambda frame: bool(frame["run_number"] == 2 and frame["gate"] == "open"))
+        _fill(one.pid)  # what the loop says of it finds a terminal that takes nothing
         server = _server(one)
         left = [server, *server.children(recursive=True)]
         os.kill(server.pid, signal.SIGKILL)
@@ -58,6 +60,15 @@ def test_runs_go_on_to_their_end_and_are_recorded_whole(tmp_path: Path) -> None:
         marker = (folder / name / "complete.json").read_text(encoding="utf-8")
         assert json.loads(marker)["outcome"] == "complete"
     assert "run-f1.1-a20" in (folder / "campaign.toml").read_text(encoding="utf-8")
+
+
+def _fill(pid: int) -> None:
+    """Fill the pipe that a process has as its standard error."""
+    handle = os.open(f"/proc/{pid}/fd/2", os.O_WRONLY | os.O_NONBLOCK)
+    with suppress(BlockingIOError):
+        while True:
+            os.write(handle, b"\n")
+    os.close(handle)
 
 
 def _lives(process: psutil.Process) -> bool:

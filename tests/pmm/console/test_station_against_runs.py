@@ -6,18 +6,23 @@ from dataclasses import dataclass, field
 from itertools import count, pairwise
 from pathlib import Path
 
+import can
 import numpy as np
 
 from hardware.pacing import FreeRunning
 from pmm.console.asking import Answers
 from pmm.console.messages import Frame, Notice, Order, OrderKind, QueuedPlan, Reply, Told
 from pmm.console.pacing import CountingPacer
+from pmm.console.quick_stop import QuickStop
 from pmm.console.station import Station
 from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.states import State
-from tests.pmm.run.harness import Bench, bench, oscillation
+from tests.pmm.run.harness import NAME, Bench, bench, oscillation
+
+_SHAFT_RPDO = 0x201  # CiA 301: 0x200 and the node
+_QUICKLY = 0x0002  # CiA 402: voltage enabled, quick stop active (low)
 
 
 @dataclass
@@ -50,11 +55,13 @@ class Shown:
     station: Station
     heard: Heard
     bench: Bench
+    quick_stop: QuickStop
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
 
     def order(self, kind: OrderKind, text: str = "", plan: QueuedPlan | None = None) -> Reply:
         """Give an order and run the cycle that takes it."""
-        self.heard.waiting.append(Order(next(self.numbers), kind, text, plan=plan))
+        stops = self.quick_stop.pressed
+        self.heard.waiting.append(Order(next(self.numbers), kind, text, "", plan, stops))
         self.station.step()
         replies = [one for one in self.heard.told if isinstance(one, Reply)]
         return replies[-1]
@@ -63,7 +70,10 @@ class Shown:
         """Queue a plan."""
         folder = self.bench.folder / name
         folder.mkdir(exist_ok=True)
-        plan = Plan(name, Path("plan.toml"), Path("rig.toml"), runs, "", "0" * 64)
+        files = [self.bench.folder / one for one in ("plan.toml", "rig.toml")]
+        for one in files:
+            one.write_text(f"# {name}", encoding="utf-8")
+        plan = Plan(name, *files, runs, "", "0" * 64)
         return self.order(OrderKind.QUEUE, plan=QueuedPlan(number, plan, folder, runs))
 
     def until(self, state: State, within: int = 6000) -> None:
@@ -78,11 +88,12 @@ class Shown:
 @contextmanager
 def _shown(folder: Path) -> Iterator[Shown]:
     with bench(folder, [], start=False) as one:
-        heard = Heard()
+        heard, quick_stop = Heard(), QuickStop()
         station = Station(
             one.rig,
             one.control._conduct.rig_file,
             heard,  # type: ignore[arg-type]
+            quick_stop,
             Answers(),
             CountingPacer(FreeRunning(), 0.01, 100),
             Taps(),
@@ -90,7 +101,16 @@ def _shown(folder: Path) -> Iterator[Shown]:
             lambda: "2026-01-01T00:00:00+00:00",
             {},
         )
-        yield Shown(station, heard, one)
+        yield Shown(station, heard, one, quick_stop)
+
+
+def _shaft_words(bus: can.BusABC) -> list[int]:
+    """Return the control words that went to the shaft's drive since the last call."""
+    found = []
+    while (frame := bus.recv(0.0)) is not None:
+        if frame.arbitration_id == _SHAFT_RPDO:
+            found.append(int.from_bytes(frame.data[:2], "little"))
+    return found
 
 
 def _short(name: str) -> RunPlan:
@@ -164,7 +184,7 @@ def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_p
         assert one.order(OrderKind.COMMAND, "start").done
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
-        one.order(OrderKind.COMMAND, "quick stop")
+        one.quick_stop.press()
         one.until(State.STOPPED)
 
 
@@ -181,7 +201,7 @@ def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> N
         assert one.order(OrderKind.COMMAND, "start").done
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
-        one.order(OrderKind.COMMAND, "quick stop")
+        one.quick_stop.press()
         one.until(State.STOPPED)
 
 
@@ -204,7 +224,43 @@ def test_orders_that_make_no_sense_are_refused_and_change_nothing(tmp_path: Path
         one.until(State.STARTING)
         assert "under way" in one.order(OrderKind.DROP, "2").text
         assert one.order(OrderKind.DROP, "3").done
-        one.order(OrderKind.COMMAND, "quick stop")
+        one.quick_stop.press()
         one.until(State.STOPPED)
         assert one.order(OrderKind.DROP, "2").done
         assert not one.order(OrderKind.COMMAND, "start").done
+
+
+def test_a_quick_stop_is_on_the_bus_in_the_cycle_that_finds_it_before_any_order(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "plan", _short("a"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        one.heard.waiting += [Order(k, OrderKind.ANSWER, "5", "old") for k in range(1000, 2000)]
+        with can.Bus(interface="pmm-simulated", channel=NAME) as bus:
+            one.station.step()
+            assert _QUICKLY not in _shaft_words(bus)
+            one.quick_stop.press()
+            one.station.step()
+            assert _QUICKLY in _shaft_words(bus)
+        one.until(State.STOPPED)
+
+
+def test_what_was_ordered_before_a_quick_stop_does_not_move_the_rig_after_it(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "plan", _short("a"))
+        before = one.quick_stop.pressed
+        one.quick_stop.press()
+        one.heard.waiting.append(Order(9, OrderKind.COMMAND, "start", quick_stops=before))
+        for _ in range(100):
+            one.station.step()
+        assert one.station.at_rest
+        reply = next(o for o in one.heard.told if isinstance(o, Reply) and o.number == 9)
+        assert not reply.done
+        assert "there was a quick stop after this" in reply.text
+        assert one.order(OrderKind.COMMAND, "start").done
+        one.quick_stop.press()
+        one.until(State.STOPPED)

@@ -41,7 +41,7 @@ class Remote:
     def post(self, path: str, body: object, cookie: str = "") -> tuple[int, str]:
         """Post as the page does; return the status and the cookie that is given."""
         given = {"origin": self.origin, "cookie": cookie, "x-pmm-session": SESSION}
-        asking = HTTPSConnection(HOST, self.port, context=self.trusted, timeout=10.0)
+        asking = HTTPSConnection(HOST, self.port, context=self.trusted, timeout=60.0)
         try:
             asking.request("POST", path, json.dumps(body), given)
             answer = asking.getresponse()
@@ -88,8 +88,8 @@ def test_token_cookie_and_frames_go_through_tls_alone(tmp_path: Path) -> None:
         cookie = given.split(";")[0]
         assert one.post("/api/command", quick, cookie + "x")[0] == 401
         with one.stream(cookie) as frames:
-            assert json.loads(frames.recv(timeout=10.0))["type"] == "snapshot"
-            kinds = {json.loads(frames.recv(timeout=10.0))["type"] for _ in range(20)}
+            assert json.loads(frames.recv(timeout=60.0))["type"] == "snapshot"
+            kinds = {json.loads(frames.recv(timeout=60.0))["type"] for _ in range(20)}
             assert "frame" in kinds
             assert one.post("/api/plans/queue", {"text": plan("tls")}, cookie)[0] == 200
 
@@ -99,12 +99,12 @@ def test_whoever_does_not_know_the_certificate_or_speaks_plainly_gets_nothing(
 ) -> None:
     with _remote(tmp_path) as one:
         stranger = HTTPSConnection(
-            HOST, one.port, context=ssl.create_default_context(), timeout=10.0
+            HOST, one.port, context=ssl.create_default_context(), timeout=60.0
         )
         with pytest.raises(ssl.SSLCertVerificationError):
             stranger.request("GET", "/login")
         stranger.close()
-        plain = HTTPConnection(HOST, one.port, timeout=10.0)
+        plain = HTTPConnection(HOST, one.port, timeout=60.0)
         try:
             plain.request("GET", "/login")
             with pytest.raises((ConnectionError, BadStatusLine)):

@@ -42,11 +42,12 @@ def with_friction(folder: Path, names: Sequence[str] = RUNS) -> Path:
 
 
 def changed(rig: Path, folder: Path, name: str, change: Callable[[xr.Dataset], xr.Dataset]) -> Path:
-    """Copy a campaign with one recording changed."""
+    """Copy a campaign with one recording changed, which then is as of another program."""
     copy = shutil.copytree(rig, folder / "copy")
     path = copy / f"{name}.nc"
     with xr.open_dataset(path) as one:
         record = change(one.load())
+    record.attrs.pop("checksums")
     record.to_netcdf(path)
     return copy
 

@@ -74,7 +74,9 @@ def test_all_of_them_succeed(told: dict[str, Result]) -> None:
 
 def test_friction_is_found_and_its_size(told: dict[str, Result]) -> None:
     said = told["diagnose"].stdout
-    assert said.startswith("gap: coulomb-friction; probability ")
+    assert said.startswith(
+        "gap: Coulomb friction below the dynamometer (coulomb-friction) is missing"
+    )
     low, high = map(float, re.findall(r"friction_n = \S+ \((\S+) to (\S+)\)", said)[0])
     assert low - 0.002 < TRUTH_N < high + 0.002
 
@@ -154,6 +156,12 @@ def test_every_key_of_the_document_is_on_the_page(told: dict[str, Result]) -> No
         assert found[key][0].keys() <= {*re.findall(r"`(\w+)`", said[key])}, key
 
 
+def test_no_paragraph_of_the_gap_pages_is_longer_than_a_reader() -> None:
+    for path in (HOUSE / "docs").glob("gap*.md"):
+        longest = max(path.read_text(encoding="utf-8").splitlines(), key=len)
+        assert len(longest) < 900, f"{path.name}: {longest[:80]}"
+
+
 def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:
     file, kept = str(told["file"]), str(told["kept"])
     assert kept == (HOUSE / "examples" / "gap" / "campaign.toml").read_text()
@@ -164,7 +172,7 @@ def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Resu
 
 
 def test_the_cured_simulator_has_no_gap(told: dict[str, Result]) -> None:
-    assert told["again"].stdout.startswith("gap: no gap beyond u")
+    assert told["again"].stdout.startswith("gap: No gap: ")
 
 
 def test_a_bias_is_told_only_of_an_effect_that_is_named(told: dict[str, Result]) -> None:

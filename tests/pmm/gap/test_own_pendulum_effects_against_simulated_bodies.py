@@ -75,9 +75,9 @@ def test_names_alone_restrict_and_what_a_record_cannot_show_is_said() -> None:
     assert set(found["causes"]) == {"quadratic_drag", "inertia"}
     assert found["notes"] == ["these records cannot show line_twist"]
     assert [law["name"] for law in found["laws"]] == ["quadratic"]
-    assert found["said"] == [
-        "the cause: quadratic_drag, which foretells 100 % of what it was not fitted to"
-    ]
+    assert found["said"][0] == (
+        "The cause: quadratic_drag, which foretells 100 % of what it was not fitted to."
+    )
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> No
     done = run(path, "--most", "1", "--plot", tmp_path / "figures")
     assert done.exit_code == 0, done.output
     first = done.stdout.splitlines()[0]
-    assert first.startswith("the cause: ")
+    assert first.startswith("The cause: ")
     assert "what it was not fitted to" in first
     for heading in ("answer", "where", "law of damping", "withheld: small swings", "told apart"):
         assert heading in done.stdout
@@ -115,9 +115,9 @@ def test_the_examples_record_is_what_its_script_makes() -> None:
 def test_a_law_that_is_told_needs_no_further_record() -> None:
     path = HOUSE / "examples" / "decay" / "roll.toml"
     found = json.loads(run(path, "--without", "power_drag", "--most", "1", "--json").stdout)
-    assert found["said"] == [
-        "the cause: quadratic_drag, which foretells 100 % of what it was not fitted to"
-    ]
+    assert found["said"][0] == (
+        "The cause: quadratic_drag, which foretells 100 % of what it was not fitted to."
+    )
     assert not found["next"]
 
 
@@ -127,7 +127,7 @@ def test_what_would_tell_a_law_is_said(tmp_path: Path) -> None:
     found = json.loads(run(path, "--effects", names, "--most", "1", "--json").stdout)
     assert any("its law cannot be told" in one for one in found["said"])
     first = found["next"][0]
-    assert f"what would tell it: {first['what']}" in found["said"][-1]
+    assert f"would tell it: {first['what']}" in found["said"][-1]
     gains = [one["gain_ln_evidence"] for one in found["next"]]
     assert gains == sorted(gains, reverse=True)
 

@@ -211,7 +211,7 @@ def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
     added = run("gap", "add", rig, "--effect", "rubber-boot", "--effects", own)
     assert added.exit_code == 0, added.output
     again = run("gap", rig, *FEW, "--effects", own)
-    assert again.stdout.startswith("gap: no gap beyond u")
+    assert again.stdout.startswith("gap: No gap: ")
 
 
 def test_a_zero_that_drifts_over_the_campaign(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pmm.gap.pendulum_tables import percent
+from pmm.gap.pendulum_sections import percent
 from pmm.gap.rows import ControlRow, Ranked
 from tests.pmm.gap.rigs import run
 

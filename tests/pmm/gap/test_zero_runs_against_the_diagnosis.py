@@ -183,8 +183,8 @@ def test_run_controls_own_are_read_within_their_gate(tmp_path: Path) -> None:
         for at, number in ((1, 1), (2, 3))
     )
     campaign = Campaign(runs=(Run("heave", 1.0, 0.02, number=2),), at_rest=(first, last))
-    used, left_out = records_at_rest(campaign, tmp_path)
-    assert left_out == {}
+    used, left_out, damaged = records_at_rest(campaign, tmp_path)
+    assert (left_out, damaged) == ({}, {})
     for record in used:
         assert record.observed.values == pytest.approx(np.zeros(2), abs=0.05)
         assert record.set_point.frequency_hz == pytest.approx(10.0, rel=0.02)

@@ -1,13 +1,18 @@
-"""The estimate of a strut's force against the simulator's own forces, on yokes: 1 %."""
+"""The estimate of a strut's force against the simulator's own forces, on yokes: 1 %.
+
+And how far it is to be trusted, against what each part is by hand.
+"""
 
 import math
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
 
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.plan.motion_peaks import force_peak_n
+from pmm.calibration import Calibration
+from pmm.plan.force_estimate import FAR, expected_readings, force_peak_n
 from pmm.plan.rig_tables import HullEstimate, Ship
 from pmm.plan.run_plan import KnownMass
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
@@ -48,3 +53,53 @@ def test_a_known_mass_adds_its_own_share() -> None:
     more = _estimate(rig, point, KnownMass(10.0, x_m=-rig.oscillator.half_spacing_m))
     aft = rig.body.mass_kg * (1.0 - rig.body.cg_x_m / rig.oscillator.half_spacing_m) / 2.0 + 10.0
     assert more == pytest.approx(aft * omega2 * 0.02)
+
+
+def _half(mass_kg: float, hz: float, e: float) -> float:
+    """The force of each strut in heave, from the mass alone."""
+    return mass_kg * (2.0 * math.pi * hz) ** 2 * e / 2.0
+
+
+AIR = replace(run(), set_point=SetPoint(0.8, 0.02, medium=Medium.AIR))
+BARE = {"model": Ship(70.0, 27.5), "hull": HullEstimate()}
+
+
+def test_in_air_a_gauge_is_expected_to_read_half_the_mass() -> None:
+    one = expected_readings(AIR, rig_file(**BARE))["force_fore"]
+    wanted = _half(70.0, 0.8, 0.02)
+    assert one.amplitude_n == pytest.approx(wanted)
+    # Heave alone: the mass to 2 %, the gauge and the amplitude to 2 %.
+    assert one.standard_uncertainty_n == pytest.approx(math.hypot(0.02, 0.02) * wanted)
+    assert not one.is_far(wanted * (1.0 + 0.99 * FAR * math.hypot(0.02, 0.02)))
+    assert one.is_far(_half(35.0, 0.8, 0.02))
+
+
+def test_in_water_hull_and_restoring_widen_it_and_do_not_cancel() -> None:
+    """Where inertia and restoring cancel, the force is small and its uncertainty is not."""
+    omega2 = (2.0 * math.pi * 0.8) ** 2
+    hull = HullEstimate(((75.0, 0.0), (0.0, 22.0)), restoring=((145.0 * omega2, 0.0), (0.0, 0.0)))
+    one = expected_readings(
+        replace(run(), set_point=SetPoint(0.8, 0.02)), rig_file(model=Ship(70.0, 27.5), hull=hull)
+    )["force_aft"]
+    assert one.amplitude_n == pytest.approx(0.0, abs=1e-9)
+    parts = (0.02 * 70.0, 0.2 * 75.0, 0.05 * 145.0)
+    wanted = math.hypot(*parts) * omega2 * 0.02 / 2.0
+    assert one.standard_uncertainty_n == pytest.approx(wanted)
+
+
+def test_a_calibration_makes_readings_of_forces() -> None:
+    none = np.zeros((2, 2))
+    matrix = np.array([[2.0, 0.5], [0.0, -1.0]])
+    day = date(2026, 1, 1)
+    known = Calibration(("force_fore", "force_aft"), matrix, none, none[0], none[0], day, day)
+    found = expected_readings(AIR, rig_file(**BARE, calibration=known))
+    wanted = _half(70.0, 0.8, 0.02)
+    assert found["force_fore"].amplitude_n == pytest.approx(2.5 * wanted)
+    assert found["force_aft"].amplitude_n == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"model": None}, {"hull": None}, {"campaign": {"radiation": {"file": "a.csv"}}}]
+)
+def test_nothing_is_expected_of_what_the_file_does_not_tell(changes: dict[str, object]) -> None:
+    assert expected_readings(run(), rig_file(**changes)) == {}

@@ -11,7 +11,7 @@ from tests.pmm.plan.plans import GAUGES_TEXT, HEAVE, HORIZONTAL_TEXT, RIG_TEXT, 
 
 PLANS = [
     ("runs = []", "the plan has no runs; add a table [[runs]] for each motion"),
-    ("name = 'a/b'\n" + HEAVE, "name = 'a/b' cannot be the name of a folder"),
+    ("name = 'a/b'\n" + HEAVE, "name = 'a/b' cannot be the name of a file or folder"),
     ("oder = 3\n" + HEAVE, "oder is not a known key; did you mean order?"),
     (
         HEAVE + "amplitude_mm = 3",

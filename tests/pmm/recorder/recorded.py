@@ -62,9 +62,9 @@ def fed(recorder: RunRecorder, numbers: range, tick_s: float = 0.01) -> np.ndarr
     return truth(numbers)
 
 
-def until_full(recorder: RunRecorder) -> tuple[int, DiskFullError]:
+def until_full(recorder: RunRecorder, begin: int = 1) -> tuple[int, DiskFullError]:
     """Record until the disk is full; return the first SYNC not taken whole, and the error."""
-    for first in range(1, 100_001, 100):
+    for first in range(begin, 100_001, 100):
         try:
             fed(recorder, range(first, first + 100))
         except DiskFullError as error:

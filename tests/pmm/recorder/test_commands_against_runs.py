@@ -34,11 +34,33 @@ def test_a_campaign_is_recovered_run_by_run(tmp_path: Path) -> None:
     assert "[recovered]" in table.stdout
 
 
-def test_a_run_with_nothing_in_it_fails_and_the_others_do_not(tmp_path: Path) -> None:
+def _opened_and_fed(folder: Path) -> None:
     for name in ("a", "b"):
-        with RunRecorder(tmp_path / name, header()) as recorder:
+        with RunRecorder(folder / name, header()) as recorder:
             if name == "b":
                 fed(recorder, range(1, 51))
+
+
+@pytest.mark.parametrize("cut_bytes", [0, 7, None])
+def test_a_recorder_that_was_just_opened_has_lost_nothing(
+    tmp_path: Path, cut_bytes: int | None
+) -> None:
+    _opened_and_fed(tmp_path)
+    for name in ("samples.arrows", "bus.blf"):  # the program may end while they are begun
+        path = tmp_path / "a" / name
+        path.write_bytes(path.read_bytes()[:cut_bytes])
+    said = pmm("recover", tmp_path)
+    assert said.exit_code == 0, said.output
+    assert "nothing: the program ended before anything was written" in said.stdout
+    assert (tmp_path / "b" / "run.nc").exists()
+    assert not (tmp_path / "a" / "run.nc").exists()
+    empty, _ = json.loads(pmm("recover", tmp_path, "--json").stdout)
+    assert "nothing to recover" in empty["nothing_written"]
+
+
+def test_a_run_whose_samples_are_lost_fails_and_the_others_do_not(tmp_path: Path) -> None:
+    _opened_and_fed(tmp_path)
+    (tmp_path / "a" / "pulses.jsonl").write_text("[1,7.5,null]\n")
     said = pmm("recover", tmp_path)
     assert said.exit_code == 1
     assert "a: holds no whole sample" in said.stderr.replace("\n", "")

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from hardware.line_log import LoggedPort
 from hardware.playback import PlaybackBus
-from hardware.raw_log import CONTAINER_BYTES, FramePacker, container, file_header, look, read_frames
+from hardware.raw_log import CONTAINER_BYTES, FramePacker, container, file_header
+from hardware.raw_log_reading import look, read_frames
 
 FRAMES = st.builds(
     can.Message,
@@ -54,6 +55,10 @@ def test_python_can_reads_what_was_observed(tmp_path_factory, frames: list[can.M
     with can.BLFReader(path) as log:
         found = list(log)
     assert [said(one) for one in found] == [said(one) for one in frames]
+    own = list(read_frames(path))
+    assert [said(one) for one in own] == [said(one) for one in found]
+    assert [one.dlc for one in own] == [one.dlc for one in found]
+    assert [one.timestamp for one in own] == pytest.approx([one.timestamp for one in found])
     stamps = [one.timestamp for one in found]
     assert stamps == sorted(stamps)
     latest = max((one.timestamp for one in frames), default=0.0)

@@ -58,7 +58,7 @@ def test_samples_come_back_bit_by_bit(runs: Path, tmp_path: Path, name: str) -> 
     assert recorded.photocell_edges_s.tolist() == read_run(runs / name).pulses_s.tolist()
     codes = [one.code for one in recorded.flags]
     assert codes[-1] == "samples_rebuilt"
-    assert codes[0] == ("recovered" if name == "killed" else "journal_cut")
+    assert codes[0] == ("recovered" if name == "killed" else "journal_changed")
     assert np.array_equal(whole(folder), truth), "the journal is there again"
     assert replay(folder, DRIVERS).same
 

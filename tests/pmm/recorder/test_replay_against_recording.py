@@ -12,13 +12,14 @@ from analysis.resolver.weights import REACH
 from hardware.description.errors import DataError
 from hardware.lines import TICK_MODULUS, Unwrapped
 from hardware.opening import carry_on, opening_of
-from hardware.raw_log import FramePacker, container, file_header, read_frames
+from hardware.raw_log import FramePacker, container, file_header
+from hardware.raw_log_reading import read_frames
 from pmm.recorder.header import LiveSettings
 from pmm.recorder.live_path import Assembler, Feed, as_record
 from pmm.recorder.replay import replay
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import Outcome, RunRecorder
 from sim.devices.bench_file import DRIVERS
-from tests.pmm.recorder.recorded import header, session
+from tests.pmm.recorder.recorded import fed, header, session
 
 TWO = LiveSettings(periods=2)
 
@@ -141,11 +142,10 @@ def test_without_its_rig_or_its_log_a_run_is_refused(runs: Path, tmp_path: Path)
     (tmp_path / "run" / "bus.blf").rename(tmp_path / "bus.blf")
     with pytest.raises(DataError, match=r"bus.blf is missing"):
         replay(tmp_path / "run", DRIVERS)
-    text = (tmp_path / "run" / "header.json").read_text()
-    fields = json.loads(text) | {"rig_tables": {}}
-    (tmp_path / "run" / "header.json").write_text(json.dumps(fields))
+    with RunRecorder(tmp_path / "rigless", header()) as recorder:
+        fed(recorder, range(1, 101))
     with pytest.raises(DataError, match="its header does not say what the rig was"):
-        replay(tmp_path / "run", DRIVERS)
+        replay(tmp_path / "rigless", DRIVERS)
 
 
 class Halting:

@@ -16,11 +16,11 @@ from tests.pmm.coefficients.campaigns import vertical_campaign
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     folder: Path = tmp_path_factory.mktemp("report") / "c"
-    vertical_campaign(folder, (0.6, 0.9), name="a <b> & c")
-    (folder / "reference.csv").write_text(
+    vertical_campaign(folder, (0.6, 0.9), name="a & c")
+    (folder / "a <b> & c.csv").write_text(
         "frequency_hz,speed_m_s,Z_w,Z_q\n0.5,1.2,-190,-12\n1,1.2,-210,-12\n"
     )
-    reference = 'file = "reference.csv"\nallowance_relative = 0.01\n'
+    reference = 'file = "a <b> & c.csv"\nallowance_relative = 0.01\n'
     settings = f"[uncertainty]\nlag_s = 1e-4\n[[references]]\n{reference}"
     (folder / "coefficients.toml").write_text(settings)
     result = CliRunner().invoke(
@@ -76,8 +76,9 @@ def test_every_value_and_its_system_is_there(page: tuple[Path, str]) -> None:
     text = html.unescape(re.sub(r"<svg.*?</svg>", "", page[1], flags=re.S))
     for name in ("Z_wdot", "Z_w", "M_wdot", "M_w", "Z_qdot", "Z_q", "M_qdot", "M_q"):
         assert text.count(f'<th scope="row">{name}</th>') >= 6  # two frequencies and zero, twice
-    for said in ("linear: dimensional", "zero frequency: dimensional", "Monte Carlo, 2000"):
+    for said in ("Recommended values: dimensional", "linear: dimensional", "Monte Carlo, 2000"):
         assert said in text
+    assert text.index("Recommended values") < text.index("<details><summary><h3>Alternatives")
     for source in ("amplifier lag", "moment of inertia", "harmonic scatter"):
         assert source in text
 
@@ -107,11 +108,16 @@ def test_figures_have_axes_units_and_legends(page: tuple[Path, str]) -> None:
         "(N s/m)",
         "(kg)",
         "linear, 20 mm",
-        "zero frequency",
+        "recommended",
         "reference",
     ):
         assert said in html.unescape(figures[0])
-    for said in ("share of the variance (%)", "harmonic scatter", "amplifier lag"):
+    for said in (
+        "interval of 95 % (% of the value)",
+        "share of the variance (%)",
+        "harmonic scatter",
+        "amplifier lag",
+    ):
         assert said in html.unescape(figures[1])
 
 

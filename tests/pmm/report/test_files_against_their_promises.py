@@ -34,6 +34,17 @@ def test_drawings_are_well_formed_and_small(wide: Analysis, kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", FIGURES)
+def test_a_file_does_not_depend_on_those_written_before(kind: str) -> None:
+    """A figure is laid out once, for whichever file comes first."""
+    small = analysed(run(2))
+    figure, alone = FIGURES[kind](small), FIGURES[kind](small)
+    pixels = render(alone, "png", "s")
+    drawn = render(figure, "svg", "s")
+    assert render(figure, "png", "s") == pixels
+    assert render(alone, "svg", "s") == drawn == render(figure, "svg", "s")
+
+
+@pytest.mark.parametrize("kind", FIGURES)
 def test_hostile_names_are_drawn_as_they_are(kind: str) -> None:
     analysis = analysed(run(3, names=HOSTILE, name="a <b> & $c$"))
     svg = render(FIGURES[kind](analysis), "svg", "s")

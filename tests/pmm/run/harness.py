@@ -1,6 +1,7 @@
 """Run control on the simulated rig, in this process and in simulated time."""
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -125,6 +126,8 @@ def bench(
     view: Any = None,
     reserve_mb: float = 1.0,
     calibration: Calibration | None = None,
+    utc: Callable[[], str] = lambda: "2026-01-01T00:00:00+00:00",
+    executor: Executor | None = None,
 ) -> Iterator[Bench]:
     """A rig with the runs to do; ``serial`` parts are on ``sim://``."""
     whole = dict(tables or TABLES)
@@ -171,9 +174,7 @@ def bench(
             observers=(taps.frame,),
             line_observers=(taps.line,),
         ) as rig,
-        Recording(
-            rig, rig_file, plan, folder, lambda: "2026-01-01T00:00:00+00:00", taps
-        ) as recording,
+        Recording(rig, rig_file, plan, folder, utc, taps) as recording,
     ):
         rig.prepare()
         folder.mkdir(parents=True, exist_ok=True)
@@ -181,7 +182,7 @@ def bench(
         def now_s() -> float:
             return world.time_s
 
-        control = RunControl(rig, rig_file, runs, recording.begin, now_s, view or Blind())
+        control = RunControl(rig, rig_file, runs, recording.begin, now_s, view or Blind(), executor)
         one = Bench(control, world, rig, folder, wall_s)
         if start:
             control.request(Command.START)

@@ -15,10 +15,9 @@ from analysis.readers import read_recording
 from pmm.recorder.recording import read_run
 from sim.devices.bench_file import read_bench
 from sim.periodic import steady_run
+from tests.pmm.run.processes import READINGS, pmm, written_plan
 from tests.sim.devices.benches import ROOT
 
-RIG = (ROOT / "examples" / "manual" / "rig.toml").read_text(encoding="utf-8")
-SIMULATED = (ROOT / "examples" / "manual" / "simulated.toml").read_text(encoding="utf-8")
 PLAN = """
 name = "short"
 rig = "rig.toml"
@@ -35,31 +34,12 @@ motion = "pitch"
 frequencies_hz = 1.1
 amplitudes_mm = 20.0
 """
-# Eccentricity and phase as they are homed, then as they are set for heave, heave and pitch.
 NOISE_N = 0.02  # of a first harmonic: noise of 0.05 N over four periods, counts of 1 mN
-READINGS = "0\n0\n20.0\n0.0\n180.0\n"
 
 
 @pytest.fixture
 def plan(tmp_path: Path) -> Path:
-    (tmp_path / "rig.toml").write_text(RIG, encoding="utf-8")
-    (tmp_path / "simulated.toml").write_text(SIMULATED, encoding="utf-8")
-    path = tmp_path / "plan.toml"
-    path.write_text(PLAN, encoding="utf-8")
-    return path
-
-
-def pmm(*words: str | Path, given: str = "", **more) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "tests.pmm.run.command", *map(str, words)],
-        input=given,
-        text=True,
-        capture_output=True,
-        cwd=ROOT,
-        timeout=120,
-        check=False,
-        **more,
-    )
+    return written_plan(tmp_path, PLAN)
 
 
 def test_a_plan_with_piped_readings_is_recorded_analysed_and_resumed(
@@ -132,16 +112,16 @@ def test_a_full_disk_ends_the_run_and_what_was_flushed_is_there(plan: Path, tmp_
     assert samples is not None
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 130)])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupt_stops_gently_and_closes_the_recording(
-    plan: Path, tmp_path: Path, number: signal.Signals, status: int
+    plan: Path, tmp_path: Path, number: signal.Signals
 ) -> None:
     folder = tmp_path / "campaign"
     with _started(plan, folder) as process:
         _wait_for(folder, process)
         process.send_signal(number)
         _, said = process.communicate(timeout=60)
-    assert process.returncode == status, said
+    assert process.returncode == 130, said
     (marker,) = folder.glob("*/complete.json")
     assert json.loads(marker.read_text(encoding="utf-8"))["outcome"] == "stopped"
     assert read_recording(marker.parent / "run.nc").sample_count > 0
@@ -163,7 +143,11 @@ def test_a_killed_controller_leaves_what_was_flushed(plan: Path, tmp_path: Path)
 
 
 def _started(plan: Path, folder: Path) -> subprocess.Popen[str]:
-    """Start a campaign in real time, its readings piped."""
+    """Start a campaign in real time, its readings piped; no signal is ignored from before."""
+
+    def heed() -> None:
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
     words = ["run", str(plan), "--output", str(folder), "--real-time"]
     process = subprocess.Popen(
         [sys.executable, "-m", "tests.pmm.run.command", *words],
@@ -173,6 +157,7 @@ def _started(plan: Path, folder: Path) -> subprocess.Popen[str]:
         text=True,
         cwd=ROOT,
         env=os.environ,
+        preexec_fn=heed,
     )
     assert process.stdin is not None
     process.stdin.write(READINGS)

@@ -28,7 +28,7 @@ def test_a_lost_controller_is_stopped_for(tmp_path: Path, number: signal.Signals
     there += f"options = {{ port = {port}, hop_limit = 0 }}\n"
     (tmp_path / "rig.toml").write_text(RIG.replace(here, there), encoding="utf-8")
     (tmp_path / "simulated.toml").write_text(
-        'rig = "rig.toml"\nplane = "vertical"\neccentricity_m = 0.02\n', encoding="utf-8"
+        'rig = "rig.toml"\neccentricity_m = 0.02\n', encoding="utf-8"
     )
     (tmp_path / "plan.toml").write_text(PLAN.replace("periods = 4", "periods = 40"), "utf-8")
     folder = tmp_path / "campaign"

@@ -1,6 +1,9 @@
 """What is planned is what is run: periods, targets, pauses, and the operator's commands."""
 
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -84,3 +87,31 @@ def test_a_record_at_rest_is_as_long_as_planned_and_has_no_gap(tmp_path: Path) -
     recording = read_recording(tmp_path / "zero" / "run.nc")
     assert recording.sample_count / recording.sample_rate_hz > 2.0
     assert not any(flag.code == "gap" for flag in recording.flags)
+
+
+class Slow(Executor):
+    """Does nothing until it is told to."""
+
+    def __init__(self) -> None:
+        self.waiting: list[Callable[[], None]] = []
+
+    def submit(self, fn: Callable[..., Any], /, *given: Any, **named: Any) -> "Future[Any]":
+        future: Future[Any] = Future()
+        self.waiting.append(lambda: future.set_result(fn(*given, **named)))
+        return future
+
+
+def test_a_run_is_not_started_anew_while_its_recording_is_being_completed(tmp_path: Path) -> None:
+    with bench(tmp_path, [oscillation("a"), oscillation("b")]) as one:
+        slow = one.control._executor = Slow()
+        one.until(State.GATE_OPEN)
+        one.control.request(Command.STOP)
+        one.until(State.STOPPED)
+        with pytest.raises(RunStateError, match="recording is still being completed"):
+            one.control.request(Command.START)
+        slow.waiting.pop()()
+        one.control.step()
+        one.control.request(Command.START)
+        assert one.control.status().run == "b"
+        one.control.request(Command.STOP)
+        one.until(State.STOPPED)

@@ -6,7 +6,9 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from pmm.cli.run_view import LiveView, PlainView
+from hardware.description.flags import Flag, Severity
+from pmm.cli.run_view import LiveView, PlainView, harmonics_table, outcome_line
+from pmm.cli.terminal import Terminal
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
@@ -69,8 +71,9 @@ class Control:
 
 
 def shown(control: Control, width: int, question: str = "") -> list[str]:
-    view = LiveView(lambda: 0.0, lambda: question)
-    view.show(control)  # type: ignore[arg-type]
+    with Terminal(io.StringIO()) as terminal:
+        view = LiveView(terminal, lambda: 0.0, lambda: question)
+        view.show(control)  # type: ignore[arg-type]
     said = io.StringIO()
     Console(file=said, width=width, highlight=False, markup=False).print(view.picture())
     return [line.rstrip() for line in said.getvalue().splitlines()]
@@ -111,6 +114,27 @@ def test_readings_have_the_places_that_their_interval_allows() -> None:
     assert not any("shaft_angle" in line for line in lines), "the reference tells nothing"
 
 
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_plan_s_estimate_stands_beside_and_what_is_far_is_red(width: int) -> None:
+    rows = tuple(replace(one, expected=71.7, far=True) if one.final else one for one in ROWS[1:2])
+    rows = (*rows, *ROWS[2:])
+    lines = shown(Control(replace(STATUS, harmonics=rows)), width)
+    assert max(map(len, lines)) <= width
+    assert lines[4].split()[-1] == "plan"
+    (aft,) = [line.split() for line in lines if line.startswith("force_aft")]
+    assert aft[-1] == "71.7"
+    red = [row.style for row in harmonics_table(rows).rows]
+    assert [style == "bold red" for style in red] == [True, False, False]
+
+
+def test_the_line_of_a_run_names_the_forces_that_are_far() -> None:
+    far = tuple(
+        Flag("force_far", Severity.WARNING, "far", one) for one in ("force_aft", "force_fore")
+    )
+    said = outcome_line(replace(ENDED, flags=far))
+    assert "force_aft and force_fore far from the plan's estimate" in said
+
+
 def test_before_the_gate_there_is_no_empty_table() -> None:
     waiting = replace(STATUS, state=State.SETTING, harmonics=(), wanted_periods=0, alarms=())
     lines = shown(Control(replace(waiting, gate=GateState.CLOSED)), 80)
@@ -120,13 +144,11 @@ def test_before_the_gate_there_is_no_empty_table() -> None:
 
 
 def test_what_stays_on_the_terminal_is_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
     said = io.StringIO()
-    console = Console(file=said, width=80, force_terminal=True, highlight=False, soft_wrap=True)
-    monkeypatch.setattr("pmm.cli.run_view.messages", lambda: console)
-    now_s = [0.0]
-    view = LiveView(lambda: now_s[0], lambda: "")
     control = Control(replace(STATUS, alarms=()))
-    with view.shown():
+    with Terminal(said) as terminal, LiveView(terminal, lambda: 0.0, lambda: "").shown() as view:
         view.show(control)  # type: ignore[arg-type]
         control.outcomes.append(ENDED)
         control._status = replace(STATUS, state=State.FAULT)

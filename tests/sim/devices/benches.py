@@ -136,9 +136,10 @@ class Hosted:
         return self._process.stdout.readline().strip()
 
     @contextmanager
-    def rig(self, *parts: str) -> Iterator[Rig]:
+    def rig(self, *parts: str, reset: bool = True) -> Iterator[Rig]:
         """A prepared rig of some of the parts; serial ones are on their pseudo-terminals."""
-        assert self.say("reset") == "done"
+        if reset:
+            assert self.say("reset") == "done"
         bus = dict(self.said["bus"])
         interface, channel = bus.pop("interface"), bus.pop("channel")
         if interface == "slcan":
@@ -148,6 +149,7 @@ class Hosted:
             "channel": channel,
             "options": bus,
             "allowed_gap_cycles": 30,
+            "listen_ms": 50,
             # Free-running, a peer that the machine has no time for costs time and no samples.
             "answer_ms": 0 if self.real_time else 2000,
         }

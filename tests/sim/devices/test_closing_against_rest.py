@@ -108,8 +108,9 @@ def test_a_node_that_says_nothing_any_more_bounds_the_closing() -> None:
         by_word(world)("silence shaft")
         before = rig.number
         rig.close()
-        # Three cycles until it is noticed, two seconds of quick stop, five cycles at the end.
-        assert rig.number - before <= 4 + 200 + 5
+        # Four cycles until it is noticed, 5 s for a rest that nobody sees, five at the end.
+        assert rig.number - before <= 4 + 500 + 5
+        assert states(world) == {State.SWITCH_ON_DISABLED}
 
 
 def test_a_rig_that_was_never_prepared_closes_without_a_cycle() -> None:

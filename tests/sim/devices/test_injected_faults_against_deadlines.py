@@ -201,6 +201,8 @@ def test_an_unplugged_port_is_plugged_in_and_reset(stamped) -> None:
     inject(world, "unplug photocell")
     cycles_to(rig, UnpluggedError, 1)
     inject(world, "plug photocell")
+    rig.photocell.expect(None)
+    rig.run_until(lambda: not rig.shaft.moving, 300, "rest")
     rig.reset()
     assert not rig.faults
     for _ in range(80):

@@ -223,9 +223,9 @@ def test_a_hosted_rig_lives_on_by_the_clock_and_talks_on_its_line(file: Path) ->
 
 def test_a_wrong_file_is_told_on_the_error_stream(tmp_path: Path, capsys) -> None:
     wrong = tmp_path / "simulated.toml"
-    wrong.write_text("plan = 'vertical'\n[rig]\n")
+    wrong.write_text("sead = 3\n[rig]\n")
     assert main([str(wrong)]) == 2
-    assert "plan is not a known key; did you mean plane?" in capsys.readouterr().err
+    assert "sead is not a known key; did you mean seed?" in capsys.readouterr().err
 
 
 def test_nothing_else_of_the_simulator_knows_a_bus_a_port_or_the_devices() -> None:

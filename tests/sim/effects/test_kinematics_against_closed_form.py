@@ -23,6 +23,8 @@ SMALL = [SetPoint(f, 0.01, p) for f in (0.4, 0.9) for p in PHASES]
 
 CASES = [
     (ConnectingRod(), 1e-6),  # the series ends at (e/L)^5
+    (ConnectingRod(-1.5), 1e-6),
+    (ConnectingRod(-0.5, rod_offset_m=0.002), 1e-3),
     # The series ends at the first power of the offset, whose square is (o/L)^2 of the second order.
     (ConnectingRod(0.5, rod_offset_m=0.002), 1e-3),
     (SlotTilt(), 1e-10),

@@ -38,9 +38,12 @@ IN_TIME = [*((VERTICAL, one) for one in SET_POINTS[::7]), (CRANK, SET_POINTS[10]
         AmplifierLag(10.0, poles=4.0),
         ChannelSkew(0.0, 2e-3),
         ChannelSkew(5e-4, 1e-3),
+        ChannelSkew(-3e-3, 0.0),
+        ChannelSkew(-1e-3, 2e-3),
         PhotocellAngle(0.02),
         PhotocellAngle(-0.02),
         PhotocellDelay(2e-3),
+        PhotocellDelay(-2e-3),
     ],
 )
 def test_signature(effect: Effect, rig: SimulatedRig) -> None:

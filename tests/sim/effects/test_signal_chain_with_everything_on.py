@@ -39,7 +39,8 @@ def test_ends_of_the_ranges(kind: type[Effect]) -> None:
     """Every parameter at either end of its range still gives a run, and a signature, of numbers."""
     rig = vertical_rig()
     for one in kind.parameters():
-        for value in (one.low, one.high):
+        about_zero = (-one.least, one.least) if one.least else ()
+        for value in (one.low, *about_zero, one.high):
             effect = kind(**{one.name: value})
             changed = steady_run(effect.change(rig, SET_POINT), SET_POINT)
             assert all(np.isfinite(values).all() for values in changed.spectra.values())

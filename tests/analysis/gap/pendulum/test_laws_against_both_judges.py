@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from analysis.gap.pendulum.said import open_laws
-from analysis.gap.pendulum.verdict import TOLD_APART, Law, told_apart
+from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws, told_apart
 from analysis.inertia.spread import SURE, said_of
 
 if TYPE_CHECKING:

@@ -1,0 +1,79 @@
+"""One value a coefficient: which row of a campaign's table is to be used first.
+
+A manoeuvring derivative is that of slow motion: the value at zero frequency, where several
+frequencies tell it, else the fit of all amplitudes, else a static test, else the linear value. A
+coefficient of the seakeeping form belongs to its frequency, so that there is one at each. A
+non-linear term is recommended only where the evidence for its form decides.
+"""
+
+from analysis.coefficients.campaign_nonlinear import (
+    FIRST_HARMONICS,
+    QUASI,
+    STATIC_DRIFT,
+    SURGE_FORCES,
+)
+from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY, Entry
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.form_choice import LINEAR_FORM
+from analysis.coefficients.names import PLACES, Form, name_of
+from analysis.coefficients.terms import LOAD_WORDS, load_of, term_of
+
+_FIRST = (
+    ZERO_FREQUENCY,
+    HIGHER_ORDER,
+    FIRST_HARMONICS,
+    STATIC_DRIFT,
+    LINEAR,
+    QUASI,
+    SURGE_FORCES,
+)  # single runs are checks on all of these
+
+
+def recommended(found: CampaignCoefficients) -> tuple[int, ...]:
+    """Return the places of the values to be used first, one a coefficient and carriage speed.
+
+    In the seakeeping form: one a coefficient, speed and frequency.
+    """
+    spread = found.uncertain.standard_uncertainty
+    kinds = dict.fromkeys((one.name, one.speed_m_s) for one in found.entries)
+    curved = {kind: found.curved(*kind) for kind in kinds}
+
+    def order(k: int) -> tuple[int, float, float]:
+        """By method and frequency; then the smallest amplitude of a curve, else the surest."""
+        entry = found.entries[k]
+        size = entry.translation_amplitude_m + entry.rotation_amplitude_rad
+        last = size if curved[entry.name, entry.speed_m_s] else float(spread[k])
+        return _FIRST.index(entry.method), entry.frequency_hz, last
+
+    best: dict[tuple[str, float, float], int] = {}
+    for k in found.rows():
+        entry = found.entries[k]
+        if _serves(found, entry, curved=curved[entry.name, entry.speed_m_s]):
+            key = (entry.name, entry.speed_m_s, _own_frequency(entry))
+            best[key] = min(best.get(key, k), k, key=order)
+    return tuple(best.values())
+
+
+def _own_frequency(entry: Entry) -> float:
+    """Frequency that a coefficient belongs to; 0 for a derivative, which is of slow motion."""
+    return round(entry.frequency_hz, 4) if _of_seakeeping(entry.name) else 0.0
+
+
+def _of_seakeeping(name: str) -> bool:
+    return name[0] in "ab"
+
+
+def _serves(found: CampaignCoefficients, entry: Entry, *, curved: bool) -> bool:
+    if entry.method not in _FIRST:
+        return False
+    if _of_seakeeping(entry.name):
+        return entry.method == LINEAR
+    if load_of(entry.name) == LOAD_WORDS[2]:
+        return True
+    if found.form is Form.SEAKEEPING and not curved:
+        names = [name_of(place, found.plane, Form.MANOEUVRING) for place in PLACES]
+        return entry.name not in names  # the same again in the other form
+    if term_of(entry.name, found.plane).degree < 2:
+        return True
+    choices = found.choices_of(entry.name, entry.runs)
+    return all(one.fitted == one.verdict != LINEAR_FORM for one in choices)

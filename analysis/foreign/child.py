@@ -1,0 +1,91 @@
+"""The process that reads: ``python -m analysis.foreign.child``, a request a line.
+
+A request is JSON: the path, the kind of file, memory in bytes and time in seconds. The answer is a
+line of JSON, the columns with their units and lengths or why there are none, and behind it the
+columns' numbers as they lie in memory. It ends when its parent closes the line, or dies.
+"""
+
+import faulthandler
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+import numpy as np
+
+from analysis.foreign.found import LONGEST_ANSWER, ForeignColumns
+from analysis.limits import MOST_COLUMNS
+from hardware.description.errors import DataError
+
+_GRACE_S: Final = 5.0  # after the parent's own deadline: it may be dead
+
+
+def _readers() -> Mapping[str, Callable[[Path], ForeignColumns]]:
+    from analysis.foreign.mat import read_mat
+    from analysis.foreign.tdms import read_tdms
+
+    return {"mat": read_mat, "tdms": read_tdms}
+
+
+def main() -> None:
+    """Answer requests until there are no more."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints is no answer
+    readers = _readers()
+    for line in sys.stdin.buffer:
+        request = json.loads(line)
+        _limit_memory(int(request["memory_bytes"]))
+        # A thread of C, not of Python: it ends the process whatever that is at.
+        faulthandler.dump_traceback_later(request["seconds"] + _GRACE_S, exit=True)
+        _answer(readers[request["kind"]], Path(request["path"]), answers)
+        faulthandler.cancel_dump_traceback_later()
+
+
+def _answer(read: Callable[[Path], ForeignColumns], path: Path, answers: BinaryIO) -> None:
+    try:
+        found = read(path)
+    except DataError as error:
+        _say({"refused": str(error)}, answers)
+    except MemoryError:
+        _say({"memory": True}, answers)
+    except Exception as error:  # a library may raise anything over a damaged file
+        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        _say({"refused": f"damaged: {what[:500]}"}, answers)
+    else:
+        _hand_on(found, answers)
+    answers.flush()
+
+
+def _hand_on(found: ForeignColumns, answers: BinaryIO) -> None:
+    units, values = found.units, found.values
+    columns = [[name, units.get(name, ""), len(one)] for name, one in values.items()]
+    answer = {"columns": columns, "sample_rate_hz": found.sample_rate_hz}
+    if len(columns) > MOST_COLUMNS or len(json.dumps(answer)) >= LONGEST_ANSWER:
+        _say({"refused": f"{len(columns)} columns; the limit is {MOST_COLUMNS}"}, answers)
+        return
+    _say(answer, answers)
+    for one in values.values():
+        answers.write(np.ascontiguousarray(one, np.float64).data)
+
+
+def _say(answer: Mapping[str, Any], answers: BinaryIO) -> None:
+    answers.write(json.dumps(answer).encode() + b"\n")
+
+
+def _limit_memory(most: int) -> None:
+    """Take no more memory than that, where the system can; Windows and macOS cannot."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+    except (OSError, ValueError):
+        return  # a system that knows no such limit, or has a lower one
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,28 @@
+"""Columns of numbers from a file that is no text."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from analysis.recording import FloatArray
+
+LONGEST_ANSWER: Final = 1 << 22  # bytes: names, units and lengths of 4096 columns, 1 KiB each
+
+
+@dataclass(frozen=True, eq=False)
+class ForeignColumns:
+    """What was found in a file.
+
+    Attributes
+    ----------
+    values
+        By name; they need not be of one length.
+    units
+        By name, where the file states one.
+    sample_rate_hz
+        Where the file states it; a time column goes before it.
+    """
+
+    values: Mapping[str, FloatArray]
+    units: Mapping[str, str]
+    sample_rate_hz: float | None = None

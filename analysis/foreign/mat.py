@@ -1,0 +1,117 @@
+"""Recordings from MATLAB: MAT files of version 5 (and 4, 6, 7), and 7.3, which is HDF5.
+
+Every vector of numbers is a column, under its variable's name; a matrix with more rows than columns
+is a column for each (``data#1``, ``data#2`` ...), a struct's fields are ``run.force`` and so on.
+Scalars called ``fs``, ``sample_rate_hz`` or ``sample_rate`` state the rate, ``dt`` its inverse.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.foreign.found import ForeignColumns
+from analysis.recording import FloatArray
+from hardware.description.errors import DataError
+
+_RATES: Final = ("fs", "sample_rate_hz", "sample_rate", "samplerate")
+_STEPS: Final = ("dt", "ts")
+_DEEPEST: Final = 4  # structs within structs
+_HDF5: Final = b"\x89HDF\r\n\x1a\n"
+_USER_BLOCK: Final = 512  # what MATLAB writes before the HDF5 of version 7.3
+
+
+def read_mat(path: Path) -> ForeignColumns:
+    """Return the columns of a MAT file.
+
+    Raises
+    ------
+    DataError
+        If it is none that can be read.
+    """
+    content = _version_73(path) if _is_hdf5(path) else _version_5(path)
+    arrays = dict(_flat("", content, 0))
+    return ForeignColumns(dict(_columns(arrays)), {}, _rate(arrays))
+
+
+def _is_hdf5(path: Path) -> bool:
+    with path.open("rb") as file:
+        head = file.read(_USER_BLOCK + len(_HDF5))
+    return head.startswith(_HDF5) or head[_USER_BLOCK:] == _HDF5
+
+
+def _version_5(path: Path) -> dict[str, Any]:
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    try:
+        found: dict[str, Any] = loadmat(path, simplify_cells=True, mat_dtype=False)
+    except (MatReadError, OSError, ValueError, TypeError, NotImplementedError) as error:
+        raise DataError(f"not a MAT file that can be read: {error}") from None
+    return {key: one for key, one in found.items() if not key.startswith("__")}
+
+
+def _version_73(path: Path) -> dict[str, Any]:
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            return _group(file)
+    except (OSError, RuntimeError, KeyError) as error:
+        raise DataError(f"the MAT file (7.3) is damaged: {error}") from None
+
+
+def _group(group: Any) -> dict[str, Any]:
+    """Return a group's numbers; MATLAB keeps its arrays with the axes turned round."""
+    import h5py
+
+    found: dict[str, Any] = {}
+    for key, one in group.items():
+        if key.startswith("#"):
+            continue  # where MATLAB keeps what others refer to
+        if isinstance(one, h5py.Group):
+            found[key] = _group(one)
+        elif one.dtype.kind in "fiu" and _text(one.attrs.get("MATLAB_class")) != "char":
+            found[key] = np.asarray(one[()]).T
+    return found
+
+
+def _text(value: Any) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _flat(prefix: str, content: Mapping[str, Any], depth: int) -> Iterator[tuple[str, Any]]:
+    """Yield all arrays with the path to them."""
+    for key, one in content.items():
+        if isinstance(one, Mapping):
+            if depth < _DEEPEST:
+                yield from _flat(f"{prefix}{key}.", one, depth + 1)
+        elif isinstance(one, np.ndarray | int | float) and not isinstance(one, bool):
+            array = np.asarray(one)
+            if array.dtype.kind in "fiu":
+                yield f"{prefix}{key}", array.astype(np.float64, copy=False)
+
+
+def _columns(arrays: Mapping[str, FloatArray]) -> Iterator[tuple[str, FloatArray]]:
+    for name, array in arrays.items():
+        squeezed = np.squeeze(array)
+        if squeezed.ndim == 1 and squeezed.size > 1:
+            yield name, np.ascontiguousarray(squeezed)
+        elif squeezed.ndim == 2:
+            upright = squeezed if squeezed.shape[0] >= squeezed.shape[1] else squeezed.T
+            for k, column in enumerate(upright.T, 1):
+                yield f"{name}#{k}", np.ascontiguousarray(column)
+
+
+def _rate(arrays: Mapping[str, FloatArray]) -> float | None:
+    """Return the rate that a scalar states, if one does."""
+    for name, array in arrays.items():
+        last = name.rpartition(".")[2].casefold()
+        if array.size != 1 or not float(array.flat[0]) > 0.0:
+            continue
+        if last in _RATES:
+            return float(array.flat[0])
+        if last in _STEPS:
+            return 1.0 / float(array.flat[0])
+    return None

@@ -1,0 +1,67 @@
+"""Recordings from LabVIEW: TDMS files, by the package npTDMS (extra ``tdms``).
+
+Each channel is a column under its own name, with its group's before it (``group/channel``) where
+two groups have one of that name. The unit is its property ``unit_string`` (or
+``NI_UnitDescription``), the rate one over ``wf_increment``; a channel of times goes before that.
+"""
+
+import struct
+from collections import Counter
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.foreign.found import ForeignColumns
+from hardware.description.errors import DataError
+
+_UNITS: Final = ("unit_string", "NI_UnitDescription")
+
+
+def read_tdms(path: Path) -> ForeignColumns:
+    """Return the columns of a TDMS file.
+
+    Raises
+    ------
+    DataError
+        If it is none that can be read, or its channels have several rates.
+    """
+    from nptdms import TdmsFile
+
+    try:
+        with path.open("rb") as raw, TdmsFile.open(raw) as file:
+            channels = [one for group in file.groups() for one in group.channels()]
+            return _columns(channels)
+    except (OSError, ValueError, KeyError, IndexError, EOFError, struct.error) as error:
+        raise DataError(f"not a sound TDMS file: {error}") from None
+
+
+def _columns(channels: list[Any]) -> ForeignColumns:
+    numbers = [one for one in channels if len(one) > 1 and one.dtype.kind in "fiu"]
+    counts = Counter(one.name for one in numbers)
+    names = [
+        one.name if counts[one.name] == 1 else f"{one.group_name}/{one.name}" for one in numbers
+    ]
+    values = {
+        name: np.asarray(one[:], dtype=np.float64) for name, one in zip(names, numbers, strict=True)
+    }
+    units = {name: _unit(one) for name, one in zip(names, numbers, strict=True)}
+    return ForeignColumns(values, units, _rate(numbers))
+
+
+def _unit(channel: Any) -> str:
+    return next((str(channel.properties[key]) for key in _UNITS if key in channel.properties), "")
+
+
+def _rate(channels: list[Any]) -> float | None:
+    """Return the rate of the longest channels, which has to be one."""
+    longest = max(map(len, channels), default=0)
+    steps = {
+        float(one.properties["wf_increment"])
+        for one in channels
+        if len(one) == longest and float(one.properties.get("wf_increment", 0.0)) > 0.0
+    }
+    if len(steps) > 1:
+        rates = ", ".join(f"{1.0 / step:g}" for step in sorted(steps))
+        raise DataError(f"channels of one length have several rates ({rates} Hz)")
+    return 1.0 / steps.pop() if steps else None

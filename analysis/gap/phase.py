@@ -1,0 +1,64 @@
+"""What tells the phase of a run in the diagnosis: the simulation has to be able to tell it too."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.recording import Recording
+from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference import from_encoder
+from hardware.description.channels import (
+    DISPLACEMENT_AFT,
+    DISPLACEMENT_FORE,
+    FORCE_AFT,
+    FORCE_FORE,
+    SHAFT_ANGLE,
+)
+from hardware.description.errors import DataError
+
+_SIGNALS = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
+_LAST = (FORCE_AFT.name, FORCE_FORE.name)
+
+
+def choose_phase(
+    recording: Recording, told: ReferenceChoice = ReferenceChoice()
+) -> tuple[Recording, ReferenceChoice]:
+    """Return what the phase comes from, and the recording with the pulses that this takes.
+
+    What the campaign names comes first, then the photocell, a strut's displacement, the encoder,
+    and a force. The encoder counts as a photocell whose pulses are its whole turns: so its own
+    harmonics are still compared. A channel that the rig does not have, such as a synchro signal,
+    tells the phase as a photocell would.
+
+    Raises
+    ------
+    DataError
+        If nothing in the recording tells the phase.
+    """
+    names, edges = recording.channel_names, recording.photocell_edges_s
+    has_pulses = edges is not None and len(edges) > 1
+    if told.channel is not None and told.channel != SHAFT_ANGLE.name:
+        recording.index(told.channel)
+        return recording, ReferenceChoice(channel=told.channel)
+    if has_pulses and told.channel is None:
+        return recording, replace(told, channel=None, frequency_hz=None)
+    encoder = SHAFT_ANGLE.name in names
+    for name in _SIGNALS if told.channel is None or not encoder else ():
+        if name in names:
+            return recording, ReferenceChoice(channel=name)
+    if encoder:
+        return _turns(recording, told.angle_offset_rad), ReferenceChoice()
+    for name in _LAST:
+        if name in names:
+            return recording, ReferenceChoice(channel=name)
+    raise DataError(f"{recording.name}: nothing in it tells the phase")
+
+
+def _turns(recording: Recording, angle_offset_rad: float) -> Recording:
+    """Return a recording with a pulse at each whole turn of its encoder."""
+    times_s, angle_rad = recording.time_s(), recording.values(SHAFT_ANGLE.name)
+    there = np.isfinite(angle_rad)
+    encoder = from_encoder(times_s[there], angle_rad[there], angle_offset_rad)
+    first, last = encoder.cycles[0], encoder.cycles[-1]
+    pulses = encoder.times_at(np.arange(np.ceil(first), np.floor(last) + 1.0))
+    return replace(recording, photocell_edges_s=pulses)

@@ -1,0 +1,69 @@
+"""Harmonics of a run's channels over the averaged cycle, and back.
+
+Phasors have their orders on the axis before the last, ``(..., orders + 1, k)``, with a real mean:
+``y = H[0] + sum of Im(H[n] exp(i n theta))``. As real numbers they are interleaved, ``S0 C0 S1 C1``
+of each channel in turn, order by order, as :mod:`analysis.coefficients.phasors` has them.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.kinematics.geometry import Waves
+from analysis.kinematics.motion import Driven
+
+INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 degrees
+
+
+def waves(parts: Waves, channels: int, times: int = 0) -> Waves:
+    """Return the waves of interleaved parts, or their derivative by theta.
+
+    Parameters
+    ----------
+    parts
+        Shape ``(..., 2 * channels * (orders + 1))``.
+    times
+        How often they are differentiated.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(..., channels, INSTANTS)``.
+    """
+    shaped = parts.reshape(*parts.shape[:-1], -1, channels, 2)
+    by_channel = np.moveaxis(shaped, -2, -3).reshape(*parts.shape[:-1], channels, -1)
+    return np.asarray(by_channel @ _basis(shaped.shape[-3], times))
+
+
+def driven(parts: Waves, omega: Waves | float) -> Driven:
+    """Return what two channels of displacements drive; ``omega`` of shape ``(...)``."""
+    speed = np.asarray(omega)[..., None, None]
+    value, rate, acceleration = (waves(parts, 2, n) * speed**n for n in range(3))
+    return Driven(value, rate, acceleration)
+
+
+def harmonics(over: Waves, orders: int) -> Waves:
+    """Return interleaved parts of waves: the inverse of :func:`waves` at the orders there are.
+
+    Shape ``(..., k, INSTANTS)`` to ``(..., 2 * k * (orders + 1))``.
+    """
+    by_channel = (over @ _mean(orders + 1)).reshape(*over.shape[:-1], orders + 1, 2)
+    return np.asarray(np.moveaxis(by_channel, -2, -3).reshape(*over.shape[:-2], -1))
+
+
+@lru_cache(maxsize=32)
+def _basis(count: int, times: int) -> NDArray[np.float64]:
+    """Sine and cosine of each order, differentiated; shape ``(2 * count, INSTANTS)``."""
+    order = np.arange(count)[:, None]
+    angle = order * 2.0 * np.pi * np.arange(INSTANTS) / INSTANTS + times * np.pi / 2.0
+    found = (order**times)[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=1)
+    found[0] = [[float(times == 0)], [0.0]]  # the mean is real
+    return np.asarray(found, dtype=np.float64).reshape(2 * count, INSTANTS)
+
+
+@lru_cache(maxsize=32)
+def _mean(count: int) -> NDArray[np.float64]:
+    """Means with sine and cosine that give the parts back, shape ``(INSTANTS, 2 * count)``."""
+    scale = np.where(np.arange(2 * count) < 2, 1.0, 2.0) / INSTANTS
+    return np.asarray(_basis(count, 0).T * scale, dtype=np.float64)

@@ -1,0 +1,66 @@
+"""How a run's rig stands: what its kinematics and its gauges' readings are reckoned with."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
+from hardware.description.oscillator import Plane
+
+Waves = NDArray[Any]
+"""Over instants, the last axis; complex only for :func:`analysis.kinematics.linearised.slope`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """The rig of one run, or of many: each number may be an array that fits the waves' axes.
+
+    Attributes
+    ----------
+    half_spacing_m
+        The distance ``l``.
+    speed_m_s
+        Of the carriage.
+    drift_rad
+        Mean heading of the model, bow to starboard (bow up), set as ``arrangement.drift_by`` says.
+    """
+
+    plane: Plane
+    half_spacing_m: Waves | float
+    arrangement: Arrangement = field(default_factory=Arrangement)
+    speed_m_s: Waves | float = 0.0
+    drift_rad: Waves | float = 0.0
+
+    @property
+    def side(self) -> float:
+        """+1 where the rotation turns ahead into across (yaw), -1 for pitch, bow up."""
+        return -1.0 if self.plane is Plane.VERTICAL else 1.0
+
+    @property
+    def has_table(self) -> bool:
+        """Whether a turntable holds the model, not two struts."""
+        return self.arrangement.joint is Joint.YAW_TABLE
+
+    @property
+    def pivot_sign(self) -> float:
+        """+1 where the reference point is ahead of the pivot, -1 where it is behind it."""
+        return 1.0 if self.arrangement.pivot is Pivot.AFT else -1.0
+
+    @property
+    def gauges_turn(self) -> bool:
+        """Whether the dynamometers turn with the model."""
+        return self.arrangement.gauges is Gauges.MODEL
+
+    def turned(self, by: DriftBy) -> Waves | float:
+        """Return the drift that is set in one way, ahead towards across; 0 if in another."""
+        return self.side * self.drift_rad if self.arrangement.drift_by is by else 0.0
+
+    @property
+    def offset_m(self) -> Waves | float:
+        """By how much the fore strut's mean position lies off the rig's middle; the aft's less."""
+        angle = self.turned(DriftBy.STRUTS_OFFSET)
+        on_model = self.arrangement.joint is Joint.SLIDES_ON_MODEL
+        lever: Waves | float = np.tan(angle) if on_model else np.sin(angle)
+        return self.half_spacing_m * lever

@@ -1,0 +1,104 @@
+"""What the model's inertia and weight ask of the struts, exactly: force, moment, surge force.
+
+About the reference point, in body axes; the body's points from there too. What the struts exert
+less these is what they exert against the water. All of it is linear in the body's moments, mass,
+m x_G, m z_G and I: :func:`inertia_terms` and :func:`weight_terms` give what each of them asks, for
+many runs at once and for bodies that are known with an uncertainty.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.kinematics.geometry import Geometry, Waves
+from analysis.kinematics.motion import Driven, Motion, motion
+from analysis.kinematics.projection import readings
+from hardware.description.body import Body
+from hardware.description.oscillator import Plane
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+
+@dataclass(frozen=True)
+class Buoyancy:
+    """Of a body under water: displaced mass and its centre, from the reference point."""
+
+    displaced_kg: float
+    centre_x_m: float = 0.0
+    centre_z_m: float = 0.0
+
+
+def moments(body: Body) -> NDArray[np.float64]:
+    """Return mass, m x_G, m z_G and I: kg, kg m, kg m and kg m^2."""
+    mass = body.mass_kg
+    return np.array([mass, mass * body.cg_x_m, mass * body.cg_z_m, body.inertia_kg_m2])
+
+
+def inertia(body: Body, motion: Motion, plane: Plane) -> Waves:
+    """Return what the body's inertia asks, shape ``(..., 3, instants)``.
+
+    With the centre of gravity x_G ahead and z_G down (nothing to the side):
+
+        Y = m (v' + u r + x_G r')      N = I r' + m x_G (v' + u r)      X = m (u' - v r - x_G r^2)
+
+        Z = m (w' - u q - x_G q' - z_G q^2)      M = I q' - m x_G (w' - u q) + m z_G (u' + w q)
+        X = m (u' + w q + z_G q' - x_G q^2)
+    """
+    return _sum(moments(body), inertia_terms(motion, plane))
+
+
+def inertia_terms(motion: Motion, plane: Plane) -> Waves:
+    """Return what each of the :func:`moments` asks, shape ``(..., 4, 3, instants)``."""
+    u, v, r = np.moveaxis(motion.velocity, -2, 0)
+    u_rate, v_rate, r_rate = np.moveaxis(motion.rate, -2, 0)
+    vertical = plane is Plane.VERTICAL
+    side = -1.0 if vertical else 1.0
+    along, across, none = u_rate - side * v * r, v_rate + side * u * r, np.zeros_like(r)
+    below = (-(r**2), along, r_rate) if vertical else (none, none, none)
+    return _stacked(
+        (across, none, along),
+        (side * r_rate, side * across, -(r**2)),
+        below,
+        (none, r_rate, none),
+    )
+
+
+def weight(body: Body, motion: Motion, buoyancy: Buoyancy | None = None) -> Waves:
+    """Return what weight and buoyancy ask of the struts in the vertical plane.
+
+    Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)`` of the weight alone.
+    """
+    hanging = moments(body)[:3]
+    if buoyancy is not None:
+        lever = np.array([1.0, buoyancy.centre_x_m, buoyancy.centre_z_m])
+        hanging = hanging - buoyancy.displaced_kg * lever
+    return _sum(hanging, weight_terms(motion))
+
+
+def weight_terms(motion: Motion) -> Waves:
+    """Return what mass, m x_G and m z_G ask as weight, shape ``(..., 3, 3, instants)``."""
+    sine = STANDARD_GRAVITY_M_S2 * np.sin(motion.rotation_rad)
+    cosine = STANDARD_GRAVITY_M_S2 * np.cos(motion.rotation_rad)
+    none = np.zeros_like(sine)
+    return _stacked((-cosine, none, sine), (none, cosine, none), (none, sine, none))
+
+
+def zero_readings(geometry: Geometry, body: Body, buoyancy: Buoyancy | None = None) -> Waves:
+    """Return what the gauges read of the body at rest where the drift sets it, shape ``(3,)``.
+
+    A zero run takes it off the readings of the runs after it, so it comes back before weight does
+    off their loads. Of the vertical plane; in the horizontal one there is nothing.
+    """
+    still = np.zeros((2, 1))
+    at = motion(geometry, Driven(still, still, still))
+    if geometry.plane is Plane.HORIZONTAL:
+        return np.zeros(3)
+    return readings(geometry, at.line_rad, weight(body, at, buoyancy))[:, 0]
+
+
+def _sum(values: NDArray[np.float64], terms: Waves) -> Waves:
+    return np.asarray(np.einsum("k,...krt->...rt", values, terms))
+
+
+def _stacked(*terms: tuple[Waves, Waves, Waves]) -> Waves:
+    return np.stack([np.stack(term, axis=-2) for term in terms], axis=-3)

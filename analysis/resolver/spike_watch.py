@@ -1,0 +1,71 @@
+"""Spikes of a run that is still being recorded: judged by what has come so far."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.recording import FloatArray
+from analysis.spikes import Pulses, Spike, curvature_of_chunks, find_pulses, most_of, switches
+
+
+@dataclass(frozen=True, eq=False)
+class LiveSpike:
+    """A spike that was taken out of a live reading: the channel's row, and its first sample.
+
+    ``spike`` counts samples as the window it was found in; ``number`` counts them from the run's
+    first one.
+    """
+
+    row: int
+    number: int
+    spike: Spike
+
+
+class SpikeWatch:
+    """Take spikes out of a run's periods, one after the other.
+
+    The rule is the recording's, :func:`analysis.spikes.find_spikes`, on all that has come by the
+    end of the period. What only later turns out to recur, or to be no more than the run itself does
+    later, was taken out here until then; the recording's analysis leaves it in.
+    """
+
+    def __init__(self, channels: int) -> None:
+        self._known = [Pulses((), 0.0)] * channels
+        self._numbers: list[list[int]] = [[] for _ in range(channels)]
+
+    def take_out(self, values: FloatArray, first: int) -> list[LiveSpike]:
+        """Put the cubic in the place of spikes, and return those.
+
+        Parameters
+        ----------
+        values
+            A period and what its edges need, shape ``(channels, samples)``; changed in place.
+        first
+            Number of their first sample; all before and in it count as what has come.
+        """
+        taken: list[LiveSpike] = []
+        with np.errstate(over="ignore", invalid="ignore"):
+            bends = curvature_of_chunks(values)
+            for row, bend in enumerate(bends):
+                taken += self._of_channel(values, row, bend, first)
+        for one in taken:
+            values[one.row, one.spike.start : one.spike.stop] = one.spike.instead
+        return taken
+
+    def _of_channel(
+        self, values: FloatArray, row: int, bend: FloatArray, first: int
+    ) -> list[LiveSpike]:
+        known, numbers = self._known[row], self._numbers[row]
+        if not bend.max(initial=0.0) > known.rest:
+            return []
+        found = find_pulses(values, row, bend, most_of(first + values.shape[1]))
+        new = [one for one in found.found if one.start + first not in numbers]
+        numbers += [one.start + first for one in new]
+        pulses = tuple(one.moved(first) for one in new)
+        now = Pulses(known.found + pulses, max(known.rest, found.rest))
+        if np.isfinite(now.rest):
+            self._known[row] = now
+        spikes = [one for one in now.spikes() if one in pulses]
+        if not spikes or switches(values, row):
+            return []
+        return [LiveSpike(row, one.start, one.moved(-first)) for one in spikes]

@@ -1,0 +1,278 @@
+"""Spikes: one to three samples that neither their neighbours nor the rest of the record explain.
+
+What a record does by itself is measured by its curvature, the second difference of its samples:
+noise, steep waves, corners, steps and impacts all show there. A spike is taken out by the cubic
+through the samples beside it, and is one where that makes the curvature around it less than an
+eighth, where it is eight times that of all in the record that is no such pulse, and where it does
+not come again and again as what moves does. A step, a corner or a ring remains beside the cubic; a
+photocell's pulse and an impact at each reversal come again. The rest of the record is the limit, so
+that the noise need not be known: of white Gaussian noise one sample in a million is 4.9 standard
+deviations, and it takes about 45 to be a spike.
+
+``docs/decisions/0019-spikes.md`` has what was measured.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.recording import FloatArray, Samples
+
+LONGEST_SPIKE: Final = 3  # samples: more is an event, not a sample gone wrong
+STANDS_OUT: Final = 8.0  # times the curvature of the rest; the cubic leaves 1/5.5 of a step's
+CALM: Final = 8  # samples on either side over which the cubic must have made it calm
+MOST_OF_A_CHANNEL: Final = 0.005  # of its samples; more pulses than that are what it measures
+MOST: Final = 100  # spikes in a channel
+SAME_INTERVAL: Final = 1.05  # times: intervals nearer to each other are alike
+FEWEST_LEVELS: Final = 16  # fewer: a switch, or a display of a few digits
+
+_CHUNK: Final = 32  # samples of which only the greatest curvature is kept
+_BLOCK: Final = 1024 * _CHUNK  # samples read at a time
+AROUND: Final = CALM + LONGEST_SPIKE + 2  # samples of a window to either side of a curvature
+_NEAREST_END: Final = 4  # samples that a spike is at least away from the record's ends
+
+
+@dataclass(frozen=True, eq=False)
+class Spike:
+    """Samples ``start`` to ``stop`` (exclusive) that are no measurement.
+
+    Attributes
+    ----------
+    size
+        How far the worst of them lies from the cubic, with its sign, in the channel's unit.
+    curvature
+        The largest second difference at it.
+    instead
+        The cubic's values, shape ``(stop - start,)``.
+    """
+
+    start: int
+    stop: int
+    size: float
+    curvature: float
+    instead: FloatArray
+
+    def moved(self, samples: int) -> "Spike":
+        """Return the spike as counted from a sample so many earlier."""
+        return replace(self, start=self.start + samples, stop=self.stop + samples)
+
+
+@dataclass(frozen=True)
+class Pulses:
+    """What stands out of a channel, and how much the rest of it bends.
+
+    Attributes
+    ----------
+    found
+        Short pulses in calm surroundings, in order of time; all bend more than the rest.
+    rest
+        The largest second difference of all else; infinite where there are more pulses than spikes
+        could be.
+    """
+
+    found: tuple[Spike, ...]
+    rest: float
+
+    def spikes(self) -> tuple[Spike, ...]:
+        """Return the pulses that are spikes: those that stand out, and do not recur as motion."""
+        tall = [one for one in self.found if one.curvature > STANDS_OUT * self.rest]
+        return tuple(one for one in tall if not _recur(self._like(one)))
+
+    def _like(self, spike: Spike) -> FloatArray:
+        """Return the places of all pulses that bend an eighth as much or more."""
+        like = [one.start for one in self.found if one.curvature * STANDS_OUT >= spike.curvature]
+        return np.array(like, dtype=np.float64)
+
+
+def find_spikes(samples: Samples) -> tuple[tuple[Spike, ...], ...]:
+    """Find the spikes of each channel; what is long is read a stretch at a time.
+
+    Missing samples are passed over. Spikes nearer to each other than 8 samples, or nearer to an end
+    of the record than 4, are not found.
+    """
+    if samples.shape[1] <= _BLOCK:
+        samples = samples[:, 0 : samples.shape[1]]  # read once
+    with np.errstate(over="ignore", invalid="ignore"):  # of numbers near the largest
+        curvature = _curvature(samples)
+        return tuple(_spikes_of(samples, row, one) for row, one in enumerate(curvature))
+
+
+def most_of(count: int) -> int:
+    """Return how many spikes so many samples of a channel may have."""
+    return min(MOST, max(1, int(MOST_OF_A_CHANNEL * count)))
+
+
+def find_pulses(samples: Samples, row: int, curvature: FloatArray, most: int) -> Pulses:
+    """Walk down from where a channel bends most until what bends is no pulse.
+
+    Parameters
+    ----------
+    curvature
+        The largest second differences of each 32 samples, shape ``(chunks,)``; changed in place.
+    most
+        Pulses beyond which none is a spike.
+    """
+    count = samples.shape[1]
+    found: list[Spike] = []
+    while curvature.size:
+        chunk = int(np.argmax(curvature))
+        place, values, bend = _window(samples, row, chunk, found)
+        if bend < curvature[chunk]:
+            curvature[chunk] = bend  # what was taken out stood here too
+            continue
+        pulse = _pulse(place, values, count) if 0.0 < bend < np.inf else None
+        if pulse is None or any(_touch(pulse, one) for one in found):
+            return Pulses(tuple(sorted(found, key=lambda one: one.start)), bend)
+        found.append(pulse)
+        if len(found) > most:
+            return Pulses((), np.inf)
+    return Pulses((), 0.0)
+
+
+def _spikes_of(samples: Samples, row: int, curvature: FloatArray) -> tuple[Spike, ...]:
+    spikes = find_pulses(samples, row, curvature, most_of(samples.shape[1])).spikes()
+    return () if spikes and switches(samples, row) else spikes
+
+
+def _curvature(samples: Samples) -> FloatArray:
+    """Return the largest second difference of each 32 samples, shape ``(channels, chunks)``."""
+    channels, count = samples.shape
+    found = [
+        curvature_of_chunks(samples[:, start : min(start + _BLOCK + 2, count)])
+        for start in range(0, max(count - 2, 0), _BLOCK)
+    ]
+    return np.concatenate([np.zeros((channels, 0)), *found], axis=1)
+
+
+def curvature_of_chunks(values: FloatArray) -> FloatArray:
+    """Return the largest second difference of each 32 of some samples; see :func:`find_pulses`.
+
+    Parameters
+    ----------
+    values
+        Shape ``(channels, samples)``; over missing samples goes a straight line.
+    """
+    chunks = -(-(values.shape[1] - 2) // _CHUNK)
+    found = np.empty((len(values), max(chunks, 0)))
+    for row, channel in zip(found, values, strict=True):
+        bend = np.zeros(row.size * _CHUNK)
+        _second_difference(_without_holes(channel), bend[: channel.size - 2])
+        bend.reshape(-1, _CHUNK).max(axis=1, out=row)
+    return found
+
+
+def _second_difference(values: FloatArray, into: FloatArray) -> None:
+    steps = np.diff(values)
+    np.subtract(steps[1:], steps[:-1], out=into)
+    np.abs(into, out=into)
+
+
+def _without_holes(values: FloatArray) -> FloatArray:
+    if np.isfinite(values.sum()):
+        return values
+    good = np.flatnonzero(np.isfinite(values))
+    if not good.size:
+        return np.zeros_like(values)
+    return np.interp(np.arange(values.size), good, values[good])
+
+
+def _window(
+    samples: Samples, row: int, chunk: int, found: list[Spike]
+) -> tuple[NDArray[np.int64], FloatArray, float]:
+    """Return the good samples around where a chunk bends most: their numbers and values, the bend.
+
+    What has been found already is taken out.
+    """
+    first = max(0, chunk * _CHUNK - 2 * AROUND)
+    stop = min(samples.shape[1], (chunk + 1) * _CHUNK + 2 * AROUND)
+    values = np.array(samples[row : row + 1, first:stop][0])
+    for one in found:
+        within = slice(max(one.start - first, 0), max(one.stop - first, 0))
+        values[within] = one.instead[max(first - one.start, 0) :][: values[within].size]
+    good = np.flatnonzero(np.isfinite(values))
+    place, values = good + first, values[good]
+    bend = np.abs(np.diff(values, n=2))
+    here = (place[1:-1] > chunk * _CHUNK) & (place[1:-1] <= (chunk + 1) * _CHUNK)
+    if not here.any():
+        return place, values, 0.0
+    at = 1 + int(np.argmax(np.where(here, bend, -1.0)))
+    around = slice(max(0, at - AROUND), at + AROUND + 1)
+    return place[around], values[around], float(bend[at - 1])
+
+
+def _pulse(place: NDArray[np.int64], values: FloatArray, count: int) -> Spike | None:
+    """Return the pulse in a window, if one to three samples are all that bends there.
+
+    Of those that calm the window the shortest is taken that does it about as well as any.
+    """
+    bends = np.abs(np.diff(values, n=2))
+    at, bend = 1 + int(np.argmax(bends)), float(bends.max())
+    beyond = np.abs(np.arange(1, values.size - 1) - at) > LONGEST_SPIKE + 1
+    if bends[beyond].max(initial=0.0) * STANDS_OUT > bend:
+        return None  # no cubic reaches that far
+    trials = []
+    for length in range(1, LONGEST_SPIKE + 1):
+        weights = cubic(length)
+        for start in range(max(at - length, 2), min(at + 2, values.size - length - 1)):
+            if place[start + length - 1] - place[start] != length - 1:
+                continue  # one side of a gap, not both
+            without = values.copy()
+            around = [start - 2, start - 1, start + length, start + length + 1]
+            without[start : start + length] = weights @ values[around]
+            left = float(np.abs(np.diff(without, n=2)).max())
+            trials.append((left, length, start, without))
+    best = min((left for left, *_ in trials), default=np.inf)
+    if not bend > STANDS_OUT * best:
+        return None
+    _, length, start, without = next(one for one in trials if one[0] <= 2.0 * best)
+    inside = slice(start, start + length)
+    away = values[inside] - without[inside]
+    first, last = int(place[start]), int(place[start + length - 1]) + 1
+    if first < _NEAREST_END or last > count - _NEAREST_END:
+        return None
+    beside = place[start - 2 : start + length + 2]
+    whole = int(beside[-1] - beside[0]) == beside.size - 1
+    instead = without[inside].copy() if whole else np.full(length, np.nan)
+    size = float(away[np.argmax(np.abs(away))])
+    return Spike(first, last, size, bend, instead)
+
+
+def cubic(length: int) -> FloatArray:
+    """Lagrange weights, shape ``(length, 4)``, of the two samples before and after a run."""
+    nodes = np.array([-2.0, -1.0, length, length + 1.0])
+    places = np.arange(length, dtype=np.float64)
+    weights = np.ones((length, 4))
+    for k in range(4):
+        for other in np.delete(nodes, k):
+            weights[:, k] *= (places - other) / (nodes[k] - other)
+    return weights
+
+
+def _touch(one: Spike, other: Spike) -> bool:
+    """Whether a pulse stands on what another's cubic rests on: then both are one longer event."""
+    return one.start - 2 < other.stop + 2 and other.start - 2 < one.stop + 2
+
+
+def _recur(times: FloatArray) -> bool:
+    """Whether most pulses follow each other, or the one before the last, at like intervals."""
+    intervals = np.diff(times)
+    for apart in (1, 2):
+        ratio = intervals[apart:] / intervals[:-apart]
+        alike = (ratio < SAME_INTERVAL) & (ratio > 1.0 / SAME_INTERVAL)
+        if 2 * np.count_nonzero(alike) > alike.size:
+            return True
+    return False
+
+
+def switches(samples: Samples, row: int) -> bool:
+    """Whether a channel has so few values that it is a switch, or a display of a few digits."""
+    count = samples.shape[1]
+    levels: NDArray[np.float64] = np.zeros(0)
+    for start in range(0, count, _BLOCK):
+        values = samples[row : row + 1, start : min(start + _BLOCK, count)][0]
+        levels = np.unique(np.concatenate((levels, values[np.isfinite(values)])))
+        if levels.size >= FEWEST_LEVELS:
+            return False
+    return True

@@ -1,0 +1,63 @@
+"""The command line of the boards; a slice that is broken off goes on where it was."""
+
+import argparse
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from benchmarks.boards.rows import BOARDS, RESULTS, Job, jobs_of, keep, kept, measured, missing
+from benchmarks.machine import commit, describe
+from tests.sealed.pool import each
+
+_LIMIT_S = 600.0  # of one case; what takes longer counts as a traceback
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Measure what is asked for and is not there yet."""
+    request = _parse(arguments)
+    now = commit()
+    rows = kept(request.board, request.output)
+    jobs = jobs_of(request.board, request.campaign, request.seeds)
+    todo = list(missing(jobs, rows, now if request.again else None))
+    print(
+        f"{request.board}: {len(jobs) - len(todo)} of {len(jobs)} there, commit {now}", flush=True
+    )
+    _measure(todo, request, now)
+    return 0
+
+
+def _measure(todo: Sequence[Job], request: argparse.Namespace, now: str) -> None:
+    began, machine = time.monotonic(), describe()["cpu"]
+    if not todo:
+        return
+    for done in each(measured, todo, request.workers, _LIMIT_S if request.workers > 1 else None):
+        row = done.value or {
+            "campaign": done.job.campaign,
+            "seed": done.job.first,
+            "outcome": "failed",
+            "said": done.failed,
+        }
+        keep(request.board, {**row, "commit": now, "cpu": machine}, request.output)
+        shown = {key: row[key] for key in ("outcome", "answer", "said", "cpu_s") if key in row}
+        print(done.job.campaign, done.job.first, shown or row.get("outcomes"), flush=True)
+        if request.seconds is not None and time.monotonic() - began > request.seconds:
+            return
+
+
+def _parse(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.boards", description=__doc__)
+    parser.add_argument("board", choices=BOARDS)
+    parser.add_argument(
+        "--campaign", action="append", default=[], metavar="NAME", help="repeatable"
+    )
+    parser.add_argument("--seeds", type=_span, metavar="A:B", help="from A to before B")
+    parser.add_argument("--seconds", type=float, metavar="S", help="begin nothing more after that")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
+    parser.add_argument("--again", action="store_true", help="also what another commit measured")
+    parser.add_argument("--output", type=Path, default=RESULTS, metavar="FOLDER")
+    return parser.parse_args(arguments)
+
+
+def _span(text: str) -> tuple[int, int]:
+    first, _, stop = text.partition(":")
+    return int(first), int(stop)

@@ -1,0 +1,108 @@
+"""What is measured, slice by slice: jobs, the lines that are kept, and which are there already."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from benchmarks.boards import friction
+from benchmarks.boards.campaigns import NULLS
+from benchmarks.machine import ROOT
+
+RESULTS: Final = ROOT / "benchmarks" / "results" / "boards"
+FOLDERS: Final = 10_000  # mutated folders that go through the door
+TYPED: Final = 300  # of them through whole commands
+_SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
+BOARDS: Final = ("nulls", "friction", *_SLICES)
+
+Line = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``."""
+
+    board: str
+    campaign: str
+    first: int
+    stop: int
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """What tells its line from the others of its board."""
+        return self.campaign, self.first
+
+
+def jobs_of(board: str, campaigns: Sequence[str], seeds: tuple[int, int] | None) -> list[Job]:
+    """Return what a board asks for; seed 0 of every campaign before seed 1 of any.
+
+    Parameters
+    ----------
+    campaigns
+        Names of some; all if empty.
+    seeds
+        Only from the first up to before the second.
+    """
+    if board in _SLICES:
+        most, step = _SLICES[board]
+        every = [Job(board, "mutated", at, min(at + step, most)) for at in range(0, most, step)]
+    else:
+        counts = (
+            friction.SEEDS
+            if board == "friction"
+            else {name: one.seeds for name, one in NULLS.items()}
+        )
+        every = [
+            Job(board, name, seed, seed + 1)
+            for seed in range(max(counts.values()))
+            for name, count in counts.items()
+            if seed < count
+        ]
+    low, high = seeds or (0, FOLDERS)
+    return [
+        job
+        for job in every
+        if low <= job.first < high and (not campaigns or job.campaign in campaigns)
+    ]
+
+
+def measured(job: Job) -> Line:
+    """Measure one; in whichever process."""
+    if job.board in _SLICES:
+        from benchmarks.boards.mutated import counted
+
+        return {"campaign": job.campaign, **counted(job.board, job.first, job.stop)}
+    from benchmarks.boards.judged import null, planted
+
+    judge = null if job.board == "nulls" else planted
+    return judge(job.campaign, job.first)
+
+
+def file_of(board: str, folder: Path = RESULTS) -> Path:
+    """Return where a board's lines are kept."""
+    return folder / f"{board}.jsonl"
+
+
+def kept(board: str, folder: Path = RESULTS) -> list[Line]:
+    """Return the lines that are there; of two of one case the later."""
+    file = file_of(board, folder)
+    if not file.exists():
+        return []
+    rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line]
+    return list({(one["campaign"], one["seed"]): one for one in rows}.values())
+
+
+def missing(jobs: Sequence[Job], rows: Sequence[Line], commit: str | None) -> Iterator[Job]:
+    """Yield the jobs that have no line, or none of this commit if one is given."""
+    there = {
+        (one["campaign"], one["seed"]) for one in rows if commit is None or one["commit"] == commit
+    }
+    yield from (job for job in jobs if job.key not in there)
+
+
+def keep(board: str, row: Line, folder: Path = RESULTS) -> None:
+    """Add a line; processes that measure at the same time may do so too."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with file_of(board, folder).open("a", encoding="utf-8") as file:
+        file.write(json.dumps(row) + "\n")

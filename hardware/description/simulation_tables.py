@@ -1,0 +1,75 @@
+"""What ``rig.toml`` states of the rig that is simulated, under the names of ``campaign.toml``.
+
+One mapping for all who need it: the simulated devices build their rig from it, a plan's check tells
+where they depart from it, and the campaign that run control leaves behind has it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any, Final
+
+from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.oscillator import PRESETS
+
+GAUGES: Final = {FORCE_AFT.name: "aft", FORCE_FORE.name: "fore"}  # channel -> key of [dynamometers]
+_PHOTOCELL: Final = {"angle_offset_rad": "mark_angle_rad", "latency_s": "latency_s"}
+
+
+def simulation_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a simulation that a rig's file states, and only these.
+
+    ``[oscillator]`` with its preset's keys, ``[model]`` without its length, ``[hull]``, the gauges'
+    full scales as ``[dynamometers]``, ``[reference]`` as ``[photocell]``, and what stands in
+    ``[campaign]``, which goes before.
+
+    Parameters
+    ----------
+    rig
+        The file's tables as they were read; whoever runs the rig has checked them.
+    """
+    found: dict[str, Any] = {}
+    if "oscillator" in rig:
+        found["oscillator"] = with_preset(rig["oscillator"])
+    if "model" in rig:
+        found["model"] = {key: one for key, one in rig["model"].items() if key != "length_m"}
+    if "hull" in rig:
+        found["hull"] = dict(rig["hull"])
+    if ranges := _gauge_ranges(rig):
+        found["dynamometers"] = ranges
+    reference = rig.get("reference", {})
+    if cell := {to: reference[key] for key, to in _PHOTOCELL.items() if key in reference}:
+        found["photocell"] = cell
+    return merged(found, rig.get("campaign", {}))
+
+
+def with_preset(oscillator: Mapping[str, Any]) -> dict[str, Any]:
+    """Return ``[oscillator]`` with what its preset stands for; the keys beside it win."""
+    own = {key: one for key, one in oscillator.items() if key != "preset"}
+    preset = PRESETS.get(oscillator.get("preset", ""))
+    return own if preset is None else asdict(preset) | own
+
+
+def channels_of(rig: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the table of each channel of the amplifiers, by its name."""
+    return {one["name"]: one for part in rig.get("forces", ()) for one in part.get("channels", ())}
+
+
+def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return tables with others over them, key by key; lists are taken whole."""
+    found = dict(base)
+    for key, one in over.items():
+        before = found.get(key)
+        if isinstance(one, Mapping) and isinstance(before, Mapping):
+            found[key] = merged(before, one)
+        else:
+            found[key] = one
+    return found
+
+
+def _gauge_ranges(rig: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the full scale of the strut gauges: that of ``[[gauges]]``, else of the amplifiers."""
+    ranges = {name: one.get("full_scale") for name, one in channels_of(rig).items()}
+    if "gauges" in rig:
+        ranges = {one["channel"]: one["full_scale_n"] for one in rig["gauges"]}
+    known = ((GAUGES[name], one) for name, one in ranges.items() if name in GAUGES)
+    return {gauge: {"full_scale_n": one} for gauge, one in known if one is not None}

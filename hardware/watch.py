@@ -1,0 +1,123 @@
+"""Speed and loads, watched in every cycle: whatever the drivers, and whatever state a run is in."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.errors import HardwareError, OverloadError, OverspeedError
+from hardware.limits import OVERSPEED, OVERSPEED_S
+from hardware.roles import Block, ForceChannels, Shaft
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What must not be exceeded.
+
+    Attributes
+    ----------
+    frequency_hz
+        The oscillator's highest; the shaft's own limit holds beside it.
+    loads
+        Largest magnitude of channels by name, in their units; those without a name have none.
+    """
+
+    frequency_hz: float = math.inf
+    loads: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+
+class _WatchedForces:
+    """Hands everything on to an amplifier; sees its samples before whoever takes them."""
+
+    def __init__(self, inner: ForceChannels) -> None:
+        self._inner = inner
+        self._taken: list[Block] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._inner, name)
+
+    def look(self, loads: NDArray[np.float64]) -> OverloadError | None:
+        """Look at what has come; return the first channel beyond its load."""
+        found = None
+        for block in self._inner.take():
+            self._taken.append(block)
+            over = np.abs(block.values) > loads[:, None]
+            if found is None and over.any():
+                row = int(np.argmax(over.any(axis=1)))
+                found = self._beyond(row, float(block.values[row][over[row]][0]), float(loads[row]))
+        return found
+
+    def take(self) -> tuple[Block, ...]:
+        """Return the samples since the last call, oldest first."""
+        self._taken += self._inner.take()
+        taken, self._taken = self._taken, []
+        return _merged(taken)
+
+    def _beyond(self, row: int, value: float, limit: float) -> OverloadError:
+        one = self._inner.channels[row]
+        return OverloadError(
+            one.name,
+            f"{value:g} {one.unit} is beyond its safe load, {limit:g} {one.unit}; reduce amplitude "
+            "or frequency, and look at the gauge before the next run",
+        )
+
+
+class Watch:
+    """Compares what a rig's shaft and gauges show with the limits.
+
+    Attributes
+    ----------
+    forces
+        The amplifiers, to be used in place of those given.
+    """
+
+    def __init__(self, shaft: Shaft | None, forces: Sequence[ForceChannels]) -> None:
+        self._shaft = shaft
+        self._watched = tuple(_WatchedForces(one) for one in forces)
+        self.forces = cast("tuple[ForceChannels, ...]", self._watched)
+        self._cycles_beyond = 0
+        self.limit(Watched())
+
+    def limit(self, limits: Watched) -> None:
+        """Set the limits."""
+        own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
+        self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
+        self._loads = [
+            np.array([limits.loads.get(channel.name, math.inf) for channel in one.channels])
+            for one in self.forces
+        ]
+
+    def look(self) -> Iterator[HardwareError]:
+        """Yield what is beyond its limit in this cycle."""
+        if self._shaft is not None:
+            measured_hz = self._shaft.measured_frequency_hz
+            is_beyond = abs(measured_hz) > self._highest_hz
+            self._cycles_beyond = self._cycles_beyond + 1 if is_beyond else 0
+            if self._cycles_beyond >= max(1, round(OVERSPEED_S * self._shaft.sample_rate_hz)):
+                yield OverspeedError(
+                    self._shaft.name,
+                    f"turns at {measured_hz:g} Hz (limit {self._highest_hz:g} Hz either way)",
+                )
+        for one, loads in zip(self._watched, self._loads, strict=True):
+            found = one.look(loads)
+            if found is not None:
+                yield found
+
+
+def _merged(taken: Sequence[Block]) -> tuple[Block, ...]:
+    """Put blocks that follow each other without a gap into one."""
+    stretches: list[list[Block]] = []
+    end = None
+    for one in taken:
+        if one.first != end:
+            stretches.append([])
+        stretches[-1].append(one)
+        end = one.first + one.values.shape[1]
+    return tuple(
+        Block(parts[0].first, np.concatenate([one.values for one in parts], axis=1))
+        for parts in stretches
+    )

@@ -1,0 +1,209 @@
+"""The one door to a run's recording: all that a campaign says of it, for every command alike."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag, Severity
+from hardware.description.setpoint import SetPoint
+from hardware.roles import Reading
+from pmm.campaign import AtRest, Campaign, Run
+from pmm.recorder.files import EVENTS
+from pmm.recorder.texts import read_lines
+
+if TYPE_CHECKING:
+    from analysis.readers import ColumnMap
+    from analysis.readers.text_source import Progress
+    from analysis.recording import Recording
+    from pmm.calibration import Calibration
+
+RAW = "none"  # readings stay as the gauges gave them
+COMPLETE = "complete"
+_OWN_FORMAT = ".nc"  # says its own channels: a column map is for the files of other systems
+# Relative: a NetCDF file keeps a set-point as it was typed, and units for people cost a rounding.
+_SAME = 1e-6
+_WITHIN = 3.0  # standard uncertainties of a reading
+
+
+@dataclass(frozen=True, eq=False)
+class RecordingSource:
+    """Where a recording lies, and what is known of it besides: plain values for any process.
+
+    Attributes
+    ----------
+    name
+        Of the run; ``None`` leaves the file's own.
+    set_point
+        What the campaign says that the run was told to do; ``None`` leaves the recording's own.
+    columns, sample_rate_hz
+        How a file of another system is read; not for NetCDF.
+    at_rest
+        Whether the shaft stood: then no pulses are looked for, and where run control wrote when its
+        gate was open, that part is the recording.
+    outcome
+        Of the run.
+    differs
+        What plan, rig, model and calibration say otherwise of other runs of its campaign.
+    calibration
+        In place of the one that the recording carries; :data:`RAW` for none at all.
+    edges_file
+        Times of the photocell's pulses; ``None`` leaves what the recording or its columns say.
+    """
+
+    path: Path
+    name: str | None = None
+    set_point: SetPoint | None = None
+    columns: "ColumnMap | None" = None
+    sample_rate_hz: float | None = None
+    at_rest: bool = False
+    outcome: str = COMPLETE
+    differs: tuple[str, ...] = ()
+    calibration: "Calibration | str | None" = None
+    edges_file: Path | None = None
+
+    @classmethod
+    def of(cls, campaign: Campaign, run: Run | AtRest, folder: Path) -> "RecordingSource":
+        """Return that of a campaign's run or record at rest.
+
+        Parameters
+        ----------
+        folder
+            Where the campaign file lies.
+        """
+        return cls(
+            run.recording_path(folder),
+            run.name,
+            run.set_point if isinstance(run, Run) else None,
+            campaign.columns,
+            at_rest=isinstance(run, AtRest),
+            outcome=run.outcome,
+            differs=run.differs,
+        )
+
+
+def open_recording(
+    source: RecordingSource, *, partial: bool = False, progress: "Progress" = lambda _: None
+) -> "Recording":
+    """Read a run's recording: columns, pulses, forces in newtons, gate and set-point as they are.
+
+    Parameters
+    ----------
+    partial
+        Whether a run that was stopped is wanted too.
+    progress
+        Told which part of a text file has been read, from 0 to 1.
+
+    Raises
+    ------
+    DataError
+        If the run is not complete, or as :func:`analysis.readers.read_recording` and
+        :func:`pmm.calibrated.calibrated` do.
+    ConfigurationError
+        If there is no such file, or a column map or sample rate that cannot be.
+    """
+    from analysis.readers import read_recording
+    from analysis.readers.photocell import read_edges
+
+    if source.outcome != COMPLETE and not partial:
+        raise DataError(f"{source.name}: its outcome is {source.outcome!r}")
+    _check_there(source.path)
+    recording = read_recording(
+        source.path,
+        _columns(source),
+        sample_rate_hz=source.sample_rate_hz,
+        progress=progress,
+    )
+    recording = _in_newtons(recording, source.calibration)
+    if source.edges_file is not None:
+        _check_there(source.edges_file)
+        recording = replace(recording, photocell_edges_s=read_edges(source.edges_file))
+    if source.at_rest:
+        recording = replace(_gated(recording, source.path), photocell_edges_s=None)
+    return _named(recording, source)
+
+
+def _columns(source: RecordingSource) -> "ColumnMap | None":
+    if source.columns is None or source.path.suffix == _OWN_FORMAT:
+        return None
+    # A shaft that stands gives no pulses: neither a column nor a file of them is asked for.
+    return replace(source.columns, photocell=None) if source.at_rest else source.columns
+
+
+def _in_newtons(recording: "Recording", given: "Calibration | str | None") -> "Recording":
+    from pmm.calibrated import calibrated
+
+    return recording if isinstance(given, str) else calibrated(recording, given)
+
+
+def _gated(recording: "Recording", path: Path) -> "Recording":
+    """Return the part of a record at rest in which the gate was open, where that was written."""
+    if not (path.parent / EVENTS).exists():
+        return recording
+    events, _ = read_lines(path.parent / EVENTS)
+    times = {one["text"]: float(one["time_s"]) for one in events if one["kind"] == "state"}
+    if not {"gate open", "hold"} <= set(times):
+        return recording
+    return recording.between(times["gate open"], times["hold"])
+
+
+def _named(recording: "Recording", source: RecordingSource) -> "Recording":
+    """Return a recording under its run's name and set-point, flagged where its own is another."""
+    own, told = recording.set_point, source.set_point
+    flags = () if own is None or told is None else _differences(own, told, _readings(recording))
+    return replace(
+        recording,
+        name=source.name or recording.name,
+        set_point=own if told is None else told,
+        flags=(*recording.flags, *flags, *_otherwise(source)),
+    )
+
+
+def _otherwise(source: RecordingSource) -> tuple[Flag, ...]:
+    """Say what a run was recorded with that others of its campaign were not."""
+    if not source.differs:
+        return ()
+    text = f"recorded with other values, which are taken for it: {'; '.join(source.differs)}"
+    return (Flag("recorded_otherwise", Severity.NOTE, text),)
+
+
+def _readings(recording: "Recording") -> dict[str, Reading]:
+    """Return where the axes stood as run control read them, which its campaign states."""
+    kept = json.loads(recording.provenance.get("readings", "{}"))
+    return {axis: Reading(**one) for axis, one in kept.items()}
+
+
+def _differences(
+    own: SetPoint, told: SetPoint, readings: Mapping[str, Reading]
+) -> tuple[Flag, ...]:
+    """Say where a recording was made with another set-point than its campaign states."""
+    e = readings.get("eccentricity", Reading(own.eccentricity_m, 0.0, ""))
+    phase = readings.get("phase", Reading(own.strut_phase_rad, 0.0, ""))
+    pairs = (
+        ("frequency", "Hz", own.frequency_hz, told.frequency_hz, 0.0),
+        ("eccentricity", "m", e.value, told.eccentricity_m, e.standard_uncertainty),
+        ("strut phase", "rad", phase.value, told.strut_phase_rad, phase.standard_uncertainty),
+        ("carriage speed", "m/s", own.carriage_speed_m_s, told.carriage_speed_m_s, 0.0),
+    )
+    found = [
+        f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"
+        for what, unit, mine, theirs, u in pairs
+        if abs(mine - theirs) > max(_SAME * max(abs(mine), abs(theirs)), _WITHIN * u)
+    ]
+    if own.medium is not told.medium:
+        found.append(f"medium {own.medium}, the campaign says {told.medium}")
+    if not found:
+        return ()
+    text = (
+        f"recorded with {'; '.join(found)}: is this the recording of that run? The campaign's "
+        "set-point is used"
+    )
+    return (Flag("set_point_differs", Severity.WARNING, text),)
+
+
+def _check_there(path: Path) -> None:
+    if not path.exists():
+        what = "file" if path.suffix else "file or folder"
+        raise ConfigurationError(f"{path}: no such {what}")

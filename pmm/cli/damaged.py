@@ -1,0 +1,35 @@
+"""Files that are not what was written, and those of which nobody can tell: said at the end."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pmm.cli.screen import error_line, messages
+from pmm.flag_lines import joined
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hardware.description.flags import Flag
+
+
+def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:
+    """Say what of files is damaged, each given with its name and flags.
+
+    Returns
+    -------
+    list of int
+        An exit status for each thing that was said.
+    """
+    told = [(name, flag.message) for name, flags in found for flag in flags if flag.damaged]
+    for name, message in told:
+        error_line(f"{name}: {message}")
+    return [1] * len(told)
+
+
+def tell_unchecked(paths: "Iterable[Path | str]") -> None:
+    """Say, in one line, which recordings carry no checksums: those of other systems do not."""
+    from analysis.readers.damage import carries_checksums
+
+    names = [Path(one).name for one in dict.fromkeys(paths) if not carries_checksums(Path(one))]
+    if names:
+        messages().print(f"without checksums, so that no change would be seen: {joined(names)}")

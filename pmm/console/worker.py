@@ -1,0 +1,198 @@
+"""Work that may take long or all memory, in a process of its own: the server never waits."""
+
+import asyncio
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import Any, Final, ParamSpec, TypeVar
+
+from hardware.description.errors import PmmError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+_NICE: Final = 10  # the control loop and the server go first
+_MIB: Final = 1 << 20
+
+
+class BusyError(PmmError):
+    """Others are waiting for the same kind of work, as many as may wait."""
+
+
+class NotWorkedOutError(PmmError):
+    """Work took too long or too much memory, or ended its process."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What work may take.
+
+    Attributes
+    ----------
+    memory_bytes
+        0 for any.
+    waiting
+        How many may be asked for at a time.
+    """
+
+    seconds: float
+    memory_bytes: int
+    waiting: int
+
+
+class Worker:
+    """Does one piece of work after the other in a process that is started with the first.
+
+    Parameters
+    ----------
+    what
+        What it does, for messages.
+    """
+
+    def __init__(self, what: str, bounds: Bounds) -> None:
+        self._what, self._bounds = what, bounds
+        self._waiting, self._closed = 0, False
+        self._thread: ThreadPoolExecutor | None = None
+        self._child: tuple[SpawnProcess, Connection] | None = None
+
+    async def run(self, work: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
+        """Return what a function of a module returns, or raise what it raises.
+
+        Raises
+        ------
+        BusyError
+            If too many wait.
+        NotWorkedOutError
+            If it takes more than it may, or ends its process.
+        """
+        if self._waiting >= self._bounds.waiting:
+            raise BusyError(
+                f"{self._what}: {self._waiting} wait already, which is the limit; ask again later"
+            )
+        if self._thread is None:
+            self._thread = ThreadPoolExecutor(1, thread_name_prefix=self._what)
+        self._waiting += 1
+        asked = asyncio.get_running_loop().run_in_executor(
+            self._thread, self._ask, work, given, named
+        )
+        asked.add_done_callback(self._done)
+        found: T = await asyncio.shield(asked)
+        return found
+
+    def close(self) -> None:
+        """End the process, whatever it is at."""
+        self._closed = True
+        if self._thread is None:
+            return
+        self._thread.shutdown(wait=False, cancel_futures=True)
+        child = self._child
+        if child is not None:
+            child[0].kill()
+        self._thread.shutdown()
+        self._end()
+
+    def _done(self, asked: "asyncio.Future[Any]") -> None:
+        self._waiting -= 1
+        if not asked.cancelled():
+            asked.exception()  # whoever asked may have gone
+
+    def _ask(self, work: Callable[..., T], given: Any, named: Any) -> T:
+        """Ask the process; in the thread, which waits for it."""
+        process, connection = self._child = self._child or _started(self._bounds.memory_bytes)
+        try:
+            if self._closed:  # while it was being started
+                process.kill()
+            connection.send((work, given, named))
+            if not connection.poll(self._bounds.seconds):
+                self._end()
+                raise NotWorkedOutError(
+                    f"{self._what} took longer than {self._bounds.seconds:g} s and was ended"
+                )
+            found, error = connection.recv()
+        except (EOFError, OSError) as lost:
+            self._end()
+            raise NotWorkedOutError(
+                f"{self._what} ended its process (status {process.exitcode})"
+            ) from lost
+        if isinstance(error, MemoryError):
+            self._end()
+            raise NotWorkedOutError(
+                f"{self._what} took more than {self._bounds.memory_bytes / _MIB:g} MiB of memory"
+            )
+        if error is not None:
+            raise error
+        result: T = found
+        return result
+
+    def _end(self) -> None:
+        if self._child is not None:
+            process, connection = self._child
+            self._child = None
+            process.kill()
+            process.join()
+            connection.close()
+
+
+def _started(memory_bytes: int) -> tuple[SpawnProcess, Connection]:
+    context = get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_work, args=(theirs, memory_bytes), daemon=True)
+    process.start()
+    theirs.close()
+    return process, ours
+
+
+def _work(connection: Connection, memory_bytes: int) -> None:
+    """Do what is asked until nobody asks any more."""
+    yield_to_the_loop()
+    os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
+    _limit_memory(memory_bytes)
+    while True:
+        try:
+            work, given, named = connection.recv()
+        except EOFError:
+            return
+        found, error = None, None
+        try:
+            found = work(*given, **named)
+        except Exception as raised:
+            error = raised.with_traceback(None)
+        try:
+            connection.send((found, error))
+        except (TypeError, AttributeError, ValueError) as raised:  # it cannot be pickled
+            connection.send((None, NotWorkedOutError(f"{error!r}: {raised}")))
+
+
+def _limit_memory(most_bytes: int) -> None:
+    """Take no more memory than that, where the system can; Windows and macOS cannot."""
+    if sys.platform == "win32" or not most_bytes:
+        return
+    import resource
+
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (most_bytes, hard))
+    except (OSError, ValueError):
+        return  # a system that knows no such limit, or has a lower one
+
+
+def yield_to_the_loop() -> None:
+    """Let the control loop and the server go first, and Ctrl-C be theirs; end with the server."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_server, name="server's end", daemon=True).start()
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+
+
+def _end_with_the_server() -> None:
+    """Leave nothing behind a server that was killed: nobody else would end this process."""
+    server = parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)

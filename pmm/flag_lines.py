@@ -1,0 +1,85 @@
+"""Flags as lines for people: equal ones stand once, with the runs and channels that they are of."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from hardware.description.flags import Flag, Severity
+
+_NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+_NAMED = 12  # names in one line; JSON holds all
+_ORDER = (Severity.VOID, Severity.WARNING, Severity.NOTE)
+
+
+@dataclass(frozen=True)
+class FlagLine:
+    """Flags that say the same, but for their numbers.
+
+    Attributes
+    ----------
+    where
+        Names of the runs, then of the channels; empty where the flag is of neither.
+    message
+        Of the first of them.
+    count
+        How many there are.
+    varied
+        Whether their numbers are not all the same.
+    """
+
+    severity: Severity
+    code: str
+    where: str
+    message: str
+    count: int
+    varied: bool = False
+
+    @property
+    def text(self) -> str:
+        """The whole line but for severity and code."""
+        where = f"{self.where}: " if self.where else ""
+        numbers = "; the numbers are those of the first" if self.varied else ""
+        alike = f" ({self.count} times{numbers})" if self.count > 1 else ""
+        return f"{where}{self.message}{alike}"
+
+
+def flag_lines(flags: Iterable[Flag]) -> tuple[FlagLine, ...]:
+    """Return a line for each kind of flag, the gravest first."""
+    groups: dict[tuple[int, str, str], list[Flag]] = {}
+    for flag in dict.fromkeys(flags):
+        key = (_ORDER.index(flag.severity), flag.code, _words(flag))
+        groups.setdefault(key, []).append(flag)
+    return tuple(_line(groups[key]) for key in sorted(groups, key=lambda key: key[0]))
+
+
+def _line(alike: Sequence[Flag]) -> FlagLine:
+    first = alike[0]
+    runs = dict.fromkeys(run for flag in alike for run in flag.runs)
+    channels = dict.fromkeys(flag.channel for flag in alike if flag.channel)
+    where = "; ".join(joined(names) for names in (list(runs), list(channels)) if names)
+    varied = len({_without_names(flag) for flag in alike}) > 1
+    return FlagLine(first.severity, first.code, where, _message(first), len(alike), varied)
+
+
+def _message(flag: Flag) -> str:
+    """Return the message without the name that the line begins with."""
+    return flag.message.removeprefix(f"{flag.channel}: ") if flag.channel else flag.message
+
+
+def _words(flag: Flag) -> str:
+    """Return what the message says, without names and numbers."""
+    return _NUMBER.sub("#", _without_names(flag))
+
+
+def _without_names(flag: Flag) -> str:
+    text = _message(flag)
+    names = [*flag.runs, *([flag.channel] if flag.channel else [])]
+    for name in sorted(names, key=len, reverse=True):
+        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", "", text)
+    return text
+
+
+def joined(names: Sequence[str]) -> str:
+    """Return names in a row, of very many the first and how many there are besides."""
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")

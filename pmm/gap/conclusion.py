@@ -1,0 +1,135 @@
+"""What a diagnosis comes to: the one value from which every word about it is made.
+
+The probabilities weigh all numbers of a campaign together; the walk looks at each step by itself,
+and the withheld runs at how much of the gap an effect takes. Where they would be at odds on a page,
+this is where it is decided, once, so that headline, tables and what is proposed agree.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Final
+
+from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, effects_in
+from pmm.gap.steps import StepRow
+
+EFFECT: Final = "effect"
+TAKES_IT: Final = 0.95  # of the withheld gap: what takes as much is not refused as "unknown"
+_FITS: Final = 2.0  # u: a step below it needs no coefficient to fit
+
+
+@dataclass(frozen=True)
+class Weighing:
+    """What the evidence says, before it is held against the walk.
+
+    Attributes
+    ----------
+    shares
+        Probabilities of the answers, most probable first.
+    best
+        The most probable named answer, right or not; ``""`` where none is.
+    alike
+        What these runs cannot tell from each of its effects.
+    titles
+        Effects by name in the field's words.
+    takes
+        Part of the withheld gap that goes away with it; NaN where nothing was withheld.
+    stage
+        Where the gap most probably comes from; ``""`` where there is none.
+    restricted
+        How many effects were considered, where that is not the whole catalogue.
+    """
+
+    shares: Mapping[str, float]
+    best: str
+    alike: Mapping[str, Sequence[str]]
+    titles: Mapping[str, str]
+    takes: float
+    stage: str
+    restricted: int | None = None
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What is said of a campaign, and what it rests on.
+
+    Attributes
+    ----------
+    verdict
+        ``"none"``, ``"coefficients"``, ``"unknown"`` or ``"effect"``.
+    walk
+        Steps along the chain.
+    remains
+        What is left of each with the effect that is named; with no effect where none is.
+    """
+
+    verdict: str
+    weighing: Weighing
+    walk: tuple[StepRow, ...]
+    remains: tuple[StepRow, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The effects that the answer names; none unless ``verdict`` is ``"effect"``."""
+        return (
+            effects_in(self.weighing.best) if self.verdict == EFFECT and self.weighing.best else ()
+        )
+
+    @property
+    def likeliest(self) -> str:
+        """The most probable of all answers, whatever the walk says."""
+        return next(iter(self.weighing.shares))
+
+    @property
+    def adds(self) -> bool:
+        """Whether the effect is to be put into the simulation."""
+        return self.verdict == EFFECT
+
+    @property
+    def fitted(self) -> bool:
+        """Whether the coefficients had to be fitted for the steps to be without a gap."""
+        return any(one.stated_u > _FITS for one in self.walk)
+
+    @property
+    def gap(self) -> bool:
+        """Whether any step of the walk shows one."""
+        return any(one.gap for one in self.walk)
+
+    @property
+    def unexplained(self) -> tuple[StepRow, ...]:
+        """The steps that what is named does not explain; where that is unknown, all with a gap."""
+        unknown = self.verdict == UNKNOWN
+        return tuple(one for one in self.remains if one.beyond or (unknown and one.gap))
+
+    @property
+    def probability(self) -> float:
+        """Of what the verdict says; of an effect with all that these runs cannot tell from it."""
+        shares = self.weighing.shares
+        if self.verdict != EFFECT:
+            return shares.get(self.verdict, 0.0)
+        return class_probability(shares, self.weighing.best, self.weighing.alike)
+
+
+def class_probability(
+    shares: Mapping[str, float], answer: str, alike: Mapping[str, Sequence[str]]
+) -> float:
+    """Return the probability of an answer, each of its effects or one alike."""
+    groups = [[name, *alike.get(name, ())] for name in answer.split("+")]
+    answers = {"+".join(sorted(one)) for one in product(*groups)}
+    return min(sum(shares.get(name, 0.0) for name in answers), 1.0)
+
+
+def verdict_of(weighing: Weighing, walk: Sequence[StepRow]) -> str:
+    """Return the verdict: what the evidence says, as far as the page beside it bears it out.
+
+    Where no step of the walk shows a gap, nothing is missing, whatever all of the numbers together
+    lean towards. An effect that takes the gap away where nobody had looked is the answer,
+    though what it leaves be unknown.
+    """
+    best = next(iter(weighing.shares))
+    if not any(one.gap for one in walk):
+        calm = (NONE, COEFFICIENTS)
+        return best if best in calm else max(calm, key=lambda one: weighing.shares.get(one, 0.0))
+    if best == UNKNOWN and weighing.best and weighing.takes >= TAKES_IT:
+        return EFFECT
+    return EFFECT if effects_in(best) else best

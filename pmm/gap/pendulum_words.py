@@ -1,0 +1,141 @@
+"""A pendulum's diagnosis in plain sentences: what is wrong, how large it is, what to do next."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
+from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.hypothesis import null
+from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.pendulum.verdict import (
+    NONE,
+    TOLD_APART,
+    UNKNOWN,
+    Law,
+    foretells_better,
+    open_laws,
+    remainder,
+)
+from analysis.inertia.spread import said_of
+from pmm.gap.pendulum_conclusion import Conclusion, conclusion_of
+from pmm.gap.pendulum_document import parameters
+from pmm.gap.words import OUTSIDE
+
+FASTER: Final = "damping that grows faster than linearly"
+_DECAY, _PERIOD = (KINDS.index(one) for one in ("decay", "period"))
+
+
+def sentences(found: Diagnosis) -> tuple[str, str, str]:
+    """Return the three sentences."""
+    concluded = conclusion_of(found)
+    return what_is_wrong(found, concluded), how_large_it_is(found), what_to_do(found, concluded)
+
+
+def what_is_wrong(found: Diagnosis, concluded: Conclusion) -> str:
+    """Return what separates the record from its simulation, and what of it is open."""
+    return f"{'; '.join(_wrong(found, concluded))}."
+
+
+def _wrong(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
+    if concluded.verdict == NONE:
+        yield from _no_gap(found, concluded)
+        return
+    if concluded.verdict == UNKNOWN:
+        yield f"{OUTSIDE[0].upper()}{OUTSIDE[1:]} separates the record from its simulation"
+        return
+    rivals = open_laws(found.laws)
+    others = [one for one in concluded.names if one not in DAMPING]
+    damped = len(others) < len(concluded.names)
+    damping = [_damping(found.laws, rivals, concluded.names)] if damped else []
+    what = " and ".join([*damping, *others])
+    said = said_of(what, found.foretells) if found.regimes else f"the likeliest cause: {what}"
+    yield f"{said[0].upper()}{said[1:]}"
+    if rivals:
+        yield from _undecided(found.laws[0], rivals)
+
+
+def _no_gap(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
+    left = [one.kind for one in found.where if one.out_of_tolerance]
+    if left:
+        yield f"Nothing that was considered explains the difference in {' and '.join(left)}"
+        return
+    agree = "the record and its simulation agree within what the record can tell"
+    lean = " and ".join(concluded.lean)
+    towards = f", though the evidence leans towards {lean}" if lean else ""
+    yield f"No gap: {agree}{towards}"
+
+
+def _damping(laws: Sequence[Law], rivals: Sequence[Law], names: Sequence[str]) -> str:
+    """Return the law, or only that it is damping, as far as the laws can be told apart."""
+    if not rivals:
+        return " and ".join(one for one in names if one in DAMPING)
+    possible = [law.hypothesis.names for law in (laws[0], *rivals)]
+    return FASTER if all(set(one) & set(BEYOND_LINEAR) for one in possible) else "damping"
+
+
+def _undecided(first: Law, rivals: Sequence[Law]) -> Iterator[str]:
+    yield (
+        f"its law cannot be told: {first.name} has the best evidence, but it cannot be told apart "
+        f"from {', '.join(law.name for law in rivals)}"
+    )
+    better = [law.name for law in rivals if foretells_better(law, first)]
+    if better:
+        yield f"withheld swings are foretold better by {', '.join(better)}"
+
+
+def how_large_it_is(found: Diagnosis) -> str:
+    """Return by how much amplitude and phase are off without a cause, and the cause's own size."""
+    problem = found.problem
+    left = np.abs(remainder(problem, null(problem))) * problem.uncertainty
+    sizes = []
+    for kind, said in ((_DECAY, _amplitude), (_PERIOD, _phase)):
+        rows = np.flatnonzero(problem.kind == kind)
+        if rows.size:
+            at = int(rows[np.argmax(left[rows])])
+            sizes.append(said(found, float(left[at]), at))
+    own = [
+        f"{name}: {key} = {one['value']:.4g} ± {2.0 * one['uncertainty']:.2g}"
+        for name, values in parameters(found.settled.best).items()
+        for key, one in values.items()
+    ]
+    named = own if conclusion_of(found).adds else []
+    off = " and ".join(sizes)
+    return f"{'; '.join([f'Without a cause {off}', *named])}."
+
+
+def _amplitude(found: Diagnosis, size: float, at: int) -> str:
+    return f"the amplitude is off by up to {100.0 * math.expm1(size):.2g} %{_place(found, at)}"
+
+
+def _phase(found: Diagnosis, size: float, at: int) -> str:
+    return f"the phase by up to {math.degrees(size):.2g} degrees of a swing{_place(found, at)}"
+
+
+def _place(found: Diagnosis, at: int) -> str:
+    problem = found.problem
+    trial = problem.trials[problem.trial[at]]
+    return f" ({trial.name}, {problem.centre_s[at]:.3g} s)"
+
+
+def what_to_do(found: Diagnosis, concluded: Conclusion) -> str:
+    """Return what to do next."""
+    tell = _would_tell(found)
+    if concluded.adds:
+        put = 'put it into the simulation with "pmm gap add-pendulum", and look again'
+        return f"{tell}; or {put}." if tell else f"{put[0].upper()}{put[1:]}."
+    if concluded.verdict == NONE and not any(one.out_of_tolerance for one in found.where):
+        return "Nothing has to be done."
+    return f"{tell or 'Look at what remains, below, and record longer or from another release'}."
+
+
+def _would_tell(found: Diagnosis) -> str:
+    """Return the record that would tell the leading answers apart; empty where all is told."""
+    if not (found.rivals and found.proposals):
+        return ""
+    first = found.proposals[0]
+    if first.gain > math.log(TOLD_APART):
+        return f"Make the record that would tell it: {first.what}"
+    return f"No further record within reach would tell it: {first.what} comes nearest"

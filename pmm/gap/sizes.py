@@ -1,0 +1,185 @@
+"""How large a difference is in units that people measure in: N, mm, degrees, per cent."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import TRENDS, Component, GapRun, Part, Stack
+from analysis.gap.fit import Fit
+from analysis.gap.observe import FORCES, STRUTS
+from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
+from hardware.description.channels import CARRIAGE_SPEED, SHAFT_ANGLE
+from pmm.gap.coefficients import CoefficientRow
+from pmm.gap.steps import StepRow
+from pmm.report.labels import display
+
+FloatArray = NDArray[np.float64]
+
+_UNITS: Final = {
+    **dict.fromkeys(FORCES, "N"),
+    **dict.fromkeys(STRUTS, "m"),
+    **{one.name: one.unit for one in (SHAFT_ANGLE, CARRIAGE_SPEED)},
+}
+_ONE_UNIT: Final = (SHAFT, MOTION, FORCE)  # steps whose numbers are all in the same unit
+_HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
+
+
+@dataclass(frozen=True)
+class Size:
+    """The largest number of one step of the chain.
+
+    Attributes
+    ----------
+    value, unit
+        In the unit that people use: N, mm, degrees, per cent.
+    what
+        Of what: the harmonic of a channel, the frequency, ...
+    per_cent
+        Of the channel's measured first harmonic in that run; NaN where it has none.
+    """
+
+    step: str
+    value: float
+    unit: str
+    what: str
+    run: str
+    per_cent: float
+
+    @property
+    def said(self) -> str:
+        """The size for people."""
+        first = f"{self.per_cent:.2g} % of its first harmonic, "
+        part = "" if math.isnan(self.per_cent) else first
+        return f"{self.what} by up to {self.value:.2g} {self.unit} ({part}run {self.run})"
+
+
+@dataclass(frozen=True)
+class Spoiled:
+    """The coefficient that is furthest off, in per cent, too large if positive."""
+
+    name: str
+    per_cent: float
+
+    @property
+    def said(self) -> str:
+        """By how much, for people."""
+        return f"{self.per_cent:+.2g} %"
+
+
+@dataclass(frozen=True)
+class HowLarge:
+    """How large a difference is.
+
+    Attributes
+    ----------
+    sizes
+        Of each step of the chain that has it.
+    coefficient
+        Which it puts off most; ``None`` where none is off by more than its uncertainty.
+    """
+
+    sizes: tuple[Size, ...]
+    coefficient: Spoiled | None
+
+
+def how_large(
+    stack: Stack, change: FloatArray, walk: Sequence[StepRow], rows: Sequence[CoefficientRow]
+) -> HowLarge:
+    """Return the size of a change of the observations in the steps that have a gap.
+
+    Parameters
+    ----------
+    change
+        What an effect changes, or what is left of the difference, in u; ``(observations,)``.
+    walk
+        Where no step has a gap, the size is that in the forces, or at the end of the chain.
+    """
+    present = {step_of(one) for one in stack.components}
+    steps = [one.what for one in walk if one.gap and one.what in present]
+    steps = steps or [FORCE if FORCE in present else walk[-1].what]
+    return HowLarge(tuple(_largest(stack, change, what) for what in steps), spoiled(rows))
+
+
+def spoiled(rows: Sequence[CoefficientRow]) -> Spoiled | None:
+    """Return the coefficient that is off most, of those that are off for their uncertainty.
+
+    Without the effect that is named from with it; where none is, as fitted from what is stated.
+    Of those that are no more than their uncertainty a per cent says nothing.
+    """
+    known = [one for one in rows if one.off and one.is_told]
+    spoilt = [Spoiled(one.where, _per_cent(one)) for one in known]
+    return max(spoilt, key=lambda one: abs(one.per_cent), default=None)
+
+
+def _per_cent(one: CoefficientRow) -> float:
+    there, _ = one.reference
+    return 100.0 * (one.without - there) / there
+
+
+def _largest(stack: Stack, change: FloatArray, what: str) -> Size:
+    """Return the largest harmonic of a step in its unit; beside them, what is clearest."""
+    cells: dict[tuple[int, Component], list[int]] = {}
+    for at, one in enumerate(stack.components):
+        if step_of(one) == what:
+            part = Part.MEAN if one.part in _HARMONIC else one.part
+            key = int(stack.run[at]), Component(one.channel, part, one.order)
+            cells.setdefault(key, []).append(at)
+    scale = stack.uncertainty if what in _ONE_UNIT else np.ones(len(change))
+    sizes = {key: float(np.linalg.norm((change * scale)[rows])) for key, rows in cells.items()}
+    run, which = max(sizes, key=lambda key: sizes[key])
+    own = cells[run, which]
+    value = float(np.linalg.norm((change * stack.uncertainty)[own]))
+    return _size(stack, what, run, which, value)
+
+
+def _size(stack: Stack, step: str, run: int, which: Component, value: float) -> Size:
+    there = stack.runs[run]
+    if which.part is Part.FREQUENCY:
+        return Size(step, 100.0 * value, "%", "the frequency", there.name, math.nan)
+    if which.part is Part.PULSES:
+        return Size(step, 100.0 * value, "%", "the photocell's pulses", there.name, math.nan)
+    if which.part is not Part.MEAN and which.part not in TRENDS:
+        shown = f"{which.part} of {which.channel}" if which.channel else str(which.part)
+        return Size(step, 100.0 * math.expm1(value), "%", shown, there.name, math.nan)
+    unit = display(_UNITS.get(which.channel, ""))
+    trend = " per period" if which.part in TRENDS else ""
+    return Size(
+        step,
+        unit.factor * value,
+        f"{unit.label}{trend}",
+        f"{_of_order(which)} of {which.channel}",
+        there.name,
+        100.0 * value / _first(there, which.channel),
+    )
+
+
+def _first(run: GapRun, channel: str) -> float:
+    """Return the amplitude of a channel's first harmonic; NaN where it is no measure."""
+    parts = (Part.IN_PHASE, Part.QUADRATURE)
+    first = math.hypot(*(run.observed.value(channel, one, 1) for one in parts))
+    return first if channel in (*FORCES, *STRUTS) and first > 0.0 else math.nan
+
+
+def _of_order(which: Component) -> str:
+    if which.order == 0:
+        return "the mean"
+    return (
+        f"harmonic {which.order}" if which.part is Part.MEAN else f"harmonic {which.order}'s trend"
+    )
+
+
+def own_sizes(fit: Fit) -> Iterator[str]:
+    """Yield the size of each effect that has one number, in the unit that people use."""
+    at = 0
+    for candidate in fit.candidates:
+        if len(candidate.axes) == 1:
+            axis = candidate.axes[0]
+            unit = display(axis.parameter.unit)
+            value = unit.factor * axis.value(float(fit.units[at]))
+            label = "" if axis.parameter.unit == "1" else f" {unit.label}"
+            yield f"{axis.parameter.meaning} {value:.3g}{label}"
+        at += len(candidate.axes)

@@ -1,0 +1,14 @@
+"""Units and signs that look wrong in all runs: each command that reads a campaign says so."""
+
+from collections.abc import Sequence
+
+from analysis.plausibility import Seen, plausibility_flags
+from hardware.description.flags import Flag
+from pmm.campaign import Campaign
+
+
+def implausible(campaign: Campaign, runs: Sequence[Seen]) -> tuple[Flag, ...]:
+    """Return what :func:`analysis.plausibility.plausibility_flags` says of a campaign's runs."""
+    oscillator = campaign.oscillator
+    half_spacing_m = oscillator.half_spacing_m if oscillator is not None else None
+    return plausibility_flags(runs, campaign.model, half_spacing_m)

@@ -1,0 +1,101 @@
+"""The mass of the lines that a body hangs from: what it does to gyradii, and taking that off."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from analysis.inertia.corrections import lines_factor, pitch_without_lines, yaw_without_lines
+from analysis.inertia.double_pendulum import PendulumResult
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.inertia.numeric import Value
+from pmm.inertia.given import given
+
+# Lines over body: up to it rods stand for strings to 4.3e-4 of the gyradius; at twice, 1.4e-3.
+_MOST = 0.1
+
+
+def line_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield what is missing or too much beside ``line_mass_kg``."""
+    rows = table.get("suspensions")
+    model = table.get("model")
+    body = model.get("mass_kg") if isinstance(model, Mapping) else None
+    for number, one in enumerate(rows if isinstance(rows, list) else [], 1):
+        lines = one.get("line_mass_kg") if isinstance(one, Mapping) else None
+        if not isinstance(lines, int | float) or not lines:
+            continue
+        where = f"suspensions[{number}].line_mass_kg"
+        if lines < 0.0:
+            yield where, f"= {lines} is below zero"
+        elif not isinstance(body, int | float):
+            yield "model", "needs mass_kg, of all that hung, beside line_mass_kg"
+        elif lines > _MOST * body:
+            yield (
+                where,
+                (
+                    f"= {lines} is over {_MOST:g} of mass_kg = {body}: such lines bend as they "
+                    "swing; use lighter ones"
+                ),
+            )
+
+
+def line_share(table: Any, mass: Estimate) -> Estimate | None:
+    """Return the lines' mass over that of what hangs from them; ``None`` for light lines.
+
+    Parameters
+    ----------
+    table
+        The suspension's.
+    """
+    if not table.line_mass_kg:
+        return None
+    lines = given(table, "line_mass_kg")
+    share = lines.value / mass.value
+    return Estimate(share, share * math.hypot(lines.relative, mass.relative), "1")
+
+
+def yaw_off_lines(
+    table: Any, share: Estimate | None, found: Assessment, *, by_sway: bool = False, seed: int = 0
+) -> Assessment:
+    """Take the lines off a yaw gyradius; it stays where they are light."""
+    if share is None:
+        return found
+    spacing = table.half_spacing_m
+
+    def gyradius(gyradius_on_lines_m: Value, line_share: Value) -> Value:
+        own: Value = yaw_without_lines(gyradius_on_lines_m, line_share, spacing, by_sway=by_sway)
+        return own
+
+    inputs = {"gyradius_on_lines_m": found.result, "line_share": share}
+    return assess(found.budget.name, gyradius, inputs, unit="m", seed=seed)
+
+
+def pitch_off_lines(
+    share: Estimate | None, found: PendulumResult, *, seed: int = 0
+) -> PendulumResult:
+    """Take the lines off a pitch (or roll) gyradius and a depth."""
+    if share is None:
+        return found
+    inputs = {
+        "gyradius_on_lines_m": found.gyradius.result,
+        "depth_on_lines_m": found.depth.result,
+        "line_share": share,
+    }
+    made = (
+        assess(name, _part(part), inputs, unit="m", seed=seed + part)
+        for part, name in enumerate((found.gyradius.budget.name, found.depth.budget.name))
+    )
+    return PendulumResult(*made)
+
+
+def _part(part: int) -> Any:
+    def value(gyradius_on_lines_m: Value, depth_on_lines_m: Value, line_share: Value) -> Value:
+        return pitch_without_lines(gyradius_on_lines_m, depth_on_lines_m, line_share)[part]
+
+    return value
+
+
+def slower(period_s: float, share: Estimate | None) -> float:
+    """Return the lines' own period with their mass."""
+    factor = 1.0 if share is None else float(lines_factor(share.value))
+    return period_s * math.sqrt(factor)

@@ -1,0 +1,175 @@
+"""A simple estimate of the struts' forces, and how far it is to be trusted.
+
+Mass, added mass, damping, weight and restoring as the rig's file gives them, constant over
+frequency; velocities are those through the water, so that a pure yaw has no sway force.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.setpoint import Medium
+from hardware.description.struts import to_motion, to_strut_forces
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.plan.motion_peaks import omega_of, rod_factor
+from pmm.plan.rig_file import RigFile
+from pmm.plan.rig_tables import HullEstimate, Ship
+from pmm.plan.run_plan import RunPlan
+
+Complex = NDArray[np.complex128]
+FloatArray = NDArray[np.float64]
+
+# Relative standard uncertainties of what the estimate is made of: the upper ends of what each is
+# usually wrong by (docs/effects.md: S8 and S9 with all that moves below the gauges, H1, H2, H5 of
+# hydrostatics from the lines, M1 with K3 for the gauge and the amplitude).
+MODEL_UNCERTAINTY: Final = 0.02
+ADDED_MASS_UNCERTAINTY: Final = 0.2
+DAMPING_UNCERTAINTY: Final = 0.3
+RESTORING_UNCERTAINTY: Final = 0.05
+READING_UNCERTAINTY: Final = 0.02
+FAR: Final = 2.0  # standard uncertainties of the estimate: 95 % lie within
+
+
+class Expected(NamedTuple):
+    """Amplitude of a gauge's first harmonic, in newtons, and its standard uncertainty."""
+
+    amplitude_n: float
+    standard_uncertainty_n: float
+
+    def is_far(self, amplitude_n: float) -> bool:
+        """Whether a measured amplitude can hardly be that of the rig that the file describes."""
+        return abs(amplitude_n - self.amplitude_n) > FAR * self.standard_uncertainty_n
+
+
+@dataclass(frozen=True)
+class ForceEstimate:
+    """First harmonics of the struts' forces, aft and fore.
+
+    Attributes
+    ----------
+    forces
+        Phasors in newtons, shape ``(2,)``.
+    parts
+        What each entry of each matrix has in them, times its relative standard uncertainty: shape
+        ``(entries, 2)``.
+    """
+
+    forces: Complex
+    parts: Complex
+
+
+def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
+    """Return the estimate for a run that oscillates.
+
+    Returns
+    -------
+    ForceEstimate or None
+        ``None`` where the rig's file describes no model.
+    """
+    if rig.model is None:
+        return None
+    oscillator, point = rig.oscillator, run.set_point
+    e, phi = point.eccentricity_m, point.strut_phase_rad
+    aft, fore = complex(e), e * complex(math.cos(phi), math.sin(phi))
+    motion = np.array(to_motion(aft, fore, oscillator.half_spacing_m, oscillator.plane))
+    forces, parts = np.zeros(2, dtype=np.complex128), []
+    for matrix, moved, relative in _reactions(run, rig, rig.model, motion):
+        for row, column in np.ndindex(2, 2):
+            load = np.zeros(2, dtype=np.complex128)
+            load[row] = matrix[row][column] * moved[column]
+            share = _at_struts(load, oscillator)
+            forces += share
+            parts.append(relative * share)
+    return ForceEstimate(forces, np.array(parts))
+
+
+def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:
+    """Return an estimate of the largest force of a strut, in newtons.
+
+    Returns
+    -------
+    float or None
+        ``None`` where the rig's file describes no model.
+    """
+    found = force_estimate(run, rig)
+    if found is None:
+        return None
+    return float(np.abs(found.forces).max()) * rod_factor(run, rig.oscillator)
+
+
+def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
+    """Return what each strut's gauge should read; empty where the file tells too little.
+
+    A calibration's matrix makes readings of forces, as it does in the rig. A memory of the water
+    (``[campaign.radiation]``) is not in the estimate, so that in water nothing is expected then.
+    """
+    in_water = run.set_point.medium is Medium.WATER
+    unknown = in_water and (rig.hull is None or "radiation" in rig.campaign)
+    found = None if unknown or not run.oscillates else force_estimate(run, rig)
+    if found is None:
+        return {}
+    names = (FORCE_AFT.name, FORCE_FORE.name)
+    gauges = _gauges(rig, names)
+    readings, parts = gauges @ found.forces, found.parts @ gauges.T
+    own = READING_UNCERTAINTY * np.abs(readings)
+    spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + own**2)
+    return {
+        name: Expected(float(abs(one)), float(u))
+        for name, one, u in zip(names, readings, spread, strict=True)
+    }
+
+
+def _gauges(rig: RigFile, names: tuple[str, str]) -> FloatArray:
+    """Return the readings of the strut gauges for a newton on each, shape ``(2, 2)``."""
+    matrix = np.eye(2)
+    one = rig.calibration
+    if one is not None:
+        known = [name for name in names if name in one.channels]
+        rows = [one.channels.index(name) for name in known]
+        places = [names.index(name) for name in known]
+        matrix[np.ix_(places, places)] = one.matrix[np.ix_(rows, rows)]
+    return matrix
+
+
+def _at_struts(load: Complex, oscillator: Oscillator) -> Complex:
+    force, moment = complex(load[0]), complex(load[1])
+    return np.array(to_strut_forces(force, moment, oscillator.half_spacing_m, oscillator.plane))
+
+
+def _reactions(
+    run: RunPlan, rig: RigFile, model: Ship, motion: Complex
+) -> Iterator[tuple[FloatArray, Complex, float]]:
+    """Yield matrices, the phasors that they act on, and their relative standard uncertainties."""
+    plane, iw = rig.oscillator.plane, 1j * omega_of(run)
+    yield _mass(run, model, plane), iw**2 * motion, MODEL_UNCERTAINTY
+    if plane is Plane.VERTICAL:
+        weight = model.mass_kg * STANDARD_GRAVITY_M_S2 * model.cg_z_m
+        yield np.array([[0.0, 0.0], [0.0, weight]]), motion, MODEL_UNCERTAINTY
+    if run.set_point.medium is Medium.AIR:
+        return
+    hull = rig.hull or HullEstimate()
+    towards = 1.0 if plane is Plane.VERTICAL else -1.0
+    speed = run.set_point.carriage_speed_m_s
+    through = np.array([iw * motion[0] + towards * speed * motion[1], iw * motion[1]])
+    yield np.array(hull.added_mass), iw * through, ADDED_MASS_UNCERTAINTY
+    yield np.array(hull.damping), through, DAMPING_UNCERTAINTY
+    yield np.array(hull.restoring), motion, RESTORING_UNCERTAINTY
+
+
+def _mass(run: RunPlan, model: Ship, plane: Plane) -> FloatArray:
+    """Return the mass matrix about the midpoint; a CG ahead goes up with the bow."""
+    sign = -1.0 if plane is Plane.VERTICAL else 1.0
+    mass, inertia = model.mass_kg, model.inertia_kg_m2
+    coupling = sign * mass * model.cg_x_m
+    added = run.known_mass
+    if added is not None:
+        coupling += sign * added.mass_kg * added.x_m
+        mass += added.mass_kg
+        inertia += added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
+    return np.array([[mass, coupling], [coupling, inertia]])

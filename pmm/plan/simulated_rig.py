@@ -1,0 +1,165 @@
+"""Where the rig that is simulated is another one than that of ``rig.toml``.
+
+What it takes from the file cannot differ. What ``simulated.toml`` states itself can, on purpose or
+not; so it is said before a run, and kept with every recording.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
+from hardware.description.simulation_tables import simulation_tables, with_preset
+from hardware.simulated import SimulatedTables, simulated_behind
+from pmm.configuration import read_toml
+from pmm.plan.findings import Finding, Verdict
+from pmm.plan.rig_file import RigFile
+
+CODE: Final = "simulated_differs"
+PROVENANCE: Final = "simulated_differs"  # key -> what the file states, what is simulated; as JSON
+_QUANTITY: Final = "simulated rig"
+_NEEDED: Final = ("model", "hull")  # without them the nominal rig's are simulated
+_NEVER: Final = ("effects",)  # of a whole campaign's runs; devices have none
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A key in which the simulated rig is not that of the rig's file.
+
+    Attributes
+    ----------
+    key
+        Its path, called as in ``campaign.toml``: ``"model.mass_kg"``.
+    stated, simulated
+        What ``rig.toml`` has, ``None`` where it does not say; what is simulated.
+    message
+        Both in words, and what to do.
+    """
+
+    key: str
+    stated: Any
+    simulated: Any
+    message: str
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the rig's file states something else."""
+        return self.stated is not None
+
+
+def departures(rig: RigFile) -> tuple[Departure, ...]:
+    """Return where the simulated rig departs from the rig's file; none for a real rig.
+
+    Raises
+    ------
+    ConfigurationError
+        If the simulated rig's file is wrong.
+    """
+    simulated = simulated_behind(rig.hardware.bus)
+    if simulated is None:
+        return ()
+    stated = simulation_tables(read_toml(rig.path))
+    return tuple(_departures(stated, simulated, rig.path.name))
+
+
+def departure_findings(rig: RigFile) -> Iterator[Finding]:
+    """Yield what a plan's check says of it; a simulated rig that cannot be made is refused."""
+    try:
+        found = departures(rig)
+    except ConfigurationError as error:
+        nan = float("nan")
+        yield Finding(Verdict.REFUSE, _QUANTITY, nan, nan, "", f"the simulated rig: {error}")
+        return
+    for one in found:
+        verdict = Verdict.WARN if one.contradicts else Verdict.NOTE
+        yield Finding(verdict, _QUANTITY, _number(one.simulated), _number(one.stated), "",
+                      one.message)  # fmt: skip
+
+
+def departure_flag(found: tuple[Departure, ...]) -> Iterator[Flag]:
+    """Yield the flag that a recording gets; nothing where the rig is that of its file."""
+    if found:
+        severity = Severity.WARNING if any(one.contradicts for one in found) else Severity.NOTE
+        yield Flag(CODE, severity, "; ".join(one.message for one in found))
+
+
+def provenance_of_departures(found: tuple[Departure, ...]) -> dict[str, str]:
+    """Return what a recording's provenance keeps of it."""
+    rows = {one.key: {"stated": one.stated, "simulated": one.simulated} for one in found}
+    return {PROVENANCE: json.dumps(rows)} if rows else {}
+
+
+def _departures(
+    stated: Mapping[str, Any], simulated: SimulatedTables, name: str
+) -> Iterator[Departure]:
+    file = Path(simulated.file).name
+    own = dict(simulated.own)
+    if "oscillator" in own:
+        own["oscillator"] = with_preset(own["oscillator"])
+    for key, value in _leaves(stated):
+        if key.partition(".")[0] in simulated.rig and not _agree(value, _at(simulated.rig, key)):
+            there = _at(simulated.rig, key)
+            text = (
+                f"{key} = {_shown(there)} is simulated, {name} states {_shown(value)}; take it out "
+                f"of {file} unless it is meant"
+            )
+            yield Departure(key, value, there, text)
+    said = {key for key, _ in _leaves(stated)}
+    for key, value in _leaves(own):
+        if key not in said:
+            text = f"{key} = {_shown(value)} is simulated as {file} states; {name} has no such key"
+            yield Departure(key, None, value, text)
+    yield from _unstated(stated, own, name)
+
+
+def _unstated(stated: Mapping[str, Any], own: Mapping[str, Any], name: str) -> Iterator[Departure]:
+    for table in _NEEDED:
+        if table not in stated and table not in own:
+            text = f"{name} has no [{table}]: that of a nominal model of 2.5 m is simulated"
+            yield Departure(table, None, "nominal", text)
+    for table in _NEVER:
+        if table in stated:
+            text = f"{name}: campaign.{table} are not simulated on devices; pmm simulate does"
+            yield Departure(table, stated[table], None, text)
+
+
+def _leaves(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the keys that hold values, with their paths; lists are values."""
+    for key, one in table.items():
+        if isinstance(one, Mapping):
+            yield from _leaves(one, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", one
+
+
+def _at(table: Mapping[str, Any], path: str) -> Any:
+    found: Any = table
+    for key in path.split("."):
+        found = found.get(key) if isinstance(found, Mapping) else None
+    return found
+
+
+def _agree(stated: Any, simulated: Any) -> bool:
+    """Whether all that is stated is simulated; ``false`` says that there is no such thing."""
+    if isinstance(stated, Mapping):
+        return isinstance(simulated, Mapping) and all(
+            _agree(one, simulated.get(key)) for key, one in stated.items()
+        )
+    if isinstance(stated, list | tuple):
+        return (
+            isinstance(simulated, list | tuple)
+            and len(stated) == len(simulated)
+            and all(map(_agree, stated, simulated))
+        )
+    return bool(stated == simulated) or (stated is False and simulated is None)
+
+
+def _shown(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value, default=str)
+
+
+def _number(value: Any) -> float:
+    return float(value) if isinstance(value, int | float) else float("nan")

@@ -1,0 +1,84 @@
+"""Which files of a run are not what was written: by its marker, and by their own checksums."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+from pmm.recorder.files import (
+    HEADER,
+    MARKER,
+    RECORDING,
+    SAMPLES,
+    contents_of,
+)
+from pmm.recorder.header import RunHeader
+from pmm.recorder.marker import read_recovered
+from pmm.recorder.recording import RunData, marker_is_whole
+
+
+def changed_files(run: RunData) -> dict[str, str]:
+    """Return of each file of a run that is not what was written, what is the matter, in words.
+
+    Files are those that the marker of a closed run names, or of which a recovery made others;
+    of a run that was not closed, those that carry checksums of their own.
+    """
+    found = {SAMPLES: "; ".join(run.samples.changes)} if run.samples else {}
+    for name, told in written(run).items():
+        if (path := run.folder / name).exists() and path.stat().st_size >= told["bytes"]:
+            if not found.get(name) and contents_of(path) != told:
+                found[name] = "its bytes are not those that were written"
+        else:
+            size = path.stat().st_size if path.exists() else 0
+            found[name] = f"has {size} of {told['bytes']} bytes; it was cut after the run"
+    if run.samples and run.samples.is_headed and _differs(run.folder / HEADER, run.samples.header):
+        found[HEADER] = f"is not the header that {SAMPLES} carries"
+    if (run.folder / MARKER).exists() and not marker_is_whole(run.marker):
+        found[MARKER] = "is not what its checksum says"
+    found[RECORDING] = recording_damage(run.folder / RECORDING)
+    return {name: words for name, words in found.items() if words}
+
+
+def change_flags(changed: Mapping[str, str]) -> tuple[Flag, ...]:
+    """Return a flag for each changed file."""
+    return tuple(
+        Flag("journal_changed", Severity.WARNING, f"{name}: {words}")
+        for name, words in changed.items()
+    )
+
+
+def written(run: RunData) -> dict[str, dict[str, Any]]:
+    """Return size and hash of each file as it was written, by the run or by a recovery."""
+    told = dict(run.marker["files"]) if run.marker else {}
+    return told | files_recovered(run.folder)
+
+
+def files_recovered(folder: Path) -> dict[str, dict[str, Any]]:
+    """Return size and hash of each file that a recovery made in place of a damaged one."""
+    return dict(read_recovered(folder).get("files", {}))
+
+
+def recording_damage(path: Path) -> str:
+    """Say what of a recording is not what was written; nothing where it is whole or missing."""
+    from analysis.readers import read_recording
+    from analysis.readers.damage import check_whole
+
+    if not path.exists():
+        return ""
+    try:
+        check_whole(read_recording(path))
+    except DataError as error:
+        return str(error)
+    return ""
+
+
+def _differs(path: Path, header: RunHeader) -> bool:
+    """Tell whether a header's file is there and not whole, or another one."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError:
+        return False
+    except UnicodeDecodeError:
+        return True
+    return text != header.to_json()

@@ -1,0 +1,114 @@
+"""What a line of each journal of text holds: JSON of another shape is damage, not data."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from pmm.recorder.files import CYCLES, EVENTS, HARMONICS, LINES, PULSES
+
+Shape = Callable[[Any], bool]
+
+
+def is_line_of(name: str, value: Any) -> bool:
+    """Tell whether a value can be a line of the journal of that name; any can of another file."""
+    shape = _SHAPES.get(name)
+    return shape is None or shape(value)
+
+
+def is_marker(value: Mapping[str, Any]) -> bool:
+    """Tell whether a table can be a completion marker; older ones have fewer keys."""
+    return _MARKER(value) and all(
+        shape(value[key]) for key, shape in _MARKER_MORE.items() if key in value
+    )
+
+
+def is_recovered(value: Mapping[str, Any]) -> bool:
+    """Tell whether a table can be what a recovery wrote; older ones name no files."""
+    return _FLAGGED(value) and _files(value.get("files", {}))
+
+
+def _row(*shapes: Shape) -> Shape:
+    """Return the shape of a list with so many entries, each of its own shape."""
+
+    def fits(value: Any) -> bool:
+        return (
+            isinstance(value, list)
+            and len(value) == len(shapes)
+            and all(shape(one) for shape, one in zip(shapes, value, strict=True))
+        )
+
+    return fits
+
+
+def _table(**shapes: Shape) -> Shape:
+    """Return the shape of a table with at least these keys."""
+
+    def fits(value: Any) -> bool:
+        return isinstance(value, dict) and all(
+            key in value and shape(value[key]) for key, shape in shapes.items()
+        )
+
+    return fits
+
+
+def _all(shape: Shape) -> Shape:
+    return lambda value: isinstance(value, list) and all(map(shape, value))
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _finite(value: Any) -> bool:
+    return _number(value) and abs(value) < 1e300 and math.isfinite(value)
+
+
+def _whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**53
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _bytes(value: Any) -> bool:
+    return isinstance(value, str) and all(ord(one) < 256 for one in value)
+
+
+def _finite_or_none(value: Any) -> bool:
+    return value is None or _finite(value)
+
+
+def _reading(value: Any) -> bool:
+    return _READING(value) and [len(one) for one in value["coefficients"]] == len(
+        value["channels"]
+    ) * [len(value["coefficients"][0]) if value["coefficients"] else 0]
+
+
+def _each(shape: Shape) -> Shape:
+    return lambda value: isinstance(value, dict) and all(map(shape, value.values()))
+
+
+_files: Final = _each(_table(bytes=_whole, sha256=_text))
+_flags: Final = _all(_table(code=_text, severity=_text, message=_text))
+_FLAGGED: Final = _table(flags=_flags)
+_MARKER: Final = _table(outcome=_text, files=_files, flags=_flags)
+_MARKER_MORE: Final[Mapping[str, Shape]] = {
+    "first_sync": _whole,
+    "last_sync": _whole,
+    "noise_rms": _each(_finite),
+}
+_READING: Final = _table(
+    opened_s=_finite,
+    closed_s=_finite,
+    periods=_whole,
+    channels=_all(_text),
+    coefficients=_all(_all(_number)),
+)
+_SHAPES: Final[Mapping[str, Shape]] = {
+    PULSES: _row(_whole, _finite, _finite_or_none),
+    EVENTS: _table(cycle=_whole, time_s=_finite, kind=_text, text=_text),
+    HARMONICS: _reading,
+    LINES: _row(_whole, _text, _bytes),
+    CYCLES: _row(_whole, _finite, _finite, _finite, _whole),
+}

@@ -1,0 +1,200 @@
+"""What a recorded run was made from, beside what plan and rig say now.
+
+A campaign that is resumed after an edit holds runs of both. Each keeps the values that it was
+recorded with: its plan and its calibration lie in its header, its rig's file in ``made-from``,
+found by the hash that the header has.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.calibrated import CARRIED
+from pmm.calibration import as_table
+from pmm.configuration import place_text, read_toml
+from pmm.oscillator_table import expand_preset
+from pmm.places import Place
+from pmm.plan.campaign_writer import FinishedRun
+from pmm.plan.plan import Plan
+from pmm.plan.rig_file import RigFile
+from pmm.plan.rig_tables import PhotocellOffset
+from pmm.plan.run_plan import RunPlan
+from pmm.recorder.header import RunHeader
+
+KEPT: Final = "made-from"  # copies of plan and rig, as they were
+_MOST: Final = 8  # changes of a file that are told one by one
+_MOST_RUNS: Final = 20  # runs whose changes a refusal tells one by one
+# Of a campaign, that tell how a run is to be read: the keys of pmm.campaign.RecordedWith.
+_TABLES: Final = ("oscillator", "model", "model_uncertainty", "hull", "reference")
+_LENGTH: Final = "length_m"  # of [model]: a campaign has it elsewhere
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a run was made from, seen from what plan and rig say now.
+
+    Attributes
+    ----------
+    differs
+        What has changed since, in words; empty where nothing has.
+    recorded_with
+        Tables of the campaign that were others, as they were.
+    """
+
+    differs: tuple[str, ...] = ()
+    recorded_with: Mapping[str, Any] | None = None
+
+
+class Sources:
+    """What the runs of a folder are made from now."""
+
+    def __init__(self, folder: Path, plan: Plan, rig: RigFile) -> None:
+        self._folder, self._plan, self._rig = folder, plan, rig
+        self._planned = {one.name: one for one in plan.runs}
+
+    def made(self, header: RunHeader, run: RunPlan) -> Made:
+        """Return what a recorded run was made from.
+
+        Parameters
+        ----------
+        run
+            Its plan, as its header has it.
+        """
+        told = [*self._plan_changes(run), *_calibration_changes(header, self._rig)]
+        hashed = header.configuration_sha256.get("rig", "")
+        if hashed == self._rig.sha256:
+            return Made(tuple(told))
+        name, before = self._rig.path.name, self._copies.get(hashed)
+        if before is None:
+            text = (
+                f"{name} was another file (sha256 {hashed[:12] or 'unknown'}), of which "
+                f"{self._folder / KEPT} has no copy"
+            )
+            return Made((*told, text))
+        told += _changes(name, before, dict(self._rig.tables))
+        return Made(tuple(told), _tables_before(before, self._rig.tables) or None)
+
+    @cached_property
+    def _copies(self) -> dict[str, dict[str, Any]]:
+        """The copies of rig and plan that can be read, by their hashes."""
+        found = {}
+        for path in sorted((self._folder / KEPT).glob("*.toml")):
+            try:
+                found[hashlib.sha256(path.read_bytes()).hexdigest()] = read_toml(path)
+            except (OSError, ConfigurationError):
+                continue  # then there is no copy of that file
+        return found
+
+    def _plan_changes(self, run: RunPlan) -> Iterator[str]:
+        now, name = self._planned.get(run.name), self._plan.path.name
+        if now is None:
+            yield f"{name} has no run {run.name!r} any more"
+        else:
+            yield from _changes(name, _plain(asdict(run)), _plain(asdict(now)))
+
+
+def check_unchanged(folder: Path, kept: Sequence[FinishedRun], plan: Plan) -> None:
+    """Refuse to add to runs that plan, rig, model and calibration say something else of now.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming each run with what changed.
+    """
+    told = change_lines(kept)
+    if told:
+        shown = told[:_MOST_RUNS]
+        more = f"\n  ... and {len(told) - len(shown)} runs more" if len(told) > len(shown) else ""
+        raise ConfigurationError(
+            f"{folder}: {len(told)} of its runs were recorded with other values than {plan.path} "
+            "and its rig have now:\n  " + "\n  ".join(shown) + f"{more}\nput the values back "
+            f"(copies of the files are in {folder / KEPT}), record to another folder with "
+            "--output, or go on with `pmm run --accept-changes`: each run then keeps the values "
+            "that it was recorded with"
+        )
+
+
+def change_lines(kept: Sequence[FinishedRun]) -> list[str]:
+    """Return a line for each run that was recorded with other values than those of now."""
+    return [f"{one.plan.name}: {'; '.join(one.differs)}" for one in kept if one.differs]
+
+
+def _calibration_changes(header: RunHeader, rig: RigFile) -> Iterator[str]:
+    try:
+        kept = dict(json.loads(header.provenance.get(CARRIED, "{}")))
+    except (ValueError, TypeError) as error:
+        raise DataError(f"{header.run_name}: its calibration cannot be read: {error}") from error
+    before = {key: one for key, one in kept.items() if key not in ("file", "sha256")}
+    if kept.get("sha256", "") != (rig.calibration.sha256 if rig.calibration else ""):
+        now = as_table(rig.calibration) if rig.calibration else {}
+        file = rig.calibration.file if rig.calibration else kept.get("file", "")
+        yield from _changes(file or "calibration", before, now)
+
+
+def _tables_before(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the campaign's tables that a rig's file told otherwise; what it left open is left."""
+    old, new = _campaign_tables(before), _campaign_tables(now)
+    return {key: one for key, one in old.items() if one is not None and one != new[key]}
+
+
+def _campaign_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a campaign that tell of the runs, as a rig's file has them."""
+    table = deepcopy(dict(rig))
+    expand_preset(table, [])
+    handed_on = table.get("campaign", {})
+    found = {key: table.get(key, handed_on.get(key)) for key in _TABLES}
+    found["reference"] = asdict(PhotocellOffset()) | table.get("reference", {})
+    for name in ("model", "model_uncertainty"):  # what is infinite there is so by default
+        if found[name] is not None:
+            own = found[name].items()
+            found[name] = {key: one for key, one in own if key != _LENGTH and one != math.inf}
+    return found
+
+
+def _changes(where: str, before: Any, now: Any) -> list[str]:
+    """Return in words where two files differ, key by key."""
+    old, new = dict(_leaves(before)), dict(_leaves(now))
+    places = [key for key in {**old, **new} if old.get(key, _UNSET) != new.get(key, _UNSET)]
+    told = [
+        f"{where} {place_text(key, now if key in new else before)}"
+        f"{_was(old.get(key, _UNSET), new.get(key, _UNSET))}"
+        for key in places[:_MOST]
+    ]
+    more = len(places) - _MOST
+    return [*told, f"{where} {more} keys more"] if more > 0 else told
+
+
+def _leaves(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
+    if isinstance(value, Mapping | list) and value:
+        pairs = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for key, one in pairs:
+            yield from _leaves(one, (*place, key))
+    else:
+        yield place, value
+
+
+def _was(before: Any, now: Any) -> str:
+    if before is _UNSET:
+        return f"was not set, is {_said(now)}"
+    if now is _UNSET:
+        return f"was {_said(before)}, is not set"
+    return f"was {_said(before)}, is {_said(now)}"
+
+
+def _said(value: Any) -> str:
+    return "none" if value is None else json.dumps(value, default=str, ensure_ascii=False)
+
+
+def _plain(value: Any) -> Any:
+    """Return a table with the lists and plain words of a file."""
+    return json.loads(json.dumps(value))
+
+
+_UNSET: Final = object()

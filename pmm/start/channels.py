@@ -1,0 +1,77 @@
+"""Which channel of the campaign each column is: from the roles to names, units and remarks."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from pmm.start import words
+from pmm.start.behaviour import Watched
+from pmm.start.found import CHANNELS, DISPLACEMENTS, FORCES, Column
+from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, Role
+
+_LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres
+
+
+def as_columns(roles: Sequence[Role], running: Sequence[Watched]) -> list[Column]:
+    """Return the channels, sure or not, and the columns with the line that keep their names."""
+    found: list[Column] = []
+    for kind, channels in ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES)):
+        found += _of_struts([one for one in roles if one.kind is kind], channels)
+    found += [
+        Column(one.kind.name, one.column, doubt=one.doubt)
+        for one in roles
+        if one.kind not in (DISPLACEMENT, FORCE)
+    ]
+    found = [_with_unit(one, running) for one in found]
+    found.sort(key=lambda one: CHANNELS.index(one.name))
+    return [*found, *_keeping_names({one.column for one in found if not one.doubt}, running)]
+
+
+def _of_struts(roles: Sequence[Role], channels: Sequence[str]) -> Iterator[Column]:
+    doubts = {one.column: one.doubt for one in roles}
+    names = words.struts_in_order(list(doubts))
+    told = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
+    if told == [0, 0]:  # what is sure is no worse for being called the first
+        names.sort(key=lambda name: bool(doubts[name]))
+    places = channels[1:] if told == [1] else channels
+    for channel, name in zip(places, names, strict=False):
+        yield Column(channel, name, doubt=doubts[name])
+
+
+def by_order_of_names(columns: Sequence[Column]) -> bool:
+    """Tell whether nothing but the order of their names says which of two columns is aft."""
+    return any(
+        len(pair) == 2 and not any(words.says(name, (*words.FORE, *words.AFT)) for name in pair)
+        for channels in (DISPLACEMENTS, FORCES)
+        for pair in [[one.column for one in columns if one.name in channels and not one.doubt]]
+    )
+
+
+def _with_unit(one: Column, running: Sequence[Watched]) -> Column:
+    """Say the unit that the numbers have where the header has none."""
+    seen = [watched.columns[one.column] for watched in running if one.column in watched.columns]
+    if seen[0].unit or one.name == PULSES.name:
+        return one
+    if one.name == ANGLE.name:
+        turn = next(each.turn for each in seen if each.turn)
+        return replace(one, unit=turn.unit, remark="no unit in the header: it turns so")
+    if one.name in DISPLACEMENTS:
+        amplitude = float(np.median([abs(each.part.first) for each in seen]))
+        unit = "m" if amplitude < _LARGEST_M else "mm"
+        said = f"no unit in the header: {unit} by its amplitude of {amplitude:.3g}"
+        return replace(one, unit=unit, remark=said)
+    if one.name in FORCES:
+        said = f"no unit in the header: if it is kN, write {one.column + ':kN'!r}"
+        return replace(one, remark=said)
+    return replace(one, remark="no unit in the header")
+
+
+def _keeping_names(taken: set[str], running: Sequence[Watched]) -> Iterator[Column]:
+    """Yield what carries the line in most runs and is no channel of the rig for sure."""
+    names = sorted({name for one in running for name in one.columns} - taken, key=words.natural)
+    for name in names:
+        held = [one.columns[name] for one in running if name in one.columns]
+        if len(held) == len(running) and sum(one.part.carried for one in held) > len(held) / 2:
+            yield Column(name, name)

@@ -1,0 +1,226 @@
+"""Which column is which channel: all roles together, by what the columns do, with their odds.
+
+Each column gets the odds of each role from its unit, from what it does and from its name, as powers
+of ten that add up. The roles are then given out together so that the sum is largest. How sure one
+is, is by how much the sum falls when that column must not have it.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.channels import (
+    CARRIAGE_SPEED,
+    DISPLACEMENT_AFT,
+    FORCE_AFT,
+    FORCE_X,
+    SHAFT_ANGLE,
+)
+from pmm.start import words
+from pmm.start.behaviour import Behaviour, Watched
+from pmm.start.found import CHANNELS
+
+FloatArray = NDArray[np.float64]
+
+# Powers of ten of odds, judged and tried on made-up laboratories
+# (tests/pmm/start/test_roles_against_made_up_laboratories.py counts what they get wrong).
+SURE: Final = 2.0  # 100 to 1
+_UNIT: Final = 2.0  # the header's unit is that of the role
+_NAME: Final = 1.0  # the name has a word of the role; or, taken off, of another one only
+_DOES: Final = 1.0  # it does what such a sensor does, but for what others do as well
+_AGAINST: Final = -3.0  # it does, or is called, what no such sensor is
+_OTHER_STRUT: Final = 0.25  # relative, between the struts' amplitudes: both have one eccentricity
+_CLEAN: Final = 1.5  # powers of ten below all: what is beside a driven motion, at most
+_EVEN: Final = 0.2  # of its mean: a carriage's speed keeps within
+_SWINGS: Final = 0.5  # share of the variance in the line: what oscillates is no carriage's speed
+
+
+class Evidence(NamedTuple):
+    """One reason for or against a role, with its power of ten."""
+
+    odds: float
+    said: str
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of channel: what it is called, its SI units and the words of it; ``places`` of it."""
+
+    name: str
+    units: tuple[str, ...]
+    words: Sequence[str]
+    places: int = 1
+
+
+DISPLACEMENT: Final = Kind("displacement", (DISPLACEMENT_AFT.unit,), words.DISPLACEMENT, 2)
+FORCE: Final = Kind("force", (FORCE_AFT.unit,), words.FORCE, 2)
+ANGLE: Final = Kind(SHAFT_ANGLE.name, (SHAFT_ANGLE.unit,), words.ANGLE)
+SPEED: Final = Kind(CARRIAGE_SPEED.name, (CARRIAGE_SPEED.unit,), words.SPEED)
+ALONG: Final = Kind(FORCE_X.name, (FORCE_X.unit,), words.ALONG)
+PULSES: Final = Kind("photocell", ("V", "1"), words.PULSES)
+KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES)
+
+
+@dataclass(frozen=True)
+class Role:
+    """A column that seems to be of a kind; ``doubt`` says why it may not be, empty where sure."""
+
+    column: str
+    kind: Kind
+    odds: float
+    doubt: str = ""
+
+
+def find_roles(watched: Sequence[Watched]) -> list[Role]:
+    """Return the columns that seem to be channels of a rig, by kind and then by name.
+
+    Parameters
+    ----------
+    watched
+        One for each recording; those in which nothing keeps time say nothing.
+    """
+    telling = [one for one in watched if one.line is not None]
+    if not telling:
+        return []
+    columns = sorted({name for one in telling for name in one.columns}, key=words.natural)
+    reasons = {
+        (column, kind): list(_reasons(column, kind, telling))
+        for column in columns
+        for kind in KINDS
+    }
+    odds = np.array(
+        [[sum(r.odds for r in reasons[column, kind]) for kind in KINDS] for column in columns]
+    )
+    best = _given_out(odds)
+    found = []
+    for row, at in sorted(best.items(), key=lambda pair: (pair[1], pair[0])):
+        without = odds.copy()
+        without[row, at] = -np.inf
+        second = _given_out(without)
+        margin = _total(odds, best) - _total(odds, second)
+        column, kind = columns[row], KINDS[at]
+        doubt = ""
+        if margin < SURE:
+            instead = [columns[r] for r, k in second.items() if k == at and best.get(r) != at]
+            doubt = _doubt(reasons[column, kind], instead)
+        found.append(Role(column, kind, margin, doubt))
+    return found
+
+
+def _given_out(odds: FloatArray) -> dict[int, int]:
+    """Return the kind of each row that gets one, so that the sum of what they have is largest."""
+    from scipy.optimize import linear_sum_assignment
+
+    places = np.repeat(np.arange(len(KINDS)), [kind.places for kind in KINDS])
+    worth = np.maximum(odds[:, places], 0.0)
+    rows, chosen = linear_sum_assignment(worth, maximize=True)
+    return {
+        int(row): int(places[place])
+        for row, place in zip(rows, chosen, strict=True)
+        if worth[row, place] > 0.0
+    }
+
+
+def _total(odds: FloatArray, given: Mapping[int, int]) -> float:
+    return float(sum(odds[row, kind] for row, kind in given.items()))
+
+
+def _doubt(reasons: Sequence[Evidence], instead: Sequence[str]) -> str:
+    if instead:
+        return f"{' and '.join(instead)} may be it as well"
+    against = [one.said for one in reasons if one.odds < 0.0]
+    return "; ".join(against) or "nothing but " + " and ".join(
+        one.said for one in reasons if one.odds > 0.0
+    )
+
+
+def _reasons(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Evidence]:
+    """Yield what speaks for a role and against it; what a column does, in most recordings."""
+    seen = [(one, one.columns[column]) for one in telling if column in one.columns]
+    if len(seen) < len(telling):
+        yield Evidence(_AGAINST, "it is not in every recording")
+    unit = seen[0][1].unit
+    if unit not in ("", *kind.units):
+        yield Evidence(-np.inf, f"it is in {unit}")
+    elif unit and kind is not PULSES:
+        yield Evidence(_UNIT, f"its unit is {unit}")
+    yield from _of_name(column, kind, telling)
+    done = [list(_DOING[kind.name](behaviour, watch)) for watch, behaviour in seen]
+    yield from sorted(done, key=lambda one: sum(e.odds for e in one))[(len(done) - 1) // 2]
+
+
+def _of_name(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Evidence]:
+    if column in CHANNELS:  # our own name says it, and no other
+        own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
+        yield Evidence(SURE if own else -np.inf, "its name is that of the channel")
+        return
+    if words.says(column, words.OTHERS):
+        yield Evidence(_AGAINST, "it is called as what is no part of the oscillator")
+    if words.says(column, kind.words):
+        yield Evidence(_NAME, "its name")
+    elif any(words.says(column, one.words) for one in KINDS):
+        yield Evidence(-_NAME, "its name is that of something else")
+    axes = {words.axis_of(name) for one in telling for name in one.columns} - {""}
+    if kind in (FORCE, ALONG) and words.axis_of(column) and len(axes) > 1:
+        named = ", ".join(sorted(axes))
+        yield Evidence(_AGAINST, f"it is one of a balance's axes ({named}), not of a strut's gauge")
+
+
+def _displacement(one: Behaviour, watch: Watched) -> Iterator[Evidence]:
+    if not one.part.carried or one.turn:
+        yield Evidence(-np.inf, "it does not move at the line")
+        return
+    clean = float(np.clip(-np.log10(max(one.part.beside, 1e-12)) - _CLEAN, -1.0, 1.0))
+    yield Evidence(_DOES * clean, f"{100.0 * one.part.beside:.2g} % of it is beside the line")
+    like = [
+        other for other in watch.columns.values() if other.unit == one.unit and other.part.carried
+    ]
+    driver = min(like, key=lambda other: other.part.beside)
+    apart = abs(one.part.first) / max(abs(driver.part.first), 1e-300)
+    if not 1.0 - _OTHER_STRUT < apart < 1.0 / (1.0 - _OTHER_STRUT):
+        yield Evidence(_AGAINST, f"its amplitude is {apart:.2g} times that of the cleanest motion")
+
+
+def _force(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+    if one.part.carried:
+        yield Evidence(_DOES, "it answers at the line")
+    else:
+        yield Evidence(_AGAINST, "it does not answer at the line")
+
+
+def _angle(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+    if one.turn is None:
+        yield Evidence(-np.inf, "it does not turn once in each period")
+        return
+    yield Evidence(1.5 * _DOES, "it rises by one turn in each period")
+    if one.turn.wraps:
+        yield Evidence(_DOES, "it begins anew after each turn")
+
+
+def _speed(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+    if one.part.carried and one.part.beside < _SWINGS:
+        yield Evidence(_AGAINST, "it swings with the line")
+    elif one.spread <= _EVEN * abs(one.mean):
+        yield Evidence(_DOES, "it is even")
+
+
+def _along(_one: Behaviour, _watch: Watched) -> Iterator[Evidence]:
+    yield Evidence(-_NAME, "few rigs have a gauge along the model")
+
+
+def _pulses(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+    odds = 3.0 * _DOES if one.pulses else -np.inf
+    yield Evidence(odds, "it has one pulse in each period")
+
+
+_DOING: Final[Mapping[str, Callable[[Behaviour, Watched], Iterator[Evidence]]]] = {
+    DISPLACEMENT.name: _displacement,
+    FORCE.name: _force,
+    ANGLE.name: _angle,
+    SPEED.name: _speed,
+    ALONG.name: _along,
+    PULSES.name: _pulses,
+}

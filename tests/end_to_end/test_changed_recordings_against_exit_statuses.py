@@ -1,0 +1,85 @@
+"""Every command that takes a changed ``run.nc`` says so and ends with 1, after its work."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import h5py
+import pytest
+from click.testing import CliRunner, Result
+
+from benchmarks.boards.campaigns import EXAMPLES, simulated
+from pmm.campaign_file import read_campaign
+from pmm.cli import cli
+
+# Two effects in place of the catalogue: what takes time is not what is asked for here.
+GAP: Final = ("gap", "--jobs", "1", "--effects", "coulomb-friction", "--effects", "gain-error")
+COMMANDS: Final = {
+    "analyse": ("analyse",),
+    "analyse --json": ("analyse", "--json"),
+    "coefficients": ("coefficients",),
+    "report": ("report",),
+    "gap": GAP,
+}
+SEED: Final = 23
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    return simulated(EXAMPLES / "vertical" / "campaign.toml", folder, SEED, ())
+
+
+@pytest.fixture
+def campaign(made: Path, tmp_path: Path) -> Path:
+    folder = made if made.is_dir() else made.parent
+    shutil.copytree(folder, tmp_path / "campaign")
+    return tmp_path / "campaign"
+
+
+def first(campaign: Path) -> Path:
+    """Return the recording of the first run."""
+    return read_campaign(campaign / "campaign.toml").runs[0].recording_path(campaign)
+
+
+def run(command: str, campaign: Path) -> Result:
+    return CliRunner().invoke(cli, [*COMMANDS[command], str(campaign)])
+
+
+def a_value(file: h5py.File) -> None:
+    file["force_aft"][1500] = -file["force_aft"][1500]
+
+
+def an_attribute(file: h5py.File) -> None:
+    file["force_aft"].attrs["units"] = "V"
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("change", [a_value, an_attribute])
+def test_a_change_is_said(
+    campaign: Path, command: str, change: Callable[[h5py.File], None]
+) -> None:
+    with h5py.File(first(campaign), "r+") as file:
+        change(file)
+    found = run(command, campaign)
+    assert found.exit_code == 1, found.output
+    assert "not what was written" in found.stderr
+    assert "force_aft" in found.stderr
+    assert found.stdout  # what could be done was done
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_unharmed_files_are_no_matter(campaign: Path, command: str) -> None:
+    found = run(command, campaign)
+    assert found.exit_code == 0, found.output
+    assert "not what was written" not in found.output
+    assert "without checksums" not in found.output
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_files_of_others_are_read_and_noted_once(command: str, tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLES / "foreign", tmp_path / "foreign")
+    found = run(command, tmp_path / "foreign")
+    assert found.exit_code == 0, found.output
+    assert found.stderr.count("without checksums, so that no change would be seen: ") == 1

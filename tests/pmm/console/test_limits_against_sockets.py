@@ -1,0 +1,104 @@
+"""What comes over the network is limited: a console in its own process, and sockets by hand."""
+
+import re
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from pmm.console import limits
+from pmm.console.limits import MOST_HALF_SENT, MOST_STREAMS, REQUEST_S, YOUNG_S
+from tests.pmm.console.chromium import console, rig_in
+from tests.pmm.console.raw import SESSION, Address, address_of, answer
+
+DOCS = Path(__file__).parents[3] / "docs" / "console.md"
+STOP = {"command": "quick stop"}
+
+
+@contextmanager
+def _console(folder: Path) -> Iterator[Address]:
+    with console(rig_in(folder / "rig"), folder / "out", "--speed", "4") as one:
+        yield address_of(one.address)
+
+
+def _stream(address: Address, session: str) -> ClientConnection:
+    return connect(
+        f"ws://{address.name}/stream?session={session}",
+        origin=f"http://{address.name}",  # type: ignore[arg-type]
+        max_size=None,
+        compression=None,
+        open_timeout=60.0,
+    )
+
+
+def _farewell(stream: ClientConnection) -> tuple[int, str]:
+    """Read to the end; return the code and the reason of the close."""
+    with suppress(ConnectionClosed):
+        while True:
+            stream.recv(timeout=60.0)
+    return stream.close_code or 0, stream.close_reason or ""
+
+
+@pytest.mark.parametrize("message", [b"\x00\xff", "start"])
+def test_a_message_on_the_stream_is_refused_with_a_sentence(
+    tmp_path: Path, message: bytes | str
+) -> None:
+    with _console(tmp_path) as address:
+        with _stream(address, SESSION) as stream:
+            stream.send(message)
+            code, reason = _farewell(stream)
+        assert (code, reason) == (1003, "nothing is taken on this stream; commands are posted")
+        with _stream(address, SESSION) as stream:
+            assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
+
+
+def test_half_sent_requests_are_few_and_end_and_a_quick_stop_passes_them(tmp_path: Path) -> None:
+    with _console(tmp_path) as address, ExitStack() as held:
+        whole = address.post("/api/command", STOP)
+        halves = (b"", b"POST /api/comm", whole[: whole.index(b"\r\n\r\n")], whole[:-3])
+        assert address.ask(whole)[0] == 200  # it serves: nobody has waited for that
+        half = [held.enter_context(address.connect()) for _ in range(2 * MOST_HALF_SENT)]
+        for number, one in enumerate(half):
+            one.sendall(halves[number % len(halves)])
+        time.sleep(1.5 * YOUNG_S)
+        assert address.ask(whole)[0] == 200
+        first, last = answer(half[0]), answer(half[-1])
+        assert first[0] == last[0] == 408
+        assert f"more than {MOST_HALF_SENT} requests are half sent" in first[1]
+        assert f"not complete after {REQUEST_S:g} s" in last[1]
+
+
+def test_a_request_that_trickles_is_ended_as_one_that_stands_still(tmp_path: Path) -> None:
+    with _console(tmp_path) as address, address.connect() as one:
+        one.sendall(b"POST /api/command HTTP/1.1\r\nx: ")
+        one.settimeout(REQUEST_S / 20.0)
+        for _ in range(1000):
+            with suppress(TimeoutError):
+                assert one.recv(12) == b"HTTP/1.1 408"
+                return
+            one.sendall(b"x")
+    raise AssertionError("the request goes on for ever")
+
+
+def test_one_page_more_than_the_limit_is_told_so(tmp_path: Path) -> None:
+    with _console(tmp_path) as address, ExitStack() as held:
+        for number in range(MOST_STREAMS):
+            held.enter_context(_stream(address, f"{number:032d}"))
+        with _stream(address, SESSION) as stream:
+            code, reason = _farewell(stream)
+        assert code == 1013
+        assert f"{MOST_STREAMS} pages are open" in reason
+        assert address.ask(address.post("/api/command", STOP))[0] == 200
+        with _stream(address, f"{0:032d}") as stream:  # it has control
+            assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
+
+
+def test_every_limit_is_in_the_one_table() -> None:
+    rows = re.findall(r"^\| `([A-Z_]+)` \| ([0-9.]+)( KiB| MiB| s|) \|", DOCS.read_text(), re.M)
+    factors = {" KiB": 1 << 10, " MiB": 1 << 20}
+    found = {name: float(value) * factors.get(unit, 1) for name, value, unit in rows}
+    assert found == {name: value for name, value in vars(limits).items() if name.isupper()}

@@ -1,0 +1,98 @@
+"""Wrong tokens: counted by address, slower each time, and no page that is logged in is touched."""
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pmm.console import lockout
+from pmm.console.command_log import COMMANDS
+from pmm.console.limits import LONGEST_LOCKOUT_S, MOST_ADDRESSES, WRONG_TOKENS
+from pmm.console.lockout import Lockout
+from tests.pmm.console.chromium import console, rig_in
+from tests.pmm.console.raw import address_of
+from tests.pmm.console.serving import served
+
+TOKEN = "a token of more than sixteen"  # noqa: S105 - the test's own
+
+
+class Clock:
+    """Stands until it is moved."""
+
+    now_s = 0.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+def test_each_wrong_token_doubles_the_wait_up_to_the_longest() -> None:
+    clock = Clock()
+    one = Lockout(clock)
+    waits = []
+    for _ in range(40):
+        one.wrong("10.0.0.7")
+        waits.append(one.wait_s("10.0.0.7"))
+        clock.now_s += waits[-1]
+    doubled = [2.0**k for k in range(40)]
+    free = WRONG_TOKENS - 1
+    assert waits[:free] == [0.0] * free
+    assert waits[free:] == [min(wait, LONGEST_LOCKOUT_S) for wait in doubled][: 40 - free]
+    assert one.wait_s("10.0.0.8") == 0.0
+    one.right("10.0.0.7")
+    assert one.wait_s("10.0.0.7") == 0.0
+
+
+@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
+def test_the_addresses_of_one_network_are_one(first: int, second: int) -> None:
+    one = Lockout(Clock())
+    for host in (first, second) * WRONG_TOKENS:
+        parts = [f"{host >> shift & 0xFFFF:x}" for shift in (48, 32, 16, 0)]
+        one.wrong("2001:db8:0:1:" + ":".join(parts))
+    assert one.wait_s("2001:db8:0:1::1") > 0.0
+    assert one.wait_s("2001:db8:0:2::1") == 0.0
+
+
+def test_what_is_remembered_is_bounded() -> None:
+    one = Lockout(Clock())
+    for number in range(3 * MOST_ADDRESSES):
+        for _ in range(WRONG_TOKENS):
+            one.wrong(f"10.{number >> 16}.{number >> 8 & 255}.{number & 255}")
+    assert len(one._counts) == MOST_ADDRESSES
+
+
+def test_a_page_that_is_logged_in_stops_quickly_while_its_address_is_shut_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lockout, "_FIRST_S", 800.0)  # longer than any machine needs for this test
+    remote = "http://rig.tank.example:8063"
+    with served(tmp_path, token=TOKEN, host="0.0.0.0", origin=remote) as one:  # noqa: S104
+        assert one.post("/login", {"token": TOKEN})[0] == 200
+        found = [one.post("/login", {"token": f"{TOKEN}{k}"}) for k in range(3 * WRONG_TOKENS)]
+        assert [status for status, _ in found] == [401] * WRONG_TOKENS + [429] * 2 * WRONG_TOKENS
+        assert "wait 800 s" in str(found[-1][1]["error"])
+        assert one.post("/login", {"token": TOKEN})[0] == 429
+        assert one.post("/api/command", {"command": "quick stop"})[0] == 200
+        assert one.orders[-1].text == "quick stop"
+    text = (tmp_path / COMMANDS).read_text(encoding="utf-8")
+    lines = [json.loads(line) for line in text.splitlines()]
+    wrong = [line for line in lines if line["action"] == "log in" and not line["taken"]]
+    assert len(wrong) == WRONG_TOKENS
+    assert wrong[-1]["said"] == f"wrong token, number {WRONG_TOKENS} from 127.0.0.1; it waits 800 s"
+    assert {line["address"] for line in wrong} == {"127.0.0.1"}
+    assert TOKEN not in text
+
+
+def test_plain_http_beyond_the_machine_is_warned_of_and_only_there(tmp_path: Path) -> None:
+    token = tmp_path / "token"
+    token.write_text(TOKEN, encoding="utf-8")
+    rig = rig_in(tmp_path / "rig")
+    options = ("--host", "127.0.0.2", "--token-file", str(token), "--speed", "4")
+    with console(rig, tmp_path / "out", *options) as far:
+        port = address_of(far.address).port
+    assert "warning: --host 127.0.0.2 without --certificate" in far.said
+    assert f"ssh -L {port}:127.0.0.1:{port} USER@THIS-MACHINE" in " ".join(far.said.split())
+    with console(rig, tmp_path / "out", "--speed", "4") as near:
+        pass
+    assert "warning: --host" not in near.said
