@@ -70,7 +70,8 @@ def heard_rms(runs: Sequence[GapRun], channel: str) -> float:
     if loud is None:
         return 0.0
     rate_hz = float(np.median([run.sample_rate_hz for run in seen]))
-    return math.sqrt(loud.at(max(one.frequency_hz.max() for one in lines)) * rate_hz)
+    ends_hz = float(np.concatenate([one.frequency_hz for one in lines]).max())  # short runs: none
+    return math.sqrt(loud.at(ends_hz) * rate_hz)
 
 
 def _standing(seen: Observation, steps: Mapping[str, float]) -> Observation:

@@ -5,7 +5,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from analysis.gap.components import GapRun, Observation
+from analysis.gap.sensors import heard_rms
 from analysis.gap.spectrum import Lines, loudness, quiet_lines
+from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
 
 FloatArray = NDArray[np.float64]
 
@@ -66,3 +70,18 @@ def test_too_few_lines_say_nothing() -> None:
     assert loudness([]) is None
     assert loudness([Lines(np.arange(1.0, 5.0), np.ones(4))]) is None
     assert loudness([Lines(np.arange(1.0, 50.0), np.zeros(49))]) is None
+
+
+def test_a_run_too_short_for_lines_leaves_the_noise_as_it_is() -> None:
+    """The sensor is as loud as what was put in: half of three times the density's spread above."""
+    rng = np.random.default_rng(8)
+    runs = []
+    for number, frequency_hz in enumerate((*FREQUENCIES_HZ, 1.0)):
+        count = 4 if number == len(FREQUENCIES_HZ) else round(PERIODS / frequency_hz * RATE_HZ)
+        values = WHITE * rng.standard_normal((1, count))
+        lines = quiet_lines(np.arange(count) / RATE_HZ, values, frequency_hz, 6)[0]
+        seen = Observation((), np.zeros(0), np.zeros(0), {"force_aft": lines})
+        point = SetPoint(frequency_hz, 0.02)
+        runs.append(GapRun(str(number), point, CampaignRun(number), seen, PERIODS, RATE_HZ))
+    assert runs[-1].observed.quiet["force_aft"].frequency_hz.size == 0
+    assert heard_rms(runs, "force_aft") == pytest.approx(WHITE, rel=0.18)
