@@ -100,7 +100,7 @@ class Amplifier:
         self._untaken: list[Sample] = []
         self._told: set[tuple[str, str]] = set()
         self._repeats = [0] * len(self.channels)
-        self._raw: tuple[int | float, ...] = ()
+        self._raw: list[int | float] = [math.nan] * len(self.channels)
 
     def prepare(self) -> None:
         """Write the settings of the configuration to the amplifier."""
@@ -220,10 +220,8 @@ class Amplifier:
         return self._stuck(i, raw)
 
     def _stuck(self, i: int, raw: int | float) -> HardwareError | None:
-        if len(self._raw) != len(self._channels):
-            self._raw = (math.nan,) * len(self._channels)
         self._repeats[i] = self._repeats[i] + 1 if raw == self._raw[i] else 0
-        self._raw = (*self._raw[:i], raw, *self._raw[i + 1 :])
+        self._raw[i] = raw
         limit = self._settings.stuck_s * self.sample_rate_hz
         if not limit or self._repeats[i] < limit:
             return None

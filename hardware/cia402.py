@@ -27,6 +27,8 @@ class State(Enum):
     FAULT_REACTION_ACTIVE = (0x4F, 0x0F)
     FAULT = (0x4F, 0x08)
 
+    __hash__ = object.__hash__  # in every cycle; of the name, as an Enum's, it costs five times
+
 
 class Command(IntEnum):
     """The commands; the value is bits 0 to 3 and 7 of the control word."""
@@ -83,6 +85,8 @@ class Goal(Enum):
     DISABLED = "disabled"  # no torque: SWITCH ON DISABLED
     ENABLED = "enabled"  # OPERATION ENABLED
     QUICK_STOPPED = "quick stopped"  # QUICK STOP ACTIVE, or without power already
+
+    __hash__ = object.__hash__
 
 
 # The transitions of CiA 402 by number: 0, 1, 13 and 14 are the drive's own.

@@ -29,6 +29,7 @@ _POSITION_AT: Final = STATE_PDOS[0].index(POSITION)
 PROBE_PDO: Final = (PROBE_POSITION, PROBE_EDGES, PROBE_STATUS)
 
 _SUPPORTED_MODES, _MAX_MOTOR_SPEED = Entry(0x6502), Entry(0x6080)
+_FOLLOWING_ERROR: Final = int(Status.FOLLOWING_ERROR)
 _FOLLOWING_ERROR_CODE: Final = 0x8611
 _SAFETY: Final = (
     (Entry(0x6007), 3),  # connection lost: quick stop
@@ -181,9 +182,9 @@ class Drive:
         DriveFaultError, FollowingError, DriveStateError, TransitionTimeoutError, NotAtRestError
             Each once.
         """
-        status = self.status
+        status = int(self.node.values[STATUS_WORD])
         try:
-            self._walk.tick(int(status), at_rest=self.motion.at_rest)
+            self._walk.tick(status, at_rest=self.motion.at_rest)
         except DriveFaultError as error:
             raise self._named() from error
         finally:
@@ -191,7 +192,7 @@ class Drive:
         self._watch(status)
 
     def _put(self) -> None:
-        extra = self.extra if self.enabled else Control(0)
+        extra = int(self.extra) if self.enabled else 0
         self.node.put(CONTROL_WORD, self._walk.word | extra)
         self.node.put(MODE, self.mode)
 
@@ -203,12 +204,13 @@ class Drive:
             self.node.name, f"{self._walk.state.name}, error code 0x{code:04X} (603F); reset it"
         )
 
-    def _watch(self, status: Status) -> None:
-        stray = self.enabled and self.mode is not Mode.HOMING and Status.FOLLOWING_ERROR in status
+    def _watch(self, status: int) -> None:
+        strayed = bool(status & _FOLLOWING_ERROR)
+        stray = strayed and self.enabled and self.mode is not Mode.HOMING
         if stray and not self._strayed:
             self._strayed = True
             raise FollowingError(
-                self.node.name, f"outside its window (status word 0x{int(status):04X}, bit 13)"
+                self.node.name, f"outside its window (status word 0x{status:04X}, bit 13)"
             )
         self._strayed = stray
         if self._deadline is None:
@@ -218,7 +220,7 @@ class Drive:
             self._deadline = None
             raise TransitionTimeoutError(
                 self.node.name,
-                f"{self._waiting_for}: not in time (status word 0x{int(status):04X}, "
+                f"{self._waiting_for}: not in time (status word 0x{status:04X}, "
                 f"position {self.node.values[POSITION]})",
             )
 

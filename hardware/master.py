@@ -275,8 +275,9 @@ class Master:
             # the present one's.
             self._missing = sum(self._number - stream.last for stream in self._streams.values())
         for _ in range(_FRAMES_A_CYCLE):
-            left = end - self.clock() if self._missing > 0 else 0.0
-            frame = self._receiver.receive(max(left, 0.0))
+            frame = self._receiver.receive(0.0)
+            if frame is None and self._missing > 0:
+                frame = self._receiver.receive(max(end - self.clock(), 0.0))
             if frame is None:
                 return faults
             try:

@@ -49,7 +49,8 @@ class Motion:
         # A count less than the speed of rest makes: positions are rounded at both ends.
         self._allowed = max(per_cycle * window - 1.0, REST_COUNTS)
         self._window = window
-        self._track: deque[tuple[int, int]] = deque(maxlen=max(window, self._speed_window) + 1)
+        self._counts: deque[int] = deque(maxlen=window + 1)
+        self._track: deque[tuple[int, int]] = deque(maxlen=self._speed_window + 1)
         self._now = self._disturbed = 0
 
     def take(self, now: int, positions: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -58,6 +59,7 @@ class Motion:
         taken = []
         for number, raw in positions:
             self.counts = raw if self.counts is None else self.near(raw)
+            self._counts.append(self.counts)
             taken.append((number, self.counts))
         self._track += taken
         return taken
@@ -80,18 +82,16 @@ class Motion:
     def at_rest(self) -> bool:
         """Whether the positions have stayed where they are; unknown and stale ones have not."""
         fresh = self._now - self._disturbed > self._window or not self._disturbed
-        if not self.known or not fresh or len(self._track) <= self._window:
+        if not self.known or not fresh or len(self._counts) <= self._window:
             return False
-        counts = [self._track[-1 - back][1] for back in range(self._window + 1)]
-        return max(counts) - min(counts) <= self._allowed
+        return max(self._counts) - min(self._counts) <= self._allowed
 
     @property
     def speed(self) -> float:
         """Speed over :data:`SPEED_WINDOW_S`, with its sign; NaN while it is not known."""
         if not self.known:
             return math.nan
-        back = min(self._speed_window, len(self._track) - 1)
-        (first, start), (last, end) = self._track[-1 - back], self._track[-1]
+        (first, start), (last, end) = self._track[0], self._track[-1]
         return (end - start) / (last - first) * self.sample_rate_hz / self._counts_per_unit
 
     def __str__(self) -> str:

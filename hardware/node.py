@@ -38,15 +38,16 @@ class Stream:
         ProcessDataLostError
             If it has not the length of the mapping.
         """
-        if len(data) != self.layout.size:
+        layout = self.layout
+        if len(data) != layout.code.size:
             raise ProcessDataLostError(
                 self._owner.name,
                 f"TPDO 0x{self.layout.cob_id:03X} has {len(data)} bytes where its mapping "
                 f"({', '.join(map(str, self.layout.entries))}) has {self.layout.size}",
             )
-        values = self.layout.code.unpack(data)
+        values = layout.code.unpack(data)
         self._frames.append(values)
-        self._owner.values.update(zip(self.layout.entries, values, strict=True))
+        self._owner.values.update(zip(layout.entries, values, strict=True))
 
     def close(self, number: int) -> None:
         """Number what came until now: the last frame belongs to SYNC ``number``."""
@@ -108,7 +109,7 @@ class Node:
         """Return the RPDOs to send: those that changed, or all of them to ``repeat``."""
         due = []
         for one in self._rpdos:
-            data = one.code.pack(*(self._wanted[at] for at in one.entries))
+            data = one.code.pack(*[self._wanted[at] for at in one.entries])
             if repeat or self._sent.get(one.cob_id) != data:
                 self._sent[one.cob_id] = data
                 due.append((one.cob_id, data))

@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -79,12 +78,14 @@ Sample = tuple[int, tuple[float, ...]]
 
 def blocks(samples: Sequence[Sample]) -> tuple[Block, ...]:
     """Put samples, each its number and its values over the channels, into blocks without gaps."""
-    cuts = [i for i in range(1, len(samples)) if samples[i][0] != samples[i - 1][0] + 1]
-    edges = [0, *cuts, len(samples)]
+    stretches: list[list[Sample]] = []
+    for one in samples:
+        if not stretches or one[0] != stretches[-1][-1][0] + 1:
+            stretches.append([])
+        stretches[-1].append(one)
     return tuple(
-        Block(samples[a][0], np.array([one[1] for one in samples[a:b]], dtype=np.float64).T)
-        for a, b in pairwise(edges)
-        if a < b
+        Block(part[0][0], np.array([values for _, values in part], dtype=np.float64).T)
+        for part in stretches
     )
 
 

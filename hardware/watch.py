@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hardware.errors import HardwareError, OverloadError, OverspeedError
 from hardware.limits import OVERSPEED, OVERSPEED_S
@@ -40,16 +39,16 @@ class _WatchedForces:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._inner, name)
 
-    def look(self, loads: NDArray[np.float64]) -> OverloadError | None:
+    def look(self, loads: Sequence[float]) -> OverloadError | None:
         """Look at what has come; return the first channel beyond its load."""
-        found = None
-        for block in self._inner.take():
-            self._taken.append(block)
-            over = np.abs(block.values) > loads[:, None]
-            if found is None and over.any():
-                row = int(np.argmax(over.any(axis=1)))
-                found = self._beyond(row, float(block.values[row][over[row]][0]), float(loads[row]))
-        return found
+        new = self._inner.take()
+        self._taken += new
+        for block in new:
+            for row, (values, load) in enumerate(zip(block.values.tolist(), loads, strict=True)):
+                for value in values:
+                    if abs(value) > load:
+                        return self._beyond(row, value, load)
+        return None
 
     def take(self) -> tuple[Block, ...]:
         """Return the samples since the last call, oldest first."""
@@ -87,7 +86,7 @@ class Watch:
         own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
         self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
         self._loads = [
-            np.array([limits.loads.get(channel.name, math.inf) for channel in one.channels])
+            [limits.loads.get(channel.name, math.inf) for channel in one.channels]
             for one in self.forces
         ]
 

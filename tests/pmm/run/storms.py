@@ -148,6 +148,9 @@ class Storm:
         configuration = read_rig({**TABLES, "bus": bus}, DRIVERS)
         place = {"eccentricity_m": E_M - 1e-4, "strut_phase_rad": PHASE_RAD - 1e-3}
         self.world = World(configuration, Scene(vertical_rig(), **place))
+        nodes = self.world.nodes.items()
+        self._drives = [(n, one) for n, one in nodes if isinstance(one, SimulatedDrive)]
+        self._shaft = dict(self._drives)["shaft"]
         self.watch = PowerWatch(self.world)
         file = RigFile(Path("rig.toml"), "0" * 64, VERTICAL_1963, configuration, realtime=False)
         with running(name, self.world):
@@ -207,7 +210,7 @@ class Storm:
 
     def _command(self, command: Command) -> None:
         resetting = command is Command.RESET and self.control.state is State.FAULT
-        moving = [name for name, one in self._drives() if abs(one.speed) > REST_SPEEDS[name]]
+        moving = [name for name, one in self._drives if abs(one.speed) > REST_SPEEDS[name]]
         try:
             self.control.request(command)
         except PmmError:
@@ -242,7 +245,7 @@ class Storm:
         """Behind a latched fault no drive is enabled, until a reset."""
         self._faulty = self._faulty + 1 if self.rig.faults else 0
         self._keep_alarms()
-        for name, one in self._drives():
+        for name, one in self._drives:
             on = one.state is DriveState.OPERATION_ENABLED
             if on and not self._on.get(name, False) and self._faulty > 2:
                 self._wrong(f"{name} was enabled behind a latched fault")
@@ -265,15 +268,6 @@ class Storm:
             self.found.counts["power off by deadline"] += alarmed
             if not alarmed:
                 self._wrong(_said(one))
-
-    def _drives(self) -> list[tuple[str, SimulatedDrive]]:
-        return [(n, one) for n, one in self.world.nodes.items() if isinstance(one, SimulatedDrive)]
-
-    @property
-    def _shaft(self) -> SimulatedDrive:
-        found = self.world.nodes["shaft"]
-        assert isinstance(found, SimulatedDrive)
-        return found
 
     @property
     def _rig_shaft(self) -> Any:
