@@ -108,15 +108,18 @@ def _nice() -> Priority:
     return Priority.RAISED
 
 
-def _lock_memory() -> bool:
-    """Keep in memory what is and comes there, if there is no limit to it; tell whether it is so.
+def may_lock_memory() -> bool | None:
+    """Tell whether no limit is set to the memory that is locked; ``None`` where none can be.
 
     Under a limit the first allocation beyond it would fail: in a run.
     """
     if sys.platform != "linux":
-        return False
+        return None
     import resource
 
-    if resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] != resource.RLIM_INFINITY:
-        return False
-    return bool(ctypes.CDLL(None).mlockall(_LOCK_ALL) == 0)
+    return resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
+
+
+def _lock_memory() -> bool:
+    """Keep in memory what is and comes there, if there is no limit to it; tell whether it is so."""
+    return bool(may_lock_memory() and ctypes.CDLL(None).mlockall(_LOCK_ALL) == 0)

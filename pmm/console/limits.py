@@ -20,6 +20,7 @@ SLOW_S: Final = 10.0  # that a page's stream may be full without anything of it 
 MOST_CHECKS: Final = 4  # plans that are checked or wait for it; as many again for who has control
 CHECK_S: Final = 120.0  # for reading a plan: 10000 runs take 10 to 20 s
 CHECK_MEMORY: Final = 1 << 30  # bytes, for reading plans: 10000 runs take 180 MB
+MOST_WAITING: Final = 32  # plans in the queue; each of 10000 runs, they take 110 MB in the loop
 LARGEST_HEADERS: Final = 16 << 10  # bytes: browsers send less than 2 kB
 LARGEST_REQUEST: Final = 16 << 10  # bytes: an answer and its question are 9 kB at most
 LARGEST_PLAN: Final = 1 << 20  # bytes: 10000 runs, each with a table of its own

@@ -13,6 +13,7 @@ from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from hardware.rig import Rig
 from pmm.console.asking import Answers
+from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import (
     Frame,
@@ -204,6 +205,11 @@ class Station:
     def _queue(self, plan: QueuedPlan) -> str:
         if not plan.runs:
             raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
+        if len(self._waiting) >= MOST_WAITING:
+            raise RunStateError(
+                f"{MOST_WAITING} plans wait already, which is the limit; take one out, or queue "
+                f"{plan.plan.name} when the next of them has begun"
+            )
         self._writer.begin(plan)
         self._waiting.append(plan)
         self._notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")

@@ -21,6 +21,7 @@ def check_host(machine: Machine, folder: Path) -> Iterator[Finding]:
     yield _lateness(machine)
     yield _network_time(machine)
     yield _priority(machine)
+    yield _memory(machine)
     yield _disk(machine, folder)
 
 
@@ -63,6 +64,18 @@ def _priority(machine: Machine) -> Finding:
     return Finding("permissions", "real-time priority", Status.WARNING,
                    f"up to {found}, wanted are {_PRIORITY}: other programs can make cycles late",
                    f"'* - rtprio {_PRIORITY}' in /etc/security/limits.conf, then log in anew"
+                   )  # fmt: skip
+
+
+def _memory(machine: Machine) -> Finding:
+    found = machine.may_lock_memory()
+    if found is None:
+        return Finding("permissions", "locked memory", Status.NOTE, "not known of here")
+    if found:
+        return Finding("permissions", "locked memory", Status.OK, "without a limit")
+    return Finding("permissions", "locked memory", Status.WARNING,
+                   "limited, wanted is no limit: what is moved out of memory makes cycles late",
+                   "'* - memlock unlimited' in /etc/security/limits.conf, then log in anew"
                    )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from hardware.serial_port import PluggedPort, plugged_ports
+from pmm.real_time import may_lock_memory
 
 _NAPS: Final = 40
 _NAP_S: Final = 0.002
@@ -120,6 +121,7 @@ class Machine:
     may_write: Callable[[Path], bool] = may_write
     free_bytes: Callable[[Path], int] = free_bytes
     highest_priority: Callable[[], int | None] = highest_priority
+    may_lock_memory: Callable[[], bool | None] = may_lock_memory
     synchronised: Callable[[], bool | None] = synchronised
     worst_lateness_s: Callable[[], float] = worst_lateness_s
     monotonic_resolution_s: Callable[[], float] = monotonic_resolution_s

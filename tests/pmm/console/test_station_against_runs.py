@@ -11,6 +11,7 @@ import numpy as np
 
 from hardware.pacing import FreeRunning
 from pmm.console.asking import Answers
+from pmm.console.limits import MOST_WAITING
 from pmm.console.messages import Frame, Notice, Order, OrderKind, QueuedPlan, Reply, Told
 from pmm.console.pacing import CountingPacer
 from pmm.console.quick_stop import QuickStop
@@ -111,6 +112,19 @@ def _shaft_words(bus: can.BusABC) -> list[int]:
         if frame.arbitration_id == _SHAFT_RPDO:
             found.append(int.from_bytes(frame.data[:2], "little"))
     return found
+
+
+def test_a_plan_beyond_the_limit_is_refused_and_room_is_made_by_dropping_one(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        for number in range(MOST_WAITING + 1):  # the first is taken at once: nothing waits for it
+            assert one.queue(number + 1, f"plan-{number}", _short("a")).done
+        refused = one.queue(1000, "one-more", _short("a"))
+        assert not refused.done
+        assert refused.text.startswith(f"{MOST_WAITING} plans wait already")
+        assert one.order(OrderKind.DROP, "2").done
+        assert one.queue(1000, "one-more", _short("a")).done
 
 
 def _short(name: str) -> RunPlan:

@@ -40,6 +40,7 @@ def sound(root: Path) -> Machine:
         may_write=lambda folder: True,
         free_bytes=lambda folder: 50_000_000_000,
         highest_priority=lambda: 99,
+        may_lock_memory=lambda: True,
         synchronised=lambda: True,
         worst_lateness_s=lambda: 1e-4,
         monotonic_resolution_s=lambda: 1e-9,
@@ -97,6 +98,7 @@ def test_a_bus_that_is_down_is_named_with_its_cure(tmp_path: Path) -> None:
 WARNED: dict[str, tuple[dict[str, Any], str]] = {
     "clock not synchronised": ({"synchronised": lambda: False}, "set-ntp"),
     "no real-time priority": ({"highest_priority": lambda: 0}, "rtprio 10"),
+    "memory that may not be locked": ({"may_lock_memory": lambda: False}, "memlock unlimited"),
     "late timer": ({"worst_lateness_s": lambda: 0.02}, "power saving"),
     "little space": ({"free_bytes": lambda folder: 1_000_000_000}, "make room"),
     "no numba": ({"installed": lambda name: None if name == "numba" else "5.0"}, "pmm[fast]"),
@@ -121,6 +123,7 @@ def test_the_machine_itself_answers_every_question(tmp_path: Path) -> None:
     assert not this.may_write(Path(__file__) / "beneath-a-file")
     assert this.synchronised() in (True, False, None)
     assert (this.highest_priority() or 0) >= 0
+    assert this.may_lock_memory() in (True, False, None)
     assert this.installed("no-such-package-anywhere") is None
 
 
