@@ -11,7 +11,7 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 from hardware.roles import Reading
 from pmm.campaign import AtRest, Campaign, Run
-from pmm.recorder.files import EVENTS
+from pmm.recorder.files import EVENTS, RECORDING
 from pmm.recorder.texts import read_lines
 
 if TYPE_CHECKING:
@@ -106,6 +106,7 @@ def open_recording(
     """
     from analysis.readers import read_recording
     from analysis.readers.photocell import read_edges
+    from pmm.recorder.changes import text_flags
 
     if source.outcome != COMPLETE and not partial:
         raise DataError(f"{source.name}: its outcome is {source.outcome!r}")
@@ -116,6 +117,9 @@ def open_recording(
         sample_rate_hz=source.sample_rate_hz,
         progress=progress,
     )
+    if source.path.name == RECORDING:
+        found = text_flags(source.path.parent)
+        recording = replace(recording, flags=(*recording.flags, *found))
     recording = _in_newtons(recording, source.calibration)
     if source.edges_file is not None:
         _check_there(source.edges_file)

@@ -2,20 +2,23 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from hardware.description.errors import DataError
-from hardware.description.flags import Flag, Severity
+from hardware.description.flags import DAMAGED, Flag, Severity
 from pmm.recorder.files import (
     HEADER,
     MARKER,
     RECORDING,
     SAMPLES,
+    TEXTS,
     contents_of,
 )
 from pmm.recorder.header import RunHeader
-from pmm.recorder.marker import read_recovered
+from pmm.recorder.marker import read_marker, read_recovered
 from pmm.recorder.recording import RunData, marker_is_whole
+
+_OTHER: Final = "its bytes are not those that were written"
 
 
 def changed_files(run: RunData) -> dict[str, str]:
@@ -24,20 +27,29 @@ def changed_files(run: RunData) -> dict[str, str]:
     Files are those that the marker of a closed run names, or of which a recovery made others;
     of a run that was not closed, those that carry checksums of their own.
     """
-    found = {SAMPLES: "; ".join(run.samples.changes)} if run.samples else {}
-    for name, told in written(run).items():
-        if (path := run.folder / name).exists() and path.stat().st_size >= told["bytes"]:
-            if not found.get(name) and contents_of(path) != told:
-                found[name] = "its bytes are not those that were written"
-        else:
-            size = path.stat().st_size if path.exists() else 0
-            found[name] = f"has {size} of {told['bytes']} bytes; it was cut after the run"
+    found = {name: _difference(run.folder / name, told) for name, told in written(run).items()}
+    if run.samples and run.samples.changes and found.get(SAMPLES) in (None, "", _OTHER):
+        found[SAMPLES] = "; ".join(run.samples.changes)
     if run.samples and run.samples.is_headed and _differs(run.folder / HEADER, run.samples.header):
         found[HEADER] = f"is not the header that {SAMPLES} carries"
     if (run.folder / MARKER).exists() and not marker_is_whole(run.marker):
         found[MARKER] = "is not what its checksum says"
     found[RECORDING] = recording_damage(run.folder / RECORDING)
     return {name: words for name, words in found.items() if words}
+
+
+def text_flags(folder: Path) -> tuple[Flag, ...]:
+    """Return a flag for each journal of text in a closed run's folder that was changed since.
+
+    They are short, so that whoever opens the recording may look at them as well.
+    """
+    told = (read_marker(folder) or {}).get("files", {}) | files_recovered(folder)
+    found = {name: _difference(folder / name, told[name]) for name in TEXTS if name in told}
+    return tuple(
+        Flag(DAMAGED, Severity.WARNING, f"{name}: {words}")
+        for name, words in found.items()
+        if words
+    )
 
 
 def change_flags(changed: Mapping[str, str]) -> tuple[Flag, ...]:
@@ -71,6 +83,14 @@ def recording_damage(path: Path) -> str:
     except DataError as error:
         return str(error)
     return ""
+
+
+def _difference(path: Path, told: Mapping[str, Any]) -> str:
+    """Say what of a file is not what was written; nothing where it is whole."""
+    size = path.stat().st_size if path.exists() else 0
+    if not path.exists() or size < told["bytes"]:
+        return f"has {size} of {told['bytes']} bytes; it was cut after the run"
+    return "" if contents_of(path) == told else _OTHER
 
 
 def _differs(path: Path, header: RunHeader) -> bool:

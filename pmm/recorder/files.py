@@ -18,7 +18,8 @@ CYCLES: Final = "cycles.jsonl"
 MARKER: Final = "complete.json"
 RECORDING: Final = "run.nc"
 RECOVERED: Final = "recovered.json"
-STREAMS: Final = (SAMPLES, BUS, PULSES, EVENTS, HARMONICS, LINES, CYCLES)
+TEXTS: Final = (PULSES, EVENTS, HARMONICS, LINES, CYCLES)
+STREAMS: Final = (SAMPLES, BUS, *TEXTS)
 _OURS: Final = (HEADER, *STREAMS, MARKER, RECORDING, RECOVERED)
 _CHUNK: Final = 2**20
 

@@ -27,6 +27,7 @@ from pmm.recorder.files import (
     PULSES,
     RECORDING,
     SAMPLES,
+    TEXTS,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
@@ -87,7 +88,7 @@ def read_run(folder: Path) -> RunData:
     samples = read_samples(folder / SAMPLES)
     texts: dict[str, list[Any]] = {}
     tails: dict[str, int] = {}
-    for name in (PULSES, EVENTS, HARMONICS, LINES, CYCLES):
+    for name in TEXTS:
         texts[name], tails[name] = read_lines(folder / name)
     if (folder / SAMPLES).exists():
         whole = samples.whole_bytes if samples else 0

@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from analysis.readers import read_recording
+from pmm.campaign_recording import RecordingSource, open_recording
 from pmm.cli import cli
 from pmm.recorder.files import STREAMS
 from pmm.recorder.header import LiveSettings
@@ -202,6 +203,29 @@ def test_a_flipped_bit_in_any_file_is_named(run: Path, name: str) -> None:
     said = pmm("recover", run)
     assert said.exit_code == 1, said.output
     assert name in said.stderr
+
+
+def test_a_flipped_bit_among_the_pulses_is_said_by_who_analyses_the_recording(run: Path) -> None:
+    assert pmm("analyse", run / "run.nc").exit_code == 0
+    flip(run / "pulses.jsonl", (run / "pulses.jsonl").stat().st_size // 2, 0)
+    said = pmm("analyse", run / "run.nc")
+    assert said.exit_code == 1, said.output
+    assert "pulses.jsonl: its bytes are not those that were written" in said.stderr
+    assert said.stdout  # what could be done was done
+
+
+@pytest.mark.parametrize("at_rest", [False, True])
+def test_a_text_that_was_cut_is_damage_to_whoever_opens_the_recording(
+    run: Path, at_rest: bool
+) -> None:
+    source = RecordingSource(run / "run.nc", at_rest=at_rest)
+    assert not any(flag.damaged for flag in open_recording(source).flags)
+    data = (run / "pulses.jsonl").read_bytes()
+    (run / "pulses.jsonl").write_bytes(data[:-1])
+    (said,) = (flag.message for flag in open_recording(source).flags if flag.damaged)
+    assert (
+        said == f"pulses.jsonl: has {len(data) - 1} of {len(data)} bytes; it was cut after the run"
+    )
 
 
 @pytest.mark.parametrize("command", ["recover", "replay"])
