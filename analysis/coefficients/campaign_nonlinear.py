@@ -16,14 +16,7 @@ from analysis.coefficients.cycle_fit import (
     CycleFit,
     fit_cycles,
 )
-from analysis.coefficients.form_choice import (
-    CUBIC,
-    LINEAR_FORM,
-    choose_among,
-    choose_form,
-    forms_of,
-    rival_forms,
-)
+from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
 from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
@@ -35,7 +28,6 @@ STATIC_DRIFT = "static drift"
 SURGE_FORCES = "surge"
 
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
-_STATIC_FOR_FORMS = 4  # angles; fewer do not tell a curve from its straight line
 
 Found = tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]]
 
@@ -99,7 +91,7 @@ def _try_form(
         taken = fits[-1][1]
         apart = [rival[name] - taken[name] if name in rival.names else 0.0 for name in taken.names]
         label = f"form of the {choice.load}: {form}"
-        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(apart)))
+        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(apart)[:, None]))
 
 
 def _try(
@@ -164,24 +156,27 @@ def _surge(
 def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
-    Force and moment are linear, or cubic where there are angles enough to tell and the data support
-    it; X is the resistance and, where the model was turned, quadratic.
+    Force and moment take the form that the data support, and what they misfit it by widens their
+    intervals; X is the resistance and, where the model was turned, quadratic.
     """
-    plane = cycles[0].plane
-    letter = VELOCITY_LETTERS[plane][0]
-    angles = {round(cycle.drift_rad, 6) for cycle in cycles}
+    plane, speed = cycles[0].plane, cycles[0].speed_m_s
     fits: list[tuple[str, CycleFit]] = []
     choices: list[FormChoice] = []
     missing: list[Missing] = []
-    for row, load in enumerate(LOAD_LETTERS[plane]):
-        linear = (f"{load}_0", f"{load}_{letter}")
-        forms = {LINEAR_FORM: linear, CUBIC: (*linear, f"{load}_{letter * 3}")}
-        if len(angles) < _STATIC_FOR_FORMS:
-            _try(fits, missing, STATIC_DRIFT, cycles, linear, STATIC, request)
+    for row in (0, 1):
+        forms = forms_of(plane, row, "v", steady=True)
+        try:
+            choice = choose_form(cycles, row, "v", STATIC, steady=True)
+        except DataError as error:
+            missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
-        choices.append(choose_among(forms, cycles, row, STATIC))
-        _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choices[-1], STATIC, request)
+        choices.append(choice)
+        _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choice, STATIC, request)
+        label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
+        fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
     if all(cycle.has_surge for cycle in cycles):
-        names = ["X_0"] if angles == {0.0} else ["X_0", f"X_{letter * 2}"]
+        letter = VELOCITY_LETTERS[plane][0]
+        turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
+        names = ["X_0", f"X_{letter * 2}"] if turned else ["X_0"]
         _try(fits, missing, SURGE_FORCES, cycles, names, STATIC, request)
     return fits, choices, missing

@@ -48,7 +48,7 @@ class CycleFit:
     data
         Numbers fitted by load, shape ``(3,)``.
     more
-        Inputs besides scatter and what is stated: name, and what it adds to each value.
+        Inputs besides scatter and what is stated.
     """
 
     names: tuple[str, ...]
@@ -58,19 +58,43 @@ class CycleFit:
     data: FloatArray
     problem: CycleProblem
     stated: Stated
-    more: tuple[tuple[str, FloatArray], ...] = ()
+    more: tuple[Contribution, ...] = ()
 
     @cached_property
     def uncertain(self) -> UncertainValues:
         """The values with what scatter, stated uncertainties and other inputs add."""
-        found = UncertainValues(self.values, _contributions(self))
-        for label, parts in self.more:
-            found = found.plus(label, parts)
-        return found
+        return UncertainValues(self.values, (*_contributions(self), *self.more))
 
-    def beside(self, label: str, parts: FloatArray) -> "CycleFit":
-        """Return the fit with one more input, and what that adds to each value."""
-        return replace(self, more=(*self.more, (label, parts)))
+    def beside(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "CycleFit":
+        """Return the fit with one more input.
+
+        Parameters
+        ----------
+        parts
+            Change of each value per standard deviation of each deviate, shape ``(n, deviates)``.
+        freedom
+            Degrees of freedom of the input's standard deviation.
+        """
+        more = Contribution(label, freedom, np.arange(len(self.values)), parts)
+        return replace(self, more=(*self.more, more))
+
+    def with_misfit(self, label: str, row: int) -> "CycleFit":
+        """Return the fit with what one load's residuals scatter beyond its runs' own scatter.
+
+        The variance grows by the squares over their degrees of freedom, where these exceed one
+        (Birge's ratio): the runs' scatter knows neither how well a run repeats nor whether the
+        form is that of the hull.
+        """
+        excess = self.misfit(row) ** 2 - 1.0
+        if not excess > 0.0:
+            return self
+        design, _ = self.problem.nominal_design()
+        columns = [k for k, term in enumerate(self.terms) if term.row == row]
+        weighted = self.problem.weights[..., row, None] * design[0][..., columns]
+        flat = weighted.reshape(-1, len(columns))
+        parts = np.zeros((len(self.values), 2 * len(flat)))
+        parts[columns] = np.linalg.pinv(np.concatenate((flat.real, flat.imag)))
+        return self.beside(label, np.sqrt(excess) * parts, self._spare(row))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""
@@ -78,8 +102,12 @@ class CycleFit:
 
     def misfit(self, row: int) -> float:
         """Return the root of ``chi_square`` per degree of freedom; NaN without any left over."""
-        spare = self.data[row] - sum(term.row == row for term in self.terms)
+        spare = self._spare(row)
         return float(np.sqrt(self.chi_square[row] / spare)) if spare > 0 else float("nan")
+
+    def _spare(self, row: int) -> float:
+        """Degrees of freedom of one load's residuals."""
+        return float(self.data[row]) - sum(term.row == row for term in self.terms)
 
 
 def fit_cycles(

@@ -11,8 +11,6 @@ a model that fits nowhere must not seem to decide.
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from analysis.coefficients.campaign_records import FormChoice
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import HIGHER, CycleFit, fit_cycles
@@ -38,7 +36,7 @@ _DESCRIBES = 3.0  # squares left over by the richest form, for each degree of fr
 
 
 def forms_of(
-    plane: Plane, row: int, motions: str, *, cross: bool = True
+    plane: Plane, row: int, motions: str, *, cross: bool = True, steady: bool = False
 ) -> Mapping[str, tuple[str, ...]]:
     """Return the terms of each form of one load.
 
@@ -48,11 +46,17 @@ def forms_of(
         ``"v"``, ``"r"`` or ``"vr"`` (``w`` and ``q`` alike): in what the runs move.
     cross
         Whether terms of both motions together are among them, where the runs move in both.
+    steady
+        Whether the runs are static: a constant stands where there is no acceleration.
     """
     v, r = tuple(VELOCITY_LETTERS[plane])
     load = name_of_term(term_of(linear_terms(plane, (row,))[0], plane), plane)[0]
     own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
-    linear = tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
+    linear = (
+        (f"{load}_0", *(f"{load}_{letter}" for letter in own))
+        if steady
+        else tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
+    )
     cubic = tuple(f"{load}_{letter * 3}" for letter in own)
     quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in own)
     if len(own) == 2 and cross:
@@ -73,6 +77,7 @@ def choose_form(
     orders: tuple[int, ...] = HIGHER,
     *,
     cross: bool = True,
+    steady: bool = False,
 ) -> FormChoice:
     """Return which form of one load the cycles support.
 
@@ -80,7 +85,7 @@ def choose_form(
     ----------
     row
         0 force, 1 moment.
-    motions, cross
+    motions, cross, steady
         As in :func:`forms_of`.
 
     Raises
@@ -88,27 +93,7 @@ def choose_form(
     DataError
         If not even the linear terms are determined.
     """
-    return choose_among(forms_of(cycles[0].plane, row, motions, cross=cross), cycles, row, orders)
-
-
-def choose_among(
-    forms: Mapping[str, Sequence[str]],
-    cycles: Sequence[Cycle],
-    row: int,
-    orders: tuple[int, ...],
-) -> FormChoice:
-    """Return which of some forms of one load the cycles support.
-
-    Parameters
-    ----------
-    forms
-        Names of the terms by form, :data:`LINEAR_FORM` among them.
-
-    Raises
-    ------
-    DataError
-        If not even the linear terms are determined.
-    """
+    forms = forms_of(cycles[0].plane, row, motions, cross=cross, steady=steady)
     fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
     for form in [form for form in forms if form != LINEAR_FORM]:
         try:
@@ -155,7 +140,12 @@ def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
 
 
 def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float], float]:
-    """Akaike's criterion for few data by form, and what the squares were divided by."""
+    """Akaike's criterion for few data by form, and what the squares were divided by.
+
+    A form with so many terms that the criterion does not exist is no candidate.
+    """
+    judged = {form: fit for form, fit in fits.items() if float(fit.data[row]) > len(fit.names) + 1}
+    fits = judged or {LINEAR_FORM: fits[LINEAR_FORM]}
     richest = max(fits.values(), key=lambda fit: len(fit.names))
     spare = float(richest.data[row]) - len(richest.names)
     dispersion = max(1.0, float(richest.chi_square[row]) / spare) if spare > 0 else 1.0
@@ -163,7 +153,7 @@ def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float],
     for form, fit in fits.items():
         count, data = len(fit.names), float(fit.data[row])
         few = data - count - 1.0
-        penalty = 2.0 * count * (count + 1.0) / few if few > 0 else np.inf
+        penalty = 2.0 * count * (count + 1.0) / few if few > 0 else 0.0
         found[form] = float(fit.chi_square[row]) / dispersion + 2.0 * count + penalty
     return found, dispersion
 
@@ -178,7 +168,8 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
 
     if best == LINEAR_FORM:
         found = ratio((CUBIC, QUADRATIC, BOTH))
-        return best, best, found, "no non-linear term is needed within the scatter"
+        needed = "no non-linear term is needed within the scatter"
+        return best, best, found, needed if len(criteria) > 1 else _TOO_FEW
     if best == BOTH and ratio((CUBIC, QUADRATIC)) < DECIDES:
         return _verdict({form: value for form, value in criteria.items() if form != BOTH})
     rivals = [form for form in (CUBIC, QUADRATIC) if form != best]
@@ -192,7 +183,7 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
     why = (
         f"{best} is {_times(found)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
         f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
-        "take a larger range of amplitudes, or more periods"
+        "take a larger range of amplitudes (or of drift angles, and more sizes), or more periods"
     )
     return NOT_SEPARABLE, taken, found, why
 
@@ -203,3 +194,4 @@ def _times(ratio: float) -> str:
 
 
 _NEAR = 2.0 * math.log(DECIDES)
+_TOO_FEW = "too few runs to judge any other form by: add runs at other amplitudes or drift angles"

@@ -18,11 +18,16 @@ def print_outcome(console: "Console", outcome: Outcome) -> None:
     found = outcome.result
     used = counted(len(outcome.cycles), "run")
     console.print(f"{', '.join(outcome.names)}: {used}, {found.plane}, {found.form} form")
-    _print_grid(console, recommended_table(found))
-    _print_findings(console, found)
+    print_recommended(console, found)
     print_flags(console, outcome.noticed, hints=False)
     for grid in (*beside_tables(found), *value_tables(found)):
         _print_grid(console, grid)
+
+
+def print_recommended(console: "Console", found: CampaignCoefficients) -> None:
+    """Print the values to be used first, and what was found about them."""
+    _print_grid(console, recommended_table(found))
+    _print_findings(console, found)
 
 
 def _print_findings(console: "Console", found: CampaignCoefficients) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from analysis.coefficients.restoring import Restoring
 from pmm.calibration import Calibration
+from pmm.cli.coefficients_printing import print_recommended
 from pmm.cli.screen import error_line, messages, output
 from pmm.run.chart import Chart
 from pmm.run.evaluation import Evaluation
@@ -20,6 +21,9 @@ def print_evaluation(found: Evaluation) -> None:
     console = output()
     for table in (*_tables(found), *_water_tables(found.water)):
         console.print(table)
+        console.print()
+    if found.water.derivatives is not None:
+        print_recommended(console, found.water.derivatives)
         console.print()
     for chart in found.charts:
         console.print(_verdict(chart), soft_wrap=True)
@@ -78,21 +82,6 @@ def _water_tables(water: InWater) -> "Iterator[Table]":
             for one in water.tows
         ]
         yield _filled("Towed: loads of the water on the model, 95 %", heads, rows)
-    if water.slopes:
-        heads = ["slope", "U [m/s]", "angles", "value", "cubic", "at 0", "scatter / within"]
-        rows = [
-            [
-                f"{one.name} [{one.unit}]",
-                f"{one.speed_m_s:g}",
-                str(one.angles),
-                _with_width(one.value, one.half_width),
-                _with_width(one.cubic, one.cubic_half_width),
-                _with_width(one.at_zero, one.at_zero_half_width),
-                "" if math.isnan(one.scatter) else f"{one.scatter:.2g}",
-            ]
-            for one in water.slopes
-        ]
-        yield _filled("Static drift: slopes about the midpoint, 95 %", heads, rows)
 
 
 def _restoring_table(found: Sequence[Restoring]) -> "Table":

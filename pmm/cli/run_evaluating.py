@@ -10,6 +10,7 @@ from typing import Any, Final, TypeVar
 
 import click
 
+from analysis.coefficients.exchange import to_dict
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
 from pmm.campaign import CAMPAIGN_FILE
@@ -171,7 +172,8 @@ def _draw(found: Evaluation, plot: str | None) -> list[Path]:
         "control-chart": bool(found.charts) and (lambda: chart_figure(found.charts)),
         "restoring": bool(water.restoring)
         and (lambda: restoring_figure(water.restoring, water.tracks)),
-        "static-drift": bool(water.slopes) and (lambda: drift_figure(water.tows, water.slopes)),
+        "static-drift": (drift := water.derivatives) is not None
+        and (lambda: drift_figure(water.tows, drift)),
         "straight-tow": bool(water.straight) and (lambda: resistance_figure(water.straight)),
     }
     files: list[Path] = []
@@ -193,7 +195,7 @@ def _document(found: Evaluation) -> dict[str, Any]:
         "known_mass": [asdict(each) for each in found.responses],
         "restoring": [asdict(each) for each in water.restoring],
         "tows": [asdict(each) for each in water.tows],
-        "drift_slopes": [asdict(each) for each in water.slopes],
+        "derivatives": None if water.derivatives is None else to_dict(water.derivatives),
         "control": [{**asdict(each), "values": each.values.tolist()} for each in found.charts],
         "in_control": found.in_control,
         "notes": list(found.notes),

@@ -18,6 +18,7 @@ _DASH = "–"
 _MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution
 _LITTLE = 0.005
 _NOTHING = 0.0005  # 0.0 % as it is written
+_MISFIT = "Misfit: residuals over what scatter leads to expect; 1 where the form is the hull's."
 _SMALL = "An exclamation mark: a small difference of large loads, see the budget."
 
 
@@ -56,17 +57,18 @@ def recommended_table(found: CampaignCoefficients) -> Grid:
             _value(found, k, float(half[k])),
             f"{found.entries[k].speed_m_s:g}",
             _way(found, k),
+            _misfit(found, k),
             f"{letters[found.entries[k].runs]} ({len(found.entries[k].runs)})",
             _largest(budget(found, k)),
         )
         for k in rows
     ]
-    heads = ("coefficient", "unit", "value", "U (m/s)", "how", "runs", "largest input")
-    notes = [f"Intervals hold the value with {100.0 * found.level:g} %."]
+    heads = ("coefficient", "unit", "value", "U (m/s)", "how", "misfit", "runs", "largest input")
+    notes = [f"Intervals hold the value with {100.0 * found.level:g} %.", _MISFIT]
     notes += [_SMALL] if any(" !" in row[2] for row in told) else []
     notes += [f"Runs {letter}: {', '.join(runs)}." for runs, letter in letters.items()]
     return Grid(
-        f"Recommended values: {found.normalisation}", heads, (2, 3), tuple(told), tuple(notes)
+        f"Recommended values: {found.normalisation}", heads, (2, 3, 5), tuple(told), tuple(notes)
     )
 
 
@@ -79,7 +81,15 @@ def _letters() -> Iterator[str]:
 def _way(found: CampaignCoefficients, k: int) -> str:
     entry = found.entries[k]
     at = entry.frequency_hz
-    return entry.method if not at > 0.0 else f"{entry.method}, {frequency(at)} Hz"
+    forms = [one.fitted for one in found.choices_of(entry.name, entry.runs)
+             if one.runs == entry.runs]  # fmt: skip
+    return ", ".join((entry.method, *forms, *([f"{frequency(at)} Hz"] if at > 0.0 else [])))
+
+
+def _misfit(found: CampaignCoefficients, k: int) -> str:
+    """Return how far the residuals go beyond scatter; a dash where none are left over."""
+    misfit = found.entries[k].misfit
+    return _DASH if math.isnan(misfit) else f"{misfit:.3g}"
 
 
 def value_tables(found: CampaignCoefficients) -> Iterator[Grid]:

@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
+from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.restoring import Restoring, Track
-from analysis.coefficients.tows import DriftSlope, Tow
+from analysis.coefficients.terms import VELOCITY_LETTERS, term_of, waves_of
+from analysis.coefficients.tows import Tow
 from pmm.plan.kinds import RunKind
 from pmm.report.rounding import rounded
 from pmm.report.style import FIT, PALETTE
@@ -60,19 +63,21 @@ def _width(one: tuple[Restoring, Track]) -> float:
     return float(np.ptp(one[1].displacement))
 
 
-def drift_figure(tows: Sequence[Tow], slopes: Sequence[DriftSlope]) -> "Figure":
+def drift_figure(tows: Sequence[Tow], found: CampaignCoefficients) -> "Figure":
     """Return force and moment over the velocity across the model, with the fitted curves."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 5.2), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
-    speeds = list(dict.fromkeys(one.speed_m_s for one in slopes))
-    for k, speed in enumerate(speeds):
-        mine = [one for one in tows if math.isclose(one.speed_m_s, speed, abs_tol=1e-3)]
-        pair = [one for one in slopes if one.speed_m_s == speed]
-        _draw_slope(panels[0], mine, pair[0], k, "force_n", "force_u")
-        _draw_slope(panels[1], mine, pair[1], k, "moment_n_m", "moment_u")
-    velocity = slopes[0].name[-1]
+    loads = ((0, "force_n", "force_u"), (1, "moment_n_m", "moment_u"))
+    static = found.rows(method=STATIC_DRIFT)
+    for k, runs in enumerate(dict.fromkeys(found.entries[row].runs for row in static)):
+        mine = [one for one in tows if one.run in runs]
+        for panel, (load, value, u) in zip(panels, loads, strict=True):
+            rows = [row for row in static if found.entries[row].runs == runs
+                    and term_of(found.entries[row].name, found.plane).row == load]  # fmt: skip
+            _draw_load(panel, mine, found, rows, k, value, u)
+    velocity = VELOCITY_LETTERS[found.plane][0]
     panels[0].set_ylabel("force [N]")
     panels[1].set_ylabel("moment [N m]")
     panels[1].set_xlabel(f"velocity {velocity} across the model [m/s] (squares: straight tow)")
@@ -82,20 +87,28 @@ def drift_figure(tows: Sequence[Tow], slopes: Sequence[DriftSlope]) -> "Figure":
     return figure
 
 
-def _draw_slope(
-    panel: "Axes", tows: Sequence[Tow], one: DriftSlope, k: int, value: str, u: str
+def _draw_load(
+    panel: "Axes",
+    tows: Sequence[Tow],
+    found: CampaignCoefficients,
+    rows: Sequence[int],
+    k: int,
+    value: str,
+    u: str,
 ) -> None:
     across = np.array([tow.across_m_s for tow in tows])
     loads = np.array([getattr(tow, value) for tow in tows])
     widths = np.array([tow.half_width(getattr(tow, u)) for tow in tows])
     colour = PALETTE[k % len(PALETTE)]
     grid = np.linspace(across.min(), across.max(), 100)
-    curve = one.at_zero + one.value * grid
-    if not math.isnan(one.cubic):
-        curve = curve + one.cubic * grid**3
+    still = np.zeros((2, len(grid)))
+    terms = [term_of(found.entries[row].name, found.plane) for row in rows]
+    curve = found.values[rows] @ waves_of(terms, np.stack((grid, still[0])), still)
+    slope = next(row for row, term in zip(rows, terms, strict=True) if term.degree == 1)
+    one = found.entries[slope]
     panel.plot(grid, curve, color=colour, lw=1.0,
-               label=f"{one.name} = {rounded(one.value, one.half_width)} {one.unit}"
-               f", U = {one.speed_m_s:g} m/s")  # fmt: skip
+               label=f"{one.name} = {rounded(found.values[slope], found.half_widths[slope])} "
+               f"{one.unit}, U = {one.speed_m_s:g} m/s")  # fmt: skip
     for kind, marker in ((RunKind.STATIC_DRIFT, "o"), (RunKind.STRAIGHT_TOW, "s")):
         here = np.array([tow.kind is kind for tow in tows])
         if here.any():

@@ -1,7 +1,7 @@
 """The slow and steady tests in water: quasi-static restoring, static drift, straight tow.
 
 A quick look while model and rig still hang in the tank; ``pmm coefficients`` makes derivatives of
-whole campaigns. Zeros are taken off and a calibration is applied as it does.
+whole campaigns. Zeros, calibration and the derivatives of drift are as it has them.
 """
 
 from dataclasses import dataclass, field, replace
@@ -9,16 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
+from analysis.coefficients.campaign import campaign_coefficients
+from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
-from analysis.coefficients.tows import DriftSlope, Tow, drift_slopes, tow_of
+from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign import Campaign
-from pmm.coefficients.given import chain_of, oscillator_of
+from pmm.coefficients.given import chain_of, oscillator_of, stated_of
 from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import settings_of
-from pmm.coefficients.tasks import Failed, Task, work_of
+from pmm.coefficients.settings import Settings, settings_of
+from pmm.coefficients.tasks import Done, Failed, Task, work_of
+from pmm.coefficients.workflow import request_of
 from pmm.plan.kinds import RunKind
 
 _HARMONICS = 3
@@ -34,8 +37,8 @@ class InWater:
         Of each run, and beside it force and moment over the displacement, for a figure.
     tows
         Static drift and straight tow, in their order.
-    slopes
-        Force and moment over the velocity across the model, one for each speed.
+    derivatives
+        Of the loads by the velocity across the model, at each speed; ``None`` where no run drifts.
     failed
         Runs that could not be used, and why.
     """
@@ -43,7 +46,7 @@ class InWater:
     restoring: tuple[Restoring, ...] = ()
     tracks: tuple[Track, ...] = field(default=(), repr=False)
     tows: tuple[Tow, ...] = ()
-    slopes: tuple[DriftSlope, ...] = ()
+    derivatives: CampaignCoefficients | None = None
     failed: tuple[Failed, ...] = ()
 
     @property
@@ -72,20 +75,27 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
     zeros = [read_zero(one) for one in work.zeros if one.name in used]
     known = {one.name: one.zero for one in zeros if not isinstance(one, Failed) and one.zero}
     failed = [_named(one) for one in zeros if isinstance(one, Failed)]
-    found = _Found(campaign, oscillator, failed)
+    found = _Found(campaign, oscillator, settings, failed)
     for task in wanted:
         found.take(task.with_zeros(known))
-    tows = tuple(found.tows)
     return InWater(
-        tuple(found.restoring), tuple(found.tracks), tows, drift_slopes(tows), tuple(failed)
+        tuple(found.restoring),
+        tuple(found.tracks),
+        tuple(found.tows),
+        found.derivatives(),
+        tuple(failed),
     )
 
 
 class _Found:
     """Gathers what the runs say; one that cannot be used is told and stops no other."""
 
-    def __init__(self, campaign: Campaign, oscillator: Oscillator, failed: list[Failed]) -> None:
+    def __init__(
+        self, campaign: Campaign, oscillator: Oscillator, settings: Settings, failed: list[Failed]
+    ) -> None:
         self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
+        self._settings = settings
+        self._towed: list[Done] = []
         self.restoring: list[Restoring] = []
         self.tracks: list[Track] = []
         self.tows: list[Tow] = []
@@ -97,14 +107,25 @@ class _Found:
             self._failed.append(_named(done))
         elif done.cycle is not None:
             try:
-                self._evaluate(task, done.cycle)
+                self._evaluate(task, done, done.cycle)
             except PmmError as error:
                 self._failed.append(
                     _named(Failed(task.name, done.file, str(error), error.exit_status))
                 )
 
-    def _evaluate(self, task: Task, cycle: Cycle) -> None:
+    def derivatives(self) -> CampaignCoefficients | None:
+        """Return what the tows tell as one campaign, about the midpoint."""
+        cycles = [one.cycle for one in self._towed if one.cycle is not None]
+        if not any(one.drift_rad for one in cycles):
+            return None
+        gauges = [one.calibration for one in self._towed if one.calibration is not None]
+        stated = stated_of(self._campaign, self._settings, (), gauges, motion_asked=False)
+        wanted = replace(request_of(self._settings, stated), wanted=())
+        return campaign_coefficients(cycles, wanted)
+
+    def _evaluate(self, task: Task, done: Done, cycle: Cycle) -> None:
         if task.kind is not RunKind.RESTORING:
+            self._towed.append(done)
             self.tows.append(tow_of(task.kind, cycle))
             return
         believed = self._campaign.as_recorded(task.name)

@@ -61,7 +61,7 @@ def static(generator: np.random.Generator) -> list[Cycle]:
     truth = {"Y_v": -120.0, "Y_vvv": -900.0, "N_v": -40.0, "N_vvv": 90.0}
     return [
         scattered(made_up(still, Made(truth, drift_rad=a, orders=0), f"drift {a}"), generator)
-        for a in (-0.2, -0.1, 0.0, 0.1, 0.2)
+        for a in np.linspace(-0.2, 0.2, 9).tolist()
     ]
 
 

@@ -56,7 +56,7 @@ def still(rig: SimulatedRig, drift_rad: float, name: str, speed_m_s: float = SPE
 
 def test_static_drift_gives_the_linear_and_the_cubic_derivatives() -> None:
     rig = with_gauge(horizontal_rig(), cross_flow=CrossFlow(cubic=CUBIC))
-    angles = np.radians([-8.0, -4.0, 0.0, 4.0, 8.0])
+    angles = np.radians(np.linspace(-8.0, 8.0, 9))
     runs = [still(rig, float(one), f"drift-{k}") for k, one in enumerate(angles)]
     found = campaign_coefficients(runs, Request(trials=2_000))
     for name, put_in in (

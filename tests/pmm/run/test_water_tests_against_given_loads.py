@@ -1,16 +1,21 @@
 """Restoring, static drift and straight tow, against the loads that recordings were built of."""
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from analysis.coefficients.exchange import to_dict
 from analysis.readers import write_recording
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.setpoint import SetPoint
 from pmm.campaign_file import read_campaign
+from pmm.cli import cli
+from pmm.report.slow_tests import drift_figure
 from pmm.run.in_water import InWater, in_water
 
 HALF_M = 0.5
@@ -187,35 +192,60 @@ def campaign_of_tows(folder: Path, angles: tuple[float, ...], *, zeros: bool = T
     return text
 
 
-def test_slopes_of_a_drifting_model(tmp_path: Path) -> None:
-    angles = (-12.0, -8.0, -4.0, 4.0, 8.0, 12.0)
-    found = evaluated(tmp_path, campaign_of_tows(tmp_path, angles), "horizontal")
+ANGLES = (-12.0, -8.0, -4.0, 4.0, 8.0, 12.0)
+
+
+def test_derivatives_of_a_drifting_model(tmp_path: Path) -> None:
+    found = evaluated(tmp_path, campaign_of_tows(tmp_path, ANGLES), "horizontal")
     assert found.failed == ()
-    force, moment = found.slopes
-    assert (force.name, force.unit, moment.name, moment.unit) == ("Y_v", "N s/m", "N_v", "N s")
-    assert force.angles == 7, "the straight tow at this speed is one of them"
-    for one, truth, cubic in ((force, Y_V, Y_VVV), (moment, N_V, 0.0)):
-        assert abs(one.value - truth) < 1.5 * one.half_width
-        assert abs(one.cubic - cubic) < 1.5 * one.cubic_half_width
-        assert one.half_width < 1.0
-        assert abs(one.at_zero) < 1.5 * one.at_zero_half_width
-        assert one.speed_m_s == U
-        assert 0.2 < one.scatter < 3.0
+    told = found.derivatives
+    assert told is not None
+    force, moment = told.choices
+    assert (force.verdict, moment.verdict) == ("cubic", "linear")
+    for name, unit, truth in (
+        ("Y_v", "N s/m", Y_V),
+        ("N_v", "N s", N_V),
+        ("Y_vvv", "N s3/m3", Y_VVV),
+        ("Y_0", "N", 0.0),
+    ):
+        k = told.row(name, method="static drift")
+        assert told.entries[k].unit == unit
+        assert told.entries[k].speed_m_s == U
+        assert abs(told.values[k] - truth) < 1.5 * told.half_widths[k]
+        assert len(told.entries[k].runs) == 7, "the straight tow at this speed is one of them"
+        assert 0.2 < told.entries[k].misfit < 3.0
+
+
+def test_evaluation_and_coefficients_say_the_same(tmp_path: Path) -> None:
+    found = evaluated(tmp_path, campaign_of_tows(tmp_path, ANGLES), "horizontal")
+    told = found.derivatives
+    assert told is not None
+    runner, folder, page = CliRunner(), str(tmp_path), tmp_path / "page.html"
+    printed = runner.invoke(cli, ["coefficients", folder, "--json"]).stdout
+    whole, own = json.loads(printed)["coefficients"], to_dict(told)
+    assert own["table"] == whole["table"]
+    assert own["choices"] == whole["choices"]
+    assert runner.invoke(cli, ["report", folder, "--output", str(page)]).exit_code == 0
+    shown = runner.invoke(cli, ["coefficients", folder], env={"COLUMNS": "250"}).output
+    for text in (shown, page.read_text(encoding="utf-8")):
+        assert "static drift, cubic" in text
+        assert "misfit" in text
+    assert drift_figure(found.tows, told).axes[0].lines
 
 
 def test_few_angles_make_a_line_and_two_an_interval_from_within_the_runs(tmp_path: Path) -> None:
-    found = evaluated(tmp_path, campaign_of_tows(tmp_path, (4.0,)), "horizontal")
-    force, moment = found.slopes
-    assert force.angles == 2
-    assert math.isnan(force.cubic)
-    assert math.isnan(force.scatter)
-    assert 0.0 < moment.half_width < 2.0
-    assert abs(moment.value - N_V) < 1.5 * moment.half_width
+    told = evaluated(tmp_path, campaign_of_tows(tmp_path, (4.0,)), "horizontal").derivatives
+    assert told is not None
+    assert not told.rows("N_vvv")
+    k = told.row("N_v", method="static drift")
+    assert math.isnan(told.entries[k].misfit)
+    assert 0.0 < told.half_widths[k] < 2.0
+    assert abs(told.values[k] - N_V) < 1.5 * told.half_widths[k]
 
 
 def test_resistance_is_against_the_motion(tmp_path: Path) -> None:
     found = evaluated(tmp_path, campaign_of_tows(tmp_path, ()), "horizontal")
-    assert found.slopes == ()
+    assert found.derivatives is None
     assert [one.speed_m_s for one in found.straight] == [0.4, 0.8]
     for one in found.straight:
         truth = 5.0 * one.speed_m_s**2
