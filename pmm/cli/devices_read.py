@@ -1,9 +1,11 @@
 """``pmm devices read``: what a rig, a bus or a port reads now."""
 
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from hardware.listening import Heard, listen
@@ -15,10 +17,13 @@ from hardware.serial_port import SerialPort
 from pmm.cli.devices_common import opened, plain_table, print_json
 from pmm.cli.devices_scan import Request as Named
 from pmm.cli.screen import error_line, output
+from pmm.cli.terminal import Terminal
 from pmm.devices.live import Live, Row
 from pmm.devices.opening import RigTables
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.live import Live as Screen
     from rich.table import Table
 
 _REFRESH_S = 0.25
@@ -47,8 +52,10 @@ Look = Callable[[float], _Shown]
 def run(request: Request) -> None:
     """Show values until the time is over, or Ctrl-C."""
     tables = request.tables()
-    with _source(request, tables) as look:
-        shown = look(_ONCE_S) if request.once else _live(look, request)
+    console = output(sys.stdout)
+    # The terminal is waited for last: the rig is left by then.
+    with Terminal() as terminal, _source(request, tables) as look:
+        shown = look(_ONCE_S) if request.once else _live(look, request, terminal, console)
     if request.as_json:
         rows = [{"device": one.device, "what": one.what, "value": one.value, "unit": one.unit}
                 for one in shown.rows]  # fmt: skip
@@ -104,22 +111,29 @@ def _of_port(port: SerialPort, heard: Heard, seconds: float) -> _Shown:
     return _Shown(tuple(rows))
 
 
-def _live(look: Look, request: Request) -> _Shown:
+def _live(look: Look, request: Request, terminal: Terminal, console: "Console") -> _Shown:
     """Look again and again; on a terminal the table stays in its place."""
     from rich.live import Live as Screen
 
-    console = output()
+    screen = Screen(
+        console=console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False
+    )
     end = None if request.seconds is None else time.monotonic() + request.seconds
     shown = _Shown(())
-    with Screen(console=console, auto_refresh=False, transient=request.as_json) as screen:
-        try:
-            while end is None or time.monotonic() < end:
-                shown = look(_REFRESH_S)
-                if not request.as_json:
-                    screen.update(_table(shown.rows), refresh=True)
-        except KeyboardInterrupt:
-            pass  # the way to end it
+    with suppress(KeyboardInterrupt):  # the way to end it
+        while end is None or time.monotonic() < end:
+            shown = look(_REFRESH_S)
+            if not request.as_json:
+                terminal.draw(partial(_draw, screen, shown.rows))
+    if not request.as_json:
+        terminal.do(partial(_draw, screen, shown.rows))
+        terminal.do(screen.stop)
     return shown
+
+
+def _draw(screen: "Screen", rows: Sequence[Row]) -> None:
+    screen.start()
+    screen.update(_table(rows), refresh=True)
 
 
 def _table(rows: Sequence[Row]) -> "Table":

@@ -2,21 +2,28 @@
 
 import math
 import re
+import sys
+from contextlib import ExitStack
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from hardware.description.errors import ConfigurationError
 from hardware.roles import Pulse
 from pmm.cli.devices_common import confirm, opened, print_json, print_table
-from pmm.cli.screen import error_line, messages, output
+from pmm.cli.screen import error_line, output
+from pmm.cli.terminal import Terminal
 from pmm.devices.moving import axis_of, check_position, check_speed, look, turn
 from pmm.devices.moving import move as move_axis
 from pmm.devices.opening import RigTables
 from pmm.devices.pushing import Gauges, Pushed, push_each
 from pmm.devices.watching import Watched, watch
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _UNITS: Final = {"m": ("m", 1.0), "mm": ("m", 1e-3), "rad": ("rad", 1.0),
                  "deg": ("rad", math.pi / 180.0)}  # fmt: skip
@@ -32,12 +39,16 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
         If the axis, the position or the rig's state do not allow it; nothing has moved then.
     """
     tables = RigTables(Path(rig))
-    with opened(tables.configuration(), free_running=free_running) as opened_rig:
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
         one = axis_of(opened_rig, axis)
         goal = parse_position(position, one.unit)
         check_position(one, goal)
-        shown = f"{goal:g} {one.unit}"
-        confirm(f"{axis} will home if it has to, and move to {shown}. Is the way clear?", yes=yes)
+        there = f"{goal:g} {one.unit}"
+        confirm(f"{axis} will home if it has to, and move to {there}. Is the way clear?", yes=yes)
+        shown.enter_context(Terminal())
         opened_rig.prepare()
         look(opened_rig)
         reading = move_axis(opened_rig, one, goal)
@@ -82,20 +93,25 @@ def photocell(
 ) -> None:
     """Test the photocell; ends with status 1 if a pulse is missing or too many."""
     tables = RigTables(Path(rig))
-    with opened(tables.configuration(), free_running=free_running) as opened_rig:
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
         shaft = opened_rig.shaft
         if turn_hz is not None:
             if shaft is None:
                 raise ConfigurationError("--turn: the rig has no shaft; turn it by hand")
             check_speed(shaft, turn_hz)
             confirm(f"the shaft will turn at {turn_hz:g} Hz. Is everything clear of it?", yes=yes)
+        terminal = shown.enter_context(Terminal())
         opened_rig.prepare()
         look(opened_rig)
         if turn_hz is not None and shaft is not None:
             turn(opened_rig, shaft, turn_hz)
         else:
-            messages().print(f"turn the shaft by hand, evenly, until {pulses} pulses have come")
-        watched = watch(opened_rig, pulses, within_s, lambda _one: None if as_json else _tell(_one))
+            terminal.say(f"turn the shaft by hand, evenly, until {pulses} pulses have come")
+        tell = (lambda _: None) if as_json else partial(_tell, terminal)
+        watched = watch(opened_rig, pulses, within_s, tell)
     _print_pulses(watched, as_json=as_json)
     if not watched.good:
         raise click.exceptions.Exit(1)
@@ -106,7 +122,10 @@ def gauges(
 ) -> None:
     """Push test; ends with status 1 if a gauge is swapped, turned round or silent."""
     tables = RigTables(Path(rig))
-    with opened(tables.configuration(), free_running=free_running) as opened_rig:
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
         all_gauges = Gauges(opened_rig)
         names = tuple(one.name for one in all_gauges.channels)
         for one in channels:
@@ -114,20 +133,22 @@ def gauges(
                 raise ConfigurationError(
                     f"no force channel {one!r}; the rig has {', '.join(names)}"
                 )
+        console = output(sys.stdout)
+        terminal = shown.enter_context(Terminal())
         opened_rig.prepare()
         found = []
         for pushed in push_each(all_gauges, channels or names, tables.plane, within_s):
             found.append(pushed)
             if not as_json:
-                _print_push(pushed)
+                _show_push(terminal, console, pushed)
     if as_json:
         print_json("gauges", {"gauges": [_push_document(one) for one in found]})
     if any(one.wrong for one in found):
         raise click.exceptions.Exit(1)
 
 
-def _tell(pulse: Pulse) -> None:
-    messages().print(f"pulse {pulse.number} at {pulse.time_s:.4f} s", style="dim")
+def _tell(terminal: Terminal, pulse: Pulse) -> None:
+    terminal.say(f"pulse {pulse.number} at {pulse.time_s:.4f} s")
 
 
 def _print_pulses(watched: Watched, *, as_json: bool) -> None:
@@ -162,17 +183,18 @@ def _print_pulses(watched: Watched, *, as_json: bool) -> None:
         error_line(f"{len(watched.pulses)} pulses in the time; check lamp, slot, cable and input")
 
 
-def _print_push(pushed: Pushed) -> None:
+def _show_push(terminal: Terminal, console: "Console", pushed: Pushed) -> None:
     push = pushed.push
     if push is not None:
         sign = "+" if push.sign > 0 else "-"
         right = "right" if not pushed.wrong else "WRONG"
-        output().print(
+        line = (
             f"{pushed.asked}: came in on {push.channel}, sign {sign}, {push.change:+.3g} "
             f"{push.unit} (a push is more than {push.threshold:.2g} {push.unit}): {right}"
         )
+        terminal.do(lambda: console.print(line))
     for one in pushed.wrong:
-        error_line(f"{pushed.asked}: {one}")
+        terminal.say(f"error: {pushed.asked}: {one}")
 
 
 def _push_document(pushed: Pushed) -> dict[str, object]:

@@ -14,11 +14,11 @@ T = TypeVar("T")
 WIDE = 120  # columns where nobody's terminal sets a width
 
 
-def output() -> "Console":
-    """Return the console for results."""
+def output(file: IO[str] | None = None) -> "Console":
+    """Return the console for results: standard output, whatever that is then, or another file."""
     from rich.console import Console
 
-    console = Console(highlight=False, emoji=False, markup=False)
+    console = Console(file=file, highlight=False, emoji=False, markup=False)
     if not console.is_terminal:
         console.width = WIDE
     return console

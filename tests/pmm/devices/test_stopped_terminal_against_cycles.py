@@ -1,0 +1,101 @@
+"""``pmm devices`` at a terminal that takes nothing: the loop behind it goes on."""
+
+import io
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+
+from hardware.roles import Pulse
+from pmm.cli import devices_read, devices_rig
+from pmm.devices.live import Row
+from pmm.devices.push_test import Push
+from pmm.devices.pushing import Pushed
+from pmm.devices.watching import Watched
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "vertical" / "rig.toml"
+
+
+class Stopped(io.StringIO):
+    """A terminal that takes nothing until it is let go, or for five seconds."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.goes_on = threading.Event()
+        self.held_up = False
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        if not self.goes_on.wait(5.0):
+            self.held_up = True
+            self.goes_on.set()
+        return super().write(text)
+
+
+def stopped(monkeypatch: pytest.MonkeyPatch) -> Stopped:
+    """Put such a terminal in the place of both streams, within the test: pytest has its own."""
+    found = Stopped()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stdout", found)
+    monkeypatch.setattr(sys, "stderr", found)
+    return found
+
+
+def test_values_are_read_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = stopped(monkeypatch)
+    looked: list[float] = []
+
+    def look(seconds: float) -> devices_read._Shown:
+        looked.append(seconds)
+        if len(looked) == 20:
+            terminal.goes_on.set()
+            raise KeyboardInterrupt
+        return devices_read._Shown((Row("shaft", "looks", float(len(looked))),))
+
+    @contextmanager
+    def source(*_: object) -> Iterator[Any]:
+        yield look
+
+    monkeypatch.setattr(devices_read, "_source", source)
+    devices_read.run(
+        devices_read.Request(str(EXAMPLE), None, "", 1_000_000, (), None, 115_200, False)
+    )
+    assert not terminal.held_up
+    assert "19" in terminal.getvalue()
+
+
+def test_gauges_are_pushed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = stopped(monkeypatch)
+
+    def pushed(*_: object) -> Iterator[Pushed]:
+        yield Pushed("force_aft", Push("force_aft", 1, 10.0, 1.0, "N", {}), ())
+        yield Pushed("force_fore", None, ("no push",))
+        terminal.goes_on.set()
+
+    monkeypatch.setattr(devices_rig, "push_each", pushed)
+    with pytest.raises(click.exceptions.Exit):
+        devices_rig.gauges(str(EXAMPLE), True, False, (), 1.0)
+    assert not terminal.held_up
+    assert "force_aft: came in on force_aft, sign +, +10 N" in terminal.getvalue()
+    assert "error: force_fore: no push" in terminal.getvalue()
+
+
+def test_pulses_are_watched_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = stopped(monkeypatch)
+
+    def watched(_rig: object, _count: int, _s: float, on_pulse: Any) -> Watched:
+        on_pulse(Pulse(7, 1.0))
+        terminal.goes_on.set()
+        return Watched((Pulse(7, 1.0),), (), (), True)
+
+    monkeypatch.setattr(devices_rig, "watch", watched)
+    devices_rig.photocell(str(EXAMPLE), True, False, True, 2, 1.0, None)
+    assert not terminal.held_up
+    assert "pulse 7 at 1.0000 s" in terminal.getvalue()
