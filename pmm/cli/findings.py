@@ -45,5 +45,5 @@ def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Findin
 
     for _, group in groupby(sorted(found, key=kind), kind):
         alike = list(group)
-        worst = max(alike, key=lambda one: abs(one.value - one.limit))
+        worst = max(alike, key=lambda one: abs(one.value - kind(one)[2]))
         yield worst, len({one.run for one in alike}) - 1

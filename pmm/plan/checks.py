@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from datetime import date
 
 from pmm.calibrated import expiry_text
+from pmm.plan.condition_checks import condition_findings
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import Finding, PlanRefusedError, Verdict
 from pmm.plan.limits import bus_finding, limit_findings
@@ -32,7 +33,11 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Fin
         *_not_checked(plan, rig),
     ]
     for run in plan.runs:
-        found += [*limit_findings(run, rig), *field_findings(run, rig)]
+        found += [
+            *limit_findings(run, rig),
+            *field_findings(run, rig),
+            *condition_findings(run, rig),
+        ]
     ranks = list(Verdict)
     return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
 
@@ -73,7 +78,12 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:
             "model.length_m",
             "w' = w L / U is",
         ),
-        (rig.tank is None, "[tank]", "tank length, speed and tank modes are"),
+        (rig.tank is None, "[tank]", "tank length, speed, walls, depth and tank modes are"),
+        (
+            towed and rig.tank is not None and rig.tank.depth_m is None,
+            "tank.depth_m",
+            "the depth Froude number is",
+        ),
         (turning and not rig.modes, "[[modes]] (pluck test)", "structural modes are"),
         (not rig.gauges, "[[gauges]]", "the gauges' range is"),
         (rig.limits.velocity_m_s is None, "limits.velocity_m_s", "strut velocity is"),
