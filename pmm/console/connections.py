@@ -56,11 +56,18 @@ class Crowd:
 
 
 class Connection(H11Protocol):
-    """uvicorn's connection, with a limit of time for each request."""
+    """uvicorn's connection, with a limit of time for each request.
+
+    It is there from the moment it is accepted: a TLS handshake is a part of the first request.
+    """
 
     def __init__(self, crowd: Crowd, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
         self._crowd = crowd
+        self._accepting = asyncio.current_task()  # of the event loop; it goes on to the handshake
+        if self._accepting is not None:
+            self._accepting.add_done_callback(self._accepted)
+        crowd.heard(self, complete=False)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin; nothing is sent yet, which is half a request too."""
@@ -89,6 +96,9 @@ class Connection(H11Protocol):
 
     def refuse(self, why: str) -> None:
         """End with a sentence, where an answer has not begun."""
+        if self.transport is None:
+            self.give_way()
+            return
         self._crowd.gone(self)
         if self.cycle is None or not self.cycle.response_started or self.cycle.response_complete:
             body = why.encode()
@@ -104,7 +114,15 @@ class Connection(H11Protocol):
     def give_way(self) -> None:
         """End at once."""
         self._crowd.gone(self)
-        self.transport.abort()
+        if self.transport is not None:
+            self.transport.abort()
+        elif self._accepting is not None:
+            self._accepting.cancel()
+
+    def _accepted(self, _: object) -> None:
+        """End where no connection came of it: a handshake that failed."""
+        if self.transport is None:
+            self._crowd.gone(self)
 
 
 class Stream(WebSocketsSansIOProtocol):

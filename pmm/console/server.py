@@ -7,10 +7,10 @@ from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import socket
-from typing import Any, cast
+from typing import cast
 
 from pmm.console.app_settings import Settings
-from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE, REQUEST_S
+from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE
 from pmm.console.quick_stop import QuickStop
 
 
@@ -59,10 +59,4 @@ def serve(
     )
     server = Server(configuration)
 
-    async def run() -> None:
-        if certificate is not None:  # a handshake that is half done is no connection of ours yet
-            loop: Any = asyncio.get_running_loop()
-            loop.create_server = partial(loop.create_server, ssl_handshake_timeout=REQUEST_S)
-        await server.serve(sockets=[listening])
-
-    asyncio.run(run())
+    asyncio.run(server.serve(sockets=[listening]))

@@ -2,16 +2,19 @@
 
 import json
 import ssl
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from http.client import BadStatusLine, HTTPConnection, HTTPSConnection
 from pathlib import Path
+from socket import create_connection, socket
 
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
+from pmm.console.limits import MOST_HALF_SENT, REQUEST_S, YOUNG_S
 from tests.pmm.console import certificates, chromium
 from tests.pmm.console.chromium import browser, console, plan, rig_in
 
@@ -111,6 +114,30 @@ def test_whoever_does_not_know_the_certificate_or_speaks_plainly_gets_nothing(
                 plain.getresponse()
         finally:
             plain.close()
+
+
+def test_handshakes_that_stand_still_are_few_and_end_and_a_quick_stop_passes_them(
+    tmp_path: Path,
+) -> None:
+    with _remote(tmp_path) as one, ExitStack() as held:
+        cookie = one.post("/login", {"token": TOKEN})[1].split(";")[0]
+        half = [_opened(held, one) for _ in range(2 * MOST_HALF_SENT)]
+        half[1].sendall(b"\x16\x03\x01")  # a hello that goes no further
+        time.sleep(1.5 * YOUNG_S)
+        half.append(_opened(held, one))
+        ends = [_end_s(each) for each in half[:2]]
+        assert one.post("/api/command", {"command": "quick stop"}, cookie)[0] == 200
+        assert _end_s(half[-1]) - max(ends) > REQUEST_S / 2.0  # the oldest alone gave way
+
+
+def _opened(held: ExitStack, one: Remote) -> socket:
+    return held.enter_context(create_connection((HOST, one.port), timeout=60.0))
+
+
+def _end_s(half: socket) -> float:
+    with suppress(ConnectionResetError):
+        assert half.recv(1) == b""
+    return time.monotonic()
 
 
 @chromium.needed
