@@ -12,7 +12,7 @@ import pytest
 from can.interfaces.udp_multicast import UdpMulticastBus
 
 from pmm.recorder.recording import read_run
-from tests.pmm.run.test_command_against_its_files import PLAN, RIG
+from tests.pmm.run.processes import PLAN, RIG
 from tests.sim.devices.benches import ROOT, _free_port, multicast_works
 
 GROUP = "239.74.163.2"
