@@ -15,15 +15,14 @@ from analysis.mistaken_units import mistaken, mistaken_units
 from hardware.description.body import Body
 from hardware.description.channels import (
     DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
+    DISPLACEMENTS,
     FORCE_AFT,
     FORCE_FORE,
+    FORCES,
 )
 from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 
-DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
-FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
 CHECKED: Final = (*DISPLACEMENTS, *FORCES)
 _NEAR: Final = 0.1  # of a unit's factor, in the logarithm
 _STEADY: Final = 0.2  # spread of the logarithm from run to run that a wrong unit leaves

@@ -9,30 +9,12 @@ import numpy as np
 from analysis.motion import IdealRun, LinearHull, ideal_run
 from analysis.readers import write_recording
 from analysis.recording import Recording
-from hardware.description.channels import (
-    CARRIAGE_SPEED,
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    FORCE_X,
-    SHAFT_ANGLE,
-    Channel,
-)
+from hardware.description.channels import STANDARD, Channel
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
 
 RATE_HZ, SECONDS, SPEED = 200.0, 60.0, 1.2
-CHANNELS = (
-    SHAFT_ANGLE,
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    FORCE_X,
-    CARRIAGE_SPEED,
-    Channel("wave", "m"),
-)
+CHANNELS = (*STANDARD, Channel("wave", "m"))
 _NOISE = (1e-5, 5e-6, 5e-6, 0.05, 0.05, 0.05, 1e-3, 1e-3)
 _REPEATS, _AMPLITUDES = 5, (0.01, 0.015, 0.02, 0.025, 0.03)
 _HEAD = """name = "benchmark"

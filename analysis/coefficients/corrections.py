@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.measured import FORCES, StrutRun
+from analysis.coefficients.measured import StrutRun
 from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
 from analysis.recording import Recording
+from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError, DataError
 
 Response = Callable[[complex], complex]

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.coefficients.corrections import Delay
-from analysis.coefficients.measured import DISPLACEMENTS, FORCES, StrutRun
+from analysis.coefficients.measured import StrutRun
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.run import from_struts
 from analysis.motion import ComplexArray, motion, strut_forces
 from hardware.description.body import Body
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
 

@@ -17,19 +17,12 @@ from analysis.resolver.analyse import Analysis
 from analysis.resolver.estimate import fit_drift, no_drift, solve_periods, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics
 from analysis.resolver.sums import PeriodSums
-from hardware.description.channels import (
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-)
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import SetPoint
 
-DISPLACEMENTS = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
-FORCES = (FORCE_AFT.name, FORCE_FORE.name)
 MOTION_ASKED = Flag(
     "motion_from_set_point",
     Severity.NOTE,

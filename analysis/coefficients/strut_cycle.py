@@ -16,18 +16,12 @@ from analysis.coefficients.corrections import (
     response_factors,
 )
 from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
-from analysis.coefficients.measured import (
-    DISPLACEMENTS,
-    FORCES,
-    MOTION_ASKED,
-    joint_of,
-    reading_phasors,
-)
+from analysis.coefficients.measured import MOTION_ASKED, joint_of, reading_phasors
 from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source, joined
 from analysis.coefficients.run import strut_matrix
 from analysis.motion import strut_displacements
 from analysis.resolver.analyse import Analysis
-from hardware.description.channels import FORCE_X
+from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Oscillator

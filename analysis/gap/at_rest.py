@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from analysis.coefficients.corrections import ZERO_BLOCKS, zero_reading
 from analysis.gap.components import Component, GapRun, Observation, Part
-from analysis.gap.observe import FORCES, STRUTS
 from analysis.gap.plateau import steps_of
 from analysis.recording import Recording
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
@@ -41,7 +41,7 @@ def run_at_rest(
     point = SetPoint(ZERO_BLOCKS / duration_s, 0.0, 0.0, carriage_speed_m_s, medium)
     aft_m, fore_m = (
         float(recording.values(one).mean()) if one in recording.channel_names else 0.0
-        for one in STRUTS
+        for one in DISPLACEMENTS
     )
     return GapRun(
         recording.name,

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
-from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import motion
 from analysis.gap.sparse_law import FORM, Law, scaled_motion, sparse_law
 from analysis.gap.where import remaining
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import Medium, SetPoint
 
 FloatArray = NDArray[np.float64]

@@ -20,8 +20,7 @@ from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import ORDERS, POINTS, Simulator, read_steady, turned
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.observe import STRUTS
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.chain import Chain
@@ -248,4 +247,4 @@ def _shaft(period: Period, channels: Mapping[str, ComplexArray]) -> Spectra:
 
 
 MEASURED_SHAFT: Final = Feed((SHAFT_ANGLE.name,), _shaft)
-MEASURED_MOTION: Final = Feed(STRUTS, _motion)
+MEASURED_MOTION: Final = Feed(DISPLACEMENTS, _motion)

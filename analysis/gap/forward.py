@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import record_at_rest, steady_at_rest
 from analysis.gap.components import GapRun, Layout, Observation, Part, Stack
-from analysis.gap.observe import FORCES, observe
+from analysis.gap.observe import observe
 from analysis.gap.powers import on_noise
 from analysis.gap.prefix import Solved
 from analysis.resolver.choice import ReferenceChoice
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.acting import Acting

@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
-from analysis.gap.observe import STRUTS
 from analysis.gap.priors import Priors
 from analysis.gap.spectrum import spread_about
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.a3_photocell_angle import PhotocellAngle
 from sim.effects.effect import Effect
 from sim.effects.h11_carriage_speed import CarriageSpeedError
@@ -172,7 +171,7 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:
     """Yield what a displacement sensor's gain changes, a column for each."""
-    for channel in STRUTS:
+    for channel in DISPLACEMENTS:
         own = np.array([one.channel == channel for one in stack.components])
         yield np.where(own, relative * base / stack.uncertainty, 0.0)
 

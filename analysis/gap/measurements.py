@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import Component, GapRun, Observation, Part
 from analysis.gap.fit import Problem
-from analysis.gap.observe import FORCES
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Measurement

@@ -24,17 +24,15 @@ from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
 from analysis.resolver.settings import Settings
-from hardware.description import channels
+from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.errors import DataError
 
 FloatArray = NDArray[np.float64]
 Found = Iterator[tuple[Component, float, float]]
 
 ORDERS: Final = 6
-FORCES: Final = (channels.FORCE_AFT.name, channels.FORCE_FORE.name)
-STRUTS: Final = (channels.DISPLACEMENT_AFT.name, channels.DISPLACEMENT_FORE.name)
-SPEED: Final = channels.CARRIAGE_SPEED.name
-COMPARED: Final = (channels.SHAFT_ANGLE.name, *STRUTS, *FORCES, SPEED)
+SPEED: Final = CARRIAGE_SPEED.name
+COMPARED: Final = (SHAFT_ANGLE.name, *DISPLACEMENTS, *FORCES, SPEED)
 
 # Whose change and scatter from cycle to cycle are looked at.
 CYCLED: Final = (1, 2)
@@ -163,7 +161,7 @@ def _harmonics(analysis: Analysis) -> Found:
     moving = _moving(analysis)
     for row, name in enumerate(reading.channel_names):
         values, own = reading.coefficients[row], deviation[row]
-        if name != channels.SHAFT_ANGLE.name:  # its mean is a matter of counting turns
+        if name != SHAFT_ANGLE.name:  # its mean is a matter of counting turns
             yield Component(name, Part.MEAN), values[0], own[0]
         # The carriage does not go with the shaft; what varies shows among the lines.
         if name == SPEED or name not in moving:
@@ -266,7 +264,7 @@ def _between(analysis: Analysis) -> Found:
 
 def _plateaus(part: Recording) -> dict[str, Plateau]:
     """Return what is cut off struts and forces, also of the channel that tells the phase."""
-    names = [one for one in (*STRUTS, *FORCES) if one in part.channel_names]
+    names = [one for one in (*DISPLACEMENTS, *FORCES) if one in part.channel_names]
     return {name: plateau(part.values(name)) for name in names}
 
 

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.doubt import SAY_UNIT, UNIT_NEAR, Doubt
-from analysis.gap.observe import STRUTS
 from analysis.mistaken_units import mistaken
-from hardware.description.channels import DISPLACEMENT_AFT, FORCE_AFT
+from hardware.description.channels import DISPLACEMENT_AFT, DISPLACEMENTS, FORCE_AFT
 from hardware.description.setpoint import Medium
 from sim.rig import SimulatedRig
 
@@ -50,7 +49,7 @@ def of_first_harmonics(
     ratios = {name: ratio for name, (ratio, _) in found.items()}
     sizes = {name: math.log(max(abs(ratio), 1e-12)) for name, ratio in ratios.items()}
     usual = float(np.median(list(sizes.values())))
-    unit = (DISPLACEMENT_AFT if channel in STRUTS else FORCE_AFT).unit
+    unit = (DISPLACEMENT_AFT if channel in DISPLACEMENTS else FORCE_AFT).unit
     turns = _middle_turn(list(ratios.values()))
     common = _common(usual, cmath.phase(turns), mistaken(math.exp(usual), unit, UNIT_NEAR))
     if common:
@@ -121,7 +120,7 @@ def _ratios(
         if abs(seen) < _HEARD * noise < 0.1 * abs(told):
             seen = 0.0j  # what is left is noise
         if np.isfinite([told, seen]).all() and abs(told) > _least(rig, run, channel):
-            slack = 0.0 if channel in STRUTS else _TOLERATED * _terms(rig, run) / abs(told)
+            slack = 0.0 if channel in DISPLACEMENTS else _TOLERATED * _terms(rig, run) / abs(told)
             found[run.name] = seen / told, slack
     return found
 
@@ -136,7 +135,7 @@ def _first(stack: Stack, values: FloatArray, run: int, channel: str) -> tuple[fl
 
 
 def _least(rig: SimulatedRig, run: GapRun, channel: str) -> float:
-    if channel in STRUTS:
+    if channel in DISPLACEMENTS:
         return 0.1 * run.set_point.eccentricity_m
     return _SMALL * _terms(rig, run)
 

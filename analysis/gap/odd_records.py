@@ -11,12 +11,14 @@ import numpy as np
 
 from analysis.gap.components import GapRun, Part
 from analysis.gap.doubt import SAY_UNIT, UNIT_NEAR, Doubt
-from analysis.gap.observe import FORCES, SPEED, STRUTS
+from analysis.gap.observe import SPEED
 from analysis.mistaken_units import mistaken
 from hardware.description.channels import (
     CARRIAGE_SPEED,
     DISPLACEMENT_AFT,
+    DISPLACEMENTS,
     FORCE_AFT,
+    FORCES,
     SHAFT_ANGLE,
 )
 
@@ -31,7 +33,7 @@ def of_records(runs: Sequence[GapRun]) -> Iterator[Doubt]:
     yield from _of_frequency(runs)
     yield from _of_shaft_angle(runs)
     yield from _of_speed(runs)
-    for channel in (*STRUTS, *FORCES):
+    for channel in (*DISPLACEMENTS, *FORCES):
         yield from _of_standing(runs, channel)
         yield from _of_plateaus(runs, channel)
 
@@ -116,7 +118,7 @@ def _of_plateaus(runs: Sequence[GapRun], channel: str) -> Iterator[Doubt]:
     clipped = {name: one for name, one in looked.items() if one.share}
     if 2 * len(clipped) >= len(looked):
         return
-    unit = (DISPLACEMENT_AFT if channel in STRUTS else FORCE_AFT).unit
+    unit = (DISPLACEMENT_AFT if channel in DISPLACEMENTS else FORCE_AFT).unit
     for name, one in clipped.items():
         at = " and ".join(f"{level:.4g} {unit}" for level in one.levels)
         share = 100.0 * one.share

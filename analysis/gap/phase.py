@@ -7,17 +7,8 @@ import numpy as np
 from analysis.recording import Recording
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import from_encoder
-from hardware.description.channels import (
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    SHAFT_ANGLE,
-)
+from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.errors import DataError
-
-_SIGNALS = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
-_LAST = (FORCE_AFT.name, FORCE_FORE.name)
 
 
 def choose_phase(
@@ -43,12 +34,12 @@ def choose_phase(
     if has_pulses and told.channel is None:
         return recording, replace(told, channel=None, frequency_hz=None)
     encoder = SHAFT_ANGLE.name in names
-    for name in _SIGNALS if told.channel is None or not encoder else ():
+    for name in DISPLACEMENTS if told.channel is None or not encoder else ():
         if name in names:
             return recording, ReferenceChoice(channel=name)
     if encoder:
         return _turns(recording, told.angle_offset_rad), ReferenceChoice()
-    for name in _LAST:
+    for name in FORCES:
         if name in names:
             return recording, ReferenceChoice(channel=name)
     raise DataError(f"{recording.name}: nothing in it tells the phase")

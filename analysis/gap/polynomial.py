@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from analysis.gap.components import Component, GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import left_over, misfit, posterior
-from analysis.gap.observe import FORCES
+from hardware.description.channels import FORCES
 
 FloatArray = NDArray[np.float64]
 

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.doubt import Doubt
 from analysis.gap.forward import Simulator
-from analysis.gap.observe import FORCES, STRUTS
 from analysis.gap.odd_harmonics import of_first_harmonics
 from analysis.gap.odd_records import of_records, of_scatter
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, recentred
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
@@ -37,7 +37,7 @@ def doubts(
     stack = Stack.of(runs)
     nominal = Simulator(rig, stack, tuple(on), reference_channel).steady(())
     found = list(of_records(runs))
-    for channel in (*STRUTS, *FORCES):
+    for channel in (*DISPLACEMENTS, *FORCES):
         found += of_first_harmonics(rig, stack, nominal, channel)
     found += of_scatter(runs)
     first = {(one.run, one.channel): one for one in reversed(found)}

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, TRENDS, Component, Part
 from analysis.gap.fit import Problem
-from analysis.gap.observe import STRUTS
 from analysis.gap.where import left_by_step
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.effect import Effect, Trace
 
 BEYOND: Final = 3.0  # standard deviations of a kind's chi-square
@@ -31,7 +30,7 @@ _PARTS: Final[Mapping[Trace, frozenset[Part]]] = {
 }
 # What a drive does, these do, and more of it than the forces show.
 _CHANNELS: Final[Mapping[Trace, frozenset[str]]] = {
-    Trace.MOTION: frozenset({SHAFT_ANGLE.name, *STRUTS}),
+    Trace.MOTION: frozenset({SHAFT_ANGLE.name, *DISPLACEMENTS}),
     Trace.SHAFT: frozenset({SHAFT_ANGLE.name}),
 }
 

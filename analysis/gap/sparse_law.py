@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.gaussian import rooted
-from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import components_of, motion
+from hardware.description.channels import FORCES
 
 FloatArray = NDArray[np.float64]
 Moved = tuple[FloatArray, FloatArray, FloatArray]

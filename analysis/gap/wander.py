@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
-from analysis.gap.observe import FORCES
+from hardware.description.channels import FORCES
 from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]

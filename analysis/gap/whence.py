@@ -16,9 +16,9 @@ import numpy as np
 from analysis.gap.components import Component
 from analysis.gap.fit import Problem
 from analysis.gap.hypotheses import Weighed
-from analysis.gap.observe import FORCES, SPEED, STRUTS
+from analysis.gap.observe import SPEED
 from analysis.gap.where import MOTION, SHAFT, Walk, remaining
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.setpoint import Medium
 from sim.effects.effect import Effect, StageName
 
@@ -90,7 +90,7 @@ def stage_by_channels(sizes: Sequence[Component], stays_in_air: bool | None) -> 
     channels = {one.channel for one in sizes}
     if SPEED in channels:
         return StageName.CARRIAGE
-    if channels & {*STRUTS, SHAFT_ANGLE.name}:
+    if channels & {*DISPLACEMENTS, SHAFT_ANGLE.name}:
         return StageName.DRIVE if SHAFT_ANGLE.name in channels else StageName.MECHANISM
     if channels == {""}:
         return StageName.PHOTOCELL

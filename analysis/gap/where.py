@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.fed import MEASURED_MOTION, MEASURED_SHAFT, fed
 from analysis.gap.fit import Problem
-from analysis.gap.observe import FORCES, SPEED, STRUTS
+from analysis.gap.observe import SPEED
 from analysis.gap.regimes import contrasts
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.effects.effect import StageName
 
 FloatArray = NDArray[np.float64]
@@ -171,7 +171,8 @@ CHAIN: Final = (CARRIAGE, SHAFT, TIMING, MOTION, FORCE, BESIDE)
 
 def step_of(one: Component) -> str:
     """Return the step of the chain that a component tells of."""
-    steps = {"": TIMING, SHAFT_ANGLE.name: SHAFT, SPEED: CARRIAGE, **dict.fromkeys(STRUTS, MOTION)}
+    steps = {"": TIMING, SHAFT_ANGLE.name: SHAFT, SPEED: CARRIAGE}
+    steps |= dict.fromkeys(DISPLACEMENTS, MOTION)
     return steps.get(one.channel) or (FORCE if one.part in _HARMONIC else BESIDE)
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Final
 
 
 class Quantity(StrEnum):
@@ -60,3 +61,11 @@ FORCE_AFT = Channel("force_aft", "N")
 FORCE_FORE = Channel("force_fore", "N")
 FORCE_X = Channel("force_x", "N")
 CARRIAGE_SPEED = Channel("carriage_speed", "m/s")
+
+# Names of the struts' channels, aft first; and all that a rig records, in the order of a recording.
+DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
+FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
+STANDARD: Final = (
+    SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
+    CARRIAGE_SPEED,
+)  # fmt: skip

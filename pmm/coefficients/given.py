@@ -9,10 +9,10 @@ import numpy as np
 
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.measured import FORCES
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED, Stated
 from hardware.description.body import Body
+from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Oscillator

@@ -15,13 +15,12 @@ from analysis.coefficients.corrections import (
     zero_reading,
 )
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.measured import DISPLACEMENTS, FORCES
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.first_harmonics import seen_in
 from analysis.recording import Recording
 from analysis.resolver.analyse import analyse
-from hardware.description.channels import CARRIAGE_SPEED, FORCE_X
+from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from pmm.calibrated import applied

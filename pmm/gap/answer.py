@@ -17,12 +17,12 @@ from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import Forecast, forecast, further, planned
 from analysis.gap.free import Free, free_numbers
 from analysis.gap.measurements import INJECTED_HZ
-from analysis.gap.observe import FORCES
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
 from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import answer_of
+from hardware.description.channels import FORCES
 from pmm.gap.case import HeldOut
 from pmm.gap.prepare import shares_of
 from sim.effects.effect import Measurement

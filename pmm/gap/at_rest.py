@@ -5,8 +5,8 @@ from pathlib import Path
 
 from analysis.gap.at_rest import run_at_rest
 from analysis.gap.components import GapRun
-from analysis.gap.observe import STRUTS
 from analysis.recording import Recording
+from hardware.description.channels import DISPLACEMENTS
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.description.setpoint import Medium
@@ -74,8 +74,8 @@ def _observed(
     recording = recording.select(names)
     if not _place_matters_not(campaign, one, recording):
         raise DataError(
-            f"no channel {' and '.join(STRUTS)} tells where its struts stand, and the water pushes "
-            "them back"
+            f"no channel {' and '.join(DISPLACEMENTS)} tells where its struts stand, and the "
+            "water pushes them back"
         )
     return run_at_rest(recording, place_in(campaign, one), one.carriage_speed_m_s, one.medium)
 
@@ -83,4 +83,4 @@ def _observed(
 def _place_matters_not(campaign: Campaign, one: AtRest, recording: Recording) -> bool:
     """Tell whether it is known where the struts stand, or makes no difference."""
     restored = one.medium is Medium.WATER and any(map(any, campaign.hull.restoring))
-    return not restored or {*STRUTS} <= {*recording.channel_names}
+    return not restored or {*DISPLACEMENTS} <= {*recording.channel_names}

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import TRENDS, Component, GapRun, Part, Stack
 from analysis.gap.fit import Fit
-from analysis.gap.observe import FORCES, STRUTS
 from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
-from hardware.description.channels import CARRIAGE_SPEED, SHAFT_ANGLE
+from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.steps import StepRow
 from pmm.report.labels import display
@@ -21,7 +20,7 @@ FloatArray = NDArray[np.float64]
 
 _UNITS: Final = {
     **dict.fromkeys(FORCES, "N"),
-    **dict.fromkeys(STRUTS, "m"),
+    **dict.fromkeys(DISPLACEMENTS, "m"),
     **{one.name: one.unit for one in (SHAFT_ANGLE, CARRIAGE_SPEED)},
 }
 _ONE_UNIT: Final = (SHAFT, MOTION, FORCE)  # steps whose numbers are all in the same unit
@@ -161,7 +160,7 @@ def _first(run: GapRun, channel: str) -> float:
     """Return the amplitude of a channel's first harmonic; NaN where it is no measure."""
     parts = (Part.IN_PHASE, Part.QUADRATURE)
     first = math.hypot(*(run.observed.value(channel, one, 1) for one in parts))
-    return first if channel in (*FORCES, *STRUTS) and first > 0.0 else math.nan
+    return first if channel in (*FORCES, *DISPLACEMENTS) and first > 0.0 else math.nan
 
 
 def _of_order(which: Component) -> str:

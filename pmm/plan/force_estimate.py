@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.channels import FORCES
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium
 from hardware.description.struts import to_motion, to_strut_forces
@@ -114,25 +114,24 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     found = None if unknown or not run.oscillates else force_estimate(run, rig)
     if found is None:
         return {}
-    names = (FORCE_AFT.name, FORCE_FORE.name)
-    gauges = _gauges(rig, names)
+    gauges = _gauges(rig)
     readings, parts = gauges @ found.forces, found.parts @ gauges.T
     own = READING_UNCERTAINTY * np.abs(readings)
     spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + own**2)
     return {
         name: Expected(float(abs(one)), float(u))
-        for name, one, u in zip(names, readings, spread, strict=True)
+        for name, one, u in zip(FORCES, readings, spread, strict=True)
     }
 
 
-def _gauges(rig: RigFile, names: tuple[str, str]) -> FloatArray:
+def _gauges(rig: RigFile) -> FloatArray:
     """Return the readings of the strut gauges for a newton on each, shape ``(2, 2)``."""
     matrix = np.eye(2)
     one = rig.calibration
     if one is not None:
-        known = [name for name in names if name in one.channels]
+        known = [name for name in FORCES if name in one.channels]
         rows = [one.channels.index(name) for name in known]
-        places = [names.index(name) for name in known]
+        places = [FORCES.index(name) for name in known]
         matrix[np.ix_(places, places)] = one.matrix[np.ix_(rows, rows)]
     return matrix
 

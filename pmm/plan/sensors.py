@@ -10,24 +10,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from hardware.description.channels import (
-    CARRIAGE_SPEED,
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    FORCE_X,
-    SHAFT_ANGLE,
-    Channel,
-)
+from hardware.description.channels import SHAFT_ANGLE, STANDARD, Channel
 from hardware.description.simulation_tables import GAUGES, merged
 from hardware.dictionary import Entry, entry
 from hardware.rig_configuration import Part, RigConfiguration
 from pmm.calibration import Calibration
 from pmm.plan.rig_file import RigFile
 
-_SENSORS: Final = (SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-                   CARRIAGE_SPEED)  # fmt: skip
 _FRACTIONS: Final = frozenset("fd")  # struct codes of what is no count
 
 
@@ -62,7 +51,7 @@ def acquisition_table(
     gauges = rig.calibration.channels if rig.calibration is not None else ()
     stated = rig.campaign.get("acquisition", {})
     found: dict[str, Any] = {}
-    for name in (one.name for one in _SENSORS):
+    for name in (one.name for one in STANDARD):
         if name not in channels:
             found[name] = False
             continue

@@ -6,9 +6,10 @@ from typing import Final
 
 import numpy as np
 
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from pmm.start import words
 from pmm.start.behaviour import Watched
-from pmm.start.found import CHANNELS, DISPLACEMENTS, FORCES, Column
+from pmm.start.found import CHANNELS, Column
 from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, Role
 
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres

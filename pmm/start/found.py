@@ -6,18 +6,14 @@ from typing import Final
 
 from hardware.description.channels import (
     CARRIAGE_SPEED,
-    DISPLACEMENT_AFT,
-    DISPLACEMENT_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
+    DISPLACEMENTS,
     FORCE_X,
+    FORCES,
     SHAFT_ANGLE,
 )
 from hardware.description.setpoint import Medium
 from hardware.description.units import unit
 
-FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
-DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
 PHOTOCELL: Final = "photocell"
 CHANNELS: Final = (
     *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, PHOTOCELL,

@@ -12,23 +12,14 @@ import numpy as np
 
 from analysis.readers import read_recording
 from analysis.readers.reader import NETCDF_SUFFIX
-from hardware.description.channels import CARRIAGE_SPEED, SHAFT_ANGLE
+from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from pmm.plan.kinds import RunKind
 from pmm.start import words
 from pmm.start.at_rest import at_rest
 from pmm.start.behaviour import Watched, watch
 from pmm.start.channels import as_columns, by_order_of_names
-from pmm.start.found import (
-    CHANNELS,
-    DISPLACEMENTS,
-    FORCES,
-    PHOTOCELL,
-    Column,
-    FoundCampaign,
-    FoundRest,
-    FoundRun,
-)
+from pmm.start.found import CHANNELS, PHOTOCELL, Column, FoundCampaign, FoundRest, FoundRun
 from pmm.start.pulse_files import STEM, edges_beside, once_a_period, pulse_files, stem_of
 from pmm.start.roles import find_roles
 from pmm.start.sensors import noise_at_rest, smallest_step, step_of

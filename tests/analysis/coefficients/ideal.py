@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
-from analysis.coefficients.measured import DISPLACEMENTS, FORCES, StrutRun
+from analysis.coefficients.measured import StrutRun
 from analysis.coefficients.phasors import Phasors, Source, from_interleaved, interleaved
 from analysis.coefficients.run import Run, from_struts
 from analysis.motion import LinearHull, ideal_run
 from hardware.description.body import Body
+from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
 

@@ -20,11 +20,11 @@ from analysis.coefficients.corrections import (
     zero_reading,
 )
 from analysis.coefficients.in_place import in_place
-from analysis.coefficients.measured import DISPLACEMENTS, FORCES, StrutRun
+from analysis.coefficients.measured import StrutRun
 from analysis.coefficients.phasors import Phasors, Source
 from analysis.coefficients.solve import solve
 from analysis.recording import Recording
-from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.channels import DISPLACEMENTS, FORCE_AFT, FORCE_FORE, FORCES
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium, SetPoint
 from tests.analysis.coefficients.ideal import BODY, covariance, ideal_struts, net, scattered

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.measured import (
-    FORCES,
     from_harmonics,
     joint_covariance,
     measured_run,
@@ -12,6 +11,7 @@ from analysis.coefficients.measured import (
 )
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.analyse import Analysis, Settings, analyse
+from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from analysis.gap.components import GapRun, Part
-from analysis.gap.observe import FORCES, observe
+from analysis.gap.observe import observe
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from analysis.gap.components import TRENDS, Component, GapRun, Part
-from analysis.gap.observe import FORCES, observe
+from analysis.gap.observe import observe
 from analysis.gap.where import BESIDE, walk
 from analysis.readers.dataset import from_dataset
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.applied import switch_on

@@ -8,10 +8,10 @@ import pytest
 
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
-from analysis.gap.observe import FORCES
 from analysis.gap.odd_run import odd_run
 from analysis.gap.priors import Priors
 from analysis.gap.where import remaining
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.catalogue import build

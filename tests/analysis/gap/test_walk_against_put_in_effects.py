@@ -9,7 +9,6 @@ import pytest
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fed import MEASURED_MOTION, MEASURED_SHAFT, Fed, fed
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.observe import FORCES, STRUTS
 from analysis.gap.where import (
     FORCE,
     FORCE_BY_SHAFT,
@@ -20,7 +19,7 @@ from analysis.gap.where import (
     Walk,
     walk,
 )
-from hardware.description.channels import SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.acquisition import Digitiser
 from sim.amplifier import LowPass
 from sim.drive import DriveSettings
@@ -85,11 +84,11 @@ def test_a_rod_in_place_of_a_yoke_stays_where_the_measured_shaft_is_fed(
 
 
 def test_without_struts_sensors_the_measured_shaft_is_fed_to_the_forces(rig: SimulatedRig) -> None:
-    ripple = walked(rig, RIPPLE, STRUTS)
+    ripple = walked(rig, RIPPLE, DISPLACEMENTS)
     assert beyond(ripple)[FORCE]
     assert not beyond(ripple)[FORCE_BY_SHAFT]
     assert ripple.stages == (StageName.DRIVE,)
-    friction = walked(rig, "coulomb-friction:friction_n=0.3", STRUTS)
+    friction = walked(rig, "coulomb-friction:friction_n=0.3", DISPLACEMENTS)
     assert beyond(friction)[FORCE_BY_SHAFT]
     assert StageName.STRUCTURE in friction.stages
 
@@ -160,7 +159,7 @@ def test_what_is_fed_is_what_the_channel_measures(rig: SimulatedRig) -> None:
 def test_a_run_without_a_channel_is_not_fed_with_nothing(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
-    (first,) = without(clean[:1], STRUTS[1:])
+    (first,) = without(clean[:1], DISPLACEMENTS[1:])
     problem = problem_of(rig, (first, *clean[1:]))
     rows = np.array([one.channel in FORCES for one in problem.simulator.stack.components])
     found = fed(problem, MEASURED_MOTION, rows)

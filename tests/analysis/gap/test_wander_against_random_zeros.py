@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from analysis.gap.components import Component, GapRun, Observation, Part
-from analysis.gap.observe import FORCES
 from analysis.gap.wander import wander, wandered
+from hardware.description.channels import FORCES
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.rig import SimulatedRig
