@@ -10,7 +10,7 @@ from typing import Final
 import can
 
 from benchmarks.fuzz.promises import REFUSED
-from benchmarks.kill import tables
+from benchmarks.kill_child import tables
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
