@@ -31,6 +31,7 @@ NAMES = (
     "inertia",
     "recorder",
     "kill",
+    "soak",
     "coefficients",
     "campaign",
     "sealed",
