@@ -11,7 +11,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hardware.description.errors import PmmError
-from pmm.console.checking import ReadyPlan, check_plan_text, ready_plan
+from pmm.console.checking import check_plan_text, ready_plan
 from pmm.console.command_log import CommandRecord, keep
 from pmm.console.desk import NotInControlError
 from pmm.console.encoding import encode_answer
@@ -20,6 +20,7 @@ from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, OrderKind
 from pmm.console.plans import Plans
+from pmm.console.queued import Queued
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
@@ -77,8 +78,7 @@ class Actions:
     ) -> None:
         self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._folder, self._utc = folder, utc
-        self._queued: dict[int, ReadyPlan] = {}
-        self._count = 0
+        self._queued = Queued()
 
     async def command(self, request: Request) -> Response:
         """Hand a command to run control; a quick stop is everybody's right."""
@@ -107,12 +107,11 @@ class Actions:
     def folder(self) -> Path:
         """Return the folder of the present campaign, or the one for all."""
         present = self._hub.last.plan if self._hub.last is not None else 0
-        found = self._queued.get(present)
-        return self._folder if found is None else found.packed.folder
+        return self._queued.folder(present) or self._folder
 
     def folders(self) -> list[Path]:
         """Return the folders of all campaigns that were queued."""
-        return [one.packed.folder for one in self._queued.values()]
+        return self._queued.folders()
 
     async def _do(
         self,
@@ -182,21 +181,22 @@ class Actions:
         self._hub.desk.require(who.session)
         worker = self._workers.for_whom(in_control=True)
         found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
-        self._count += 1
-        number = self._count
-        self._queued[number] = replace(found, packed=replace(found.packed, pieces=()))
+        number = self._queued.add(found)
         try:
             plan = replace(found.packed, number=number)
             said = await self._loop.order(OrderKind.QUEUE, plan=plan)
         except PmmError:
-            del self._queued[number]
+            self._queued.drop(number)
             raise
         self._tell_plans()
         return {"said": said, "plan": found.picture}
 
     async def _drop(self, posted: DropPosted, who: Who) -> dict[str, Any]:
         self._hub.desk.require(who.session)
-        return {"said": await self._loop.order(OrderKind.DROP, str(posted.number))}
+        said = await self._loop.order(OrderKind.DROP, str(posted.number))
+        self._queued.drop(posted.number)
+        self._tell_plans()
+        return {"said": said}
 
     async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
         self._hub.desk.take_over(who.session)
@@ -204,8 +204,10 @@ class Actions:
         return {"said": "this browser has control"}
 
     def _tell_plans(self) -> None:
-        plans = {str(number): one.picture for number, one in self._queued.items()}
-        self._hub.tell_plans(encode_answer(plans))
+        last = self._hub.last
+        if last is not None:
+            self._queued.at_hand((last.plan, *last.queue))
+        self._hub.tell_plans(encode_answer(self._queued.pictures()))
 
 
 async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:
