@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.machine import ROOT
+from benchmarks.machine import ROOT, with_machine
 from tests.pmm.recorder.power_cuts import cut, record
 
 _FILE: Final = ROOT / "benchmarks" / "results" / "cuts.json"
@@ -31,6 +31,8 @@ def main(arguments: Sequence[str]) -> int:
     kept: dict[str, Any] = {"cuts": 0, "wrong": [], "counts": {}}
     if request.file.exists():
         kept = json.loads(request.file.read_text(encoding="utf-8"))
+    if kept["cuts"] < request.to:
+        kept = with_machine(kept)
     while kept["cuts"] < request.to:
         first = kept["cuts"]
         kept = _more(kept, range(first, min(first + _EACH, request.to)))
@@ -48,7 +50,8 @@ def _more(kept: dict[str, Any], seeds: range) -> dict[str, Any]:
             kind, said = cut(run, seed, Path(place) / str(seed))
             counts[f"{run.faults.name}: {kind}"] += 1
             wrong += [{"seed": seed, "what": said}] if said else []
-    return {"cuts": seeds.stop, "wrong": wrong, "counts": dict(sorted(counts.items()))}
+    after = {"cuts": seeds.stop, "wrong": wrong, "counts": dict(sorted(counts.items()))}
+    return kept | after
 
 
 if __name__ == "__main__":

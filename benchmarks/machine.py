@@ -4,9 +4,11 @@ import os
 import platform
 import subprocess
 import sys
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +30,13 @@ def describe() -> dict[str, str]:
         "blas_threads": os.environ.get("OPENBLAS_NUM_THREADS", "default"),
         **{name: version(name) for name in ("numba", "scipy", "ulia", "rota-order")},
     }
+
+
+def with_machine(kept: Mapping[str, Any]) -> dict[str, Any]:
+    """Return counts with the machine that goes on counting, and every commit that counted."""
+    machine = describe()
+    commits = dict.fromkeys([*kept.get("commits", ()), machine["commit"]])
+    return {**kept, "machine": machine, "commits": list(commits)}
 
 
 def version(distribution: str) -> str:

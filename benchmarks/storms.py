@@ -15,7 +15,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.machine import ROOT
+from benchmarks.machine import ROOT, with_machine
 from pmm.parallel import open_executor
 from pmm.whole_file import write_whole
 from tests.pmm.run.storms import SECONDS, Found, Storm
@@ -32,6 +32,8 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--workers", type=int, default=2, help="processes that run them")
     request = parser.parse_args(arguments)
     kept = _kept(request.file)
+    if kept["sequences"] < request.to:
+        kept = with_machine(kept)
     with open_executor(request.workers) as executor:
         while kept["sequences"] < request.to:
             first = kept["sequences"]
