@@ -1,6 +1,7 @@
 """The model as a rigid body."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Final
 
 
 @dataclass(frozen=True)
@@ -20,3 +21,16 @@ class Body:
     inertia_kg_m2: float
     cg_x_m: float = 0.0
     cg_z_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class Ship(Body):
+    """The model as a body, and its dimensions for numbers without any and room in the tank."""
+
+    length_m: float | None = None
+    beam_m: float | None = None
+    draught_m: float | None = None
+
+
+DIMENSIONS: Final = frozenset(one.name for one in fields(Ship)) - {one.name for one in fields(Body)}
+"""Keys of ``[model]`` that a campaign's has not."""

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any, Final
 
+from hardware.description.body import DIMENSIONS
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.oscillator import PRESETS
 
@@ -18,9 +19,9 @@ _PHOTOCELL: Final = {"angle_offset_rad": "mark_angle_rad", "latency_s": "latency
 def simulation_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a simulation that a rig's file states, and only these.
 
-    ``[oscillator]`` with its preset's keys, ``[model]`` without its length, ``[hull]``, the gauges'
-    full scales as ``[dynamometers]``, ``[reference]`` as ``[photocell]``, and what stands in
-    ``[campaign]``, which goes before.
+    ``[oscillator]`` with its preset's keys, ``[model]`` without its dimensions, ``[hull]``, the
+    gauges' full scales as ``[dynamometers]``, ``[reference]`` as ``[photocell]``, and what stands
+    in ``[campaign]``, which goes before.
 
     Parameters
     ----------
@@ -31,7 +32,7 @@ def simulation_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
     if "oscillator" in rig:
         found["oscillator"] = with_preset(rig["oscillator"])
     if "model" in rig:
-        found["model"] = {key: one for key, one in rig["model"].items() if key != "length_m"}
+        found["model"] = {key: one for key, one in rig["model"].items() if key not in DIMENSIONS}
     if "hull" in rig:
         found["hull"] = dict(rig["hull"])
     if ranges := _gauge_ranges(rig):

@@ -9,6 +9,7 @@ from pmm.cli.printing import counted
 from pmm.plan.findings import Finding, Verdict
 
 if TYPE_CHECKING:
+    from rich.table import Table
     from rich.text import Text
 
 _STYLES: Final = {Verdict.REFUSE: "bold red", Verdict.WARN: "yellow", Verdict.NOTE: "cyan"}
@@ -20,7 +21,7 @@ def finding_lines(found: Sequence[Finding], *, every: bool = False) -> "Iterator
     Parameters
     ----------
     every
-        Whether all findings of a kind are wanted.
+        Whether all findings of a kind are wanted, and the numbers that :func:`condition_table` has.
     """
     from rich.text import Text
 
@@ -38,6 +39,7 @@ def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Findin
         yield from ((one, 0) for one in found)
         return
     ranks = list(Verdict)
+    found = [one for one in found if not one.is_stated]
 
     def kind(one: Finding) -> tuple[int, str, float]:
         what = one.quantity if one.run else one.message
@@ -47,3 +49,26 @@ def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Findin
         alike = list(group)
         worst = max(alike, key=lambda one: abs(one.value - kind(one)[2]))
         yield worst, len({one.run for one in alike}) - 1
+
+
+def condition_table(found: Sequence[Finding]) -> "Table | None":
+    """Return the numbers that state the runs' conditions, each at its largest; ``None`` if none."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    largest: dict[str, Finding] = {}
+    for one in found:
+        if one.is_stated and one.value >= largest.get(one.quantity, one).value:
+            largest[one.quantity] = one
+    if not largest:
+        return None
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column("condition")
+    table.add_column("largest", justify="right")
+    table.add_column("limit", justify="right")
+    table.add_column("source")
+    table.add_column("in run", overflow="fold")
+    for _, one in sorted(largest.items()):
+        limit = f"{one.limit:.4g}" if math.isfinite(one.limit) else "none"
+        table.add_row(one.quantity, f"{one.value:.4g}", limit, one.source, one.run)
+    return table

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from pmm.cli.documents import without_nan
-from pmm.cli.findings import finding_lines
+from pmm.cli.findings import condition_table, finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
@@ -113,6 +113,8 @@ def _print_findings(plan: Plan, found: Sequence[Finding], *, every: bool) -> Non
     console = output()
     for line in finding_lines(found, every=every):
         console.print(line, soft_wrap=True)
+    if not every and (table := condition_table(found)) is not None:
+        console.print(table)
     refused = sum(one.verdict is Verdict.REFUSE for one in found)
     warned = sum(one.verdict is Verdict.WARN for one in found)
     what = f"{plan.name}: {counted(len(plan.runs), 'run')}"

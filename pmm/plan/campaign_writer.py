@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
+from hardware.description.body import DIMENSIONS
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.roles import Reading
@@ -77,7 +78,7 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun])
     )
     yield toml_table("oscillator", asdict(rig.oscillator))
     if rig.model is not None:
-        body = {key: one for key, one in asdict(rig.model).items() if key != "length_m"}
+        body = {key: one for key, one in asdict(rig.model).items() if key not in DIMENSIONS}
         yield toml_table("model", body)
     if rig.hull is not None:
         yield toml_table("hull", asdict(rig.hull))

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from datetime import date
 
 from pmm.calibrated import expiry_text
+from pmm.plan.check_table import CALIBRATION
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import Finding, PlanRefusedError, Verdict
@@ -63,26 +64,31 @@ def _expired(rig: RigFile, today: date | None) -> Iterator[Finding]:
     if one is not None and today is not None and one.is_expired(today):
         late = float((today - one.expires).days)
         text = expiry_text(one, today)
-        yield Finding(Verdict.WARN, "calibration [days past expiry]", late, 0.0, "", text)
+        yield Finding(Verdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
 
 
 def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:
     """Yield what the rig's file does not say, and which checks are missing for it."""
-    towed = any(one.set_point.carriage_speed_m_s for one in plan.runs)
+    model, towed = rig.model, any(one.set_point.carriage_speed_m_s for one in plan.runs)
     turning = any(one.oscillates for one in plan.runs)
     for absent, table, what in (
-        (turning and rig.model is None, "[model]", "forces are"),
-        (rig.model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
+        (turning and model is None, "[model]", "forces are"),
+        (model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
         (
-            towed and (rig.model is None or rig.model.length_m is None),
+            towed and (model is None or model.length_m is None),
             "model.length_m",
-            "w' = w L / U is",
+            "w L / U, w sqrt(L / g), turning and the reach to the walls are",
         ),
         (rig.tank is None, "[tank]", "tank length, speed, walls, depth and tank modes are"),
         (
             towed and rig.tank is not None and rig.tank.depth_m is None,
             "tank.depth_m",
-            "the depth Froude number is",
+            "depth Froude number and blockage are",
+        ),
+        (
+            towed and rig.tank is not None and not (model and model.beam_m and model.draught_m),
+            "model.beam_m or model.draught_m",
+            "blockage and room under the keel are",
         ),
         (turning and not rig.modes, "[[modes]] (pluck test)", "structural modes are"),
         (not rig.gauges, "[[gauges]]", "the gauges' range is"),

@@ -1,52 +1,72 @@
 """The condition of each run by the numbers that ITTC 7.5-02-06-02 asks to be stated.
 
-Angles and rates are those of the exact motion, not of small angles. A number is noted; beyond a
-limit that the tank itself sets it refuses the plan or warns.
+Angles and rates are those of the exact motion, not of small angles. A number is noted, or judged by
+the limit that :mod:`pmm.plan.check_table` has for it.
 """
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from contextlib import suppress
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, Motion, motion
+from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.plan import check_table as table
+from pmm.plan import kinds
+from pmm.plan.check_table import Check
 from pmm.plan.findings import Finding, Verdict
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from sim.water.tank import interference_limit
 
 _INSTANTS = 720
 _NOTHING = 1e-9
-_ASKED = "ITTC 7.5-02-06-02 asks for it"
+_WORDS: Final = {
+    Plane.HORIZONTAL: {"rotation": "yaw", "rate": "r"},
+    Plane.VERTICAL: {"rotation": "pitch", "rate": "q"},
+}
+_REDUCED: Final = {
+    kinds.Motion.SWAY: table.REDUCED_SWAY,
+    kinds.Motion.YAW: table.REDUCED_YAW,
+    kinds.Motion.YAW_DRIFT: table.REDUCED_YAW,
+}
 
 
 class _Condition(NamedTuple):
-    """One number of a run, its limit (NaN without any), what lies beyond it, and why."""
+    """One number of a run, its limit (NaN without any), and the verdict on it."""
 
-    quantity: str
+    check: Check
     value: float
-    reason: str
     limit: float = math.nan
-    beyond: Verdict = Verdict.NOTE
+    verdict: Verdict = Verdict.NOTE
 
 
 def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
     """Yield the numbers of a run in water that are not nothing."""
     if run.kind.in_air or not (run.oscillates or run.set_point.carriage_speed_m_s):
         return
-    for one in (*_of_motion(run, rig), *_of_tank(run, rig)):
+    words = _WORDS[rig.oscillator.plane]
+    made = motion_of(run, rig)
+    for one in (
+        *_of_motion(run, made),
+        *_of_waves(run, rig, made),
+        *_of_depth(run, rig),
+        *_of_room(rig, made),
+    ):
         if abs(one.value) < _NOTHING:
             continue
-        limited = f" (limit {one.limit:.4g})" if math.isfinite(one.limit) else ""
-        text = f"{one.quantity} = {one.value:.4g}{limited}: {one.reason}"
-        if one.value >= one.limit:
-            yield Finding(one.beyond, one.quantity, one.value, one.limit, run.name, text)
-        else:  # nothing is exceeded: the largest number is the worst one
-            yield Finding(Verdict.NOTE, one.quantity, one.value, math.nan, run.name, text)
+        check, quantity = one.check, one.check.quantity.format(**words)
+        limit = f"limit {one.limit:.4g}" if math.isfinite(one.limit) else "no limit stated"
+        text = f"{quantity} = {one.value:.4g} ({limit}, {check.source})"
+        if one.verdict is not Verdict.NOTE:
+            text += f": {check.reason}"
+        yield Finding(one.verdict, quantity, one.value, one.limit, run.name, text, check.source)
 
 
 def motion_of(run: RunPlan, rig: RigFile) -> Motion:
@@ -66,41 +86,70 @@ def motion_of(run: RunPlan, rig: RigFile) -> Motion:
     return motion(geometry, driven)
 
 
-def _of_motion(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
-    made, speed = motion_of(run, rig), run.set_point.carriage_speed_m_s
-    turned = "yaw" if rig.oscillator.plane is Plane.HORIZONTAL else "pitch"
+def _of_motion(run: RunPlan, made: Motion) -> Iterator[_Condition]:
     if run.oscillates:
-        largest = math.degrees(float(np.abs(made.rotation_rad).max()))
-        yield _Condition(f"largest {turned} [deg]", largest, f"{_ASKED}; drift is part of it")
+        yield _Condition(table.ROTATION, math.degrees(float(np.abs(made.rotation_rad).max())))
+    if run.set_point.carriage_speed_m_s:
+        beta = np.arctan2(made.velocity[1], made.velocity[0])
+        yield _Condition(table.ANGLE_TO_FLOW, math.degrees(float(np.abs(beta).max())))
+
+
+def _of_waves(run: RunPlan, rig: RigFile, made: Motion) -> Iterator[_Condition]:
+    speed, omega = run.set_point.carriage_speed_m_s, omega_of(run)
     if not speed:
         return
-    ahead, across, turning = made.velocity
-    beta = math.degrees(float(np.abs(np.arctan2(across, ahead)).max()))
-    yield _Condition("largest angle to the flow [deg]", beta, f"{_ASKED} (drift angle beta)")
-    length = None if rig.model is None else rig.model.length_m
-    if length is None:
-        return
-    rate = float(np.abs(turning).max()) * length / speed
-    letter = "r" if turned == "yaw" else "q"
-    yield _Condition(f"{letter}' = {letter} L / U", rate, f"{_ASKED}; it spans the ship's turns")
     gravity = STANDARD_GRAVITY_M_S2 if rig.tank is None else rig.tank.gravity_m_s2
-    slow = omega_of(run) * math.sqrt(length / gravity)
-    yield _Condition("w sqrt(L / g)", slow, f"{_ASKED}; the smaller, the less waves it makes")
+    tau = omega * speed / gravity
+    yield _tau(tau, rig.oscillator.plane)
+    if rig.model is None or rig.model.length_m is None:
+        return
+    length = rig.model.length_m
+    yield _Condition(table.TURNING, float(np.abs(made.velocity[2]).max()) * length / speed)
+    yield _Condition(table.WAVE_FREQUENCY, omega * math.sqrt(length / gravity))
+    check = _REDUCED.get(run.motion, table.REDUCED)
+    yield _below(check, omega * length / speed, check.numbers[-1] if check.numbers else math.nan)
+    if rig.tank is not None and rig.oscillator.plane is Plane.VERTICAL:
+        with suppress(ConfigurationError):  # a tank broader or narrower than the ITTC's table
+            if tau < (limit := interference_limit(rig.tank.width_m, length)):
+                yield _Condition(table.ECHO, tau, limit)
 
 
-def _of_tank(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
-    tank, speed = rig.tank, run.set_point.carriage_speed_m_s
-    if tank is None:
+def _tau(tau: float, plane: Plane) -> _Condition:
+    """Slow manoeuvring tests stay below 1/4; faster tests of seakeeping are on either side."""
+    critical, clearance = table.TAU_SWAY.numbers
+    if plane is Plane.HORIZONTAL:
+        return _below(table.TAU_SWAY, tau, critical - clearance)
+    near = abs(tau - critical) < clearance
+    return _Condition(table.TAU_HEAVE, tau, critical, Verdict.WARN if near else Verdict.NOTE)
+
+
+def _of_depth(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
+    tank, model, speed = rig.tank, rig.model, run.set_point.carriage_speed_m_s
+    if tank is None or tank.depth_m is None:
         return
-    if tank.depth_m is not None:
-        froude = speed / math.sqrt(tank.gravity_m_s2 * tank.depth_m)
-        reason = "at 1 a wave travels with the model: tow slower"
-        yield _Condition("depth Froude number", froude, reason, 1.0, Verdict.WARN)
-    length = None if rig.model is None else rig.model.length_m
-    if length is None or rig.oscillator.plane is not Plane.HORIZONTAL:
+    froude = speed / math.sqrt(tank.gravity_m_s2 * tank.depth_m)
+    yield _below(table.DEPTH_FROUDE, froude, table.DEPTH_FROUDE.numbers[0])
+    if model is None or model.draught_m is None:
         return
-    made = motion_of(run, rig)
-    swung = np.abs(made.across_m) + length / 2.0 * np.abs(np.sin(made.rotation_rad))
-    reason = "half the tank's width is the wall; the model's beam comes on top"
-    half = tank.width_m / 2.0
-    yield _Condition("reach to the side [m]", float(swung.max()), reason, half, Verdict.REFUSE)
+    yield _Condition(table.DEPTH, tank.depth_m / model.draught_m, table.DEPTH.numbers[0])
+    if speed and model.beam_m is not None:
+        blockage = model.beam_m * model.draught_m / (tank.width_m * tank.depth_m)
+        yield _below(table.BLOCKAGE, blockage, table.BLOCKAGE.numbers[0])
+
+
+def _of_room(rig: RigFile, made: Motion) -> Iterator[_Condition]:
+    tank, model = rig.tank, rig.model
+    if tank is None or model is None or model.length_m is None:
+        return
+    ends = model.length_m / 2.0 * np.abs(np.sin(made.rotation_rad))
+    if rig.oscillator.plane is Plane.HORIZONTAL:
+        sides = (model.beam_m or 0.0) / 2.0 * np.cos(made.rotation_rad)
+        reach = float((np.abs(made.across_m) + ends + sides).max())
+        yield _below(table.REACH, reach, tank.width_m / 2.0, Verdict.REFUSE)
+    elif tank.depth_m is not None and model.draught_m is not None:
+        reach = float((made.across_m + ends).max()) + model.draught_m
+        yield _below(table.KEEL, reach, tank.depth_m, Verdict.REFUSE)
+
+
+def _below(check: Check, value: float, limit: float, beyond: Verdict = Verdict.WARN) -> _Condition:
+    return _Condition(check, value, limit, beyond if value >= limit else Verdict.NOTE)

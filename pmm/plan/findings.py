@@ -30,6 +30,8 @@ class Finding:
         Name of the run; empty where it is the whole plan.
     message
         Value, limit and what to do, in words.
+    source
+        Whose limit it is, of a number that is stated for each run; empty for others.
     """
 
     verdict: Verdict
@@ -38,6 +40,12 @@ class Finding:
     limit: float
     run: str
     message: str
+    source: str = ""
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether it only states a number of the run's condition, with nothing against it."""
+        return bool(self.source) and self.verdict is Verdict.NOTE
 
 
 class PlanRefusedError(PmmError):

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.description.body import Ship
 from hardware.description.channels import FORCES
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium
@@ -19,7 +20,7 @@ from hardware.description.struts import to_motion, to_strut_forces
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan.motion_peaks import omega_of, rod_factor
 from pmm.plan.rig_file import RigFile
-from pmm.plan.rig_tables import HullEstimate, Ship
+from pmm.plan.rig_tables import HullEstimate
 from pmm.plan.run_plan import RunPlan
 
 Complex = NDArray[np.complex128]

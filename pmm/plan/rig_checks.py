@@ -12,8 +12,10 @@ from pmm.plan.rig_tables import HANDED_ON, Gauge, RigTables
 SIMULATED: Final = "pmm-simulated"  # the simulated rig's name among the buses
 _OWN: Final = tuple(RigTables.__dataclass_fields__)
 _ABOVE_0: Final = (
+    "beam_m",
     "carriage_acceleration_m_s2",
     "depth_m",
+    "draught_m",
     "flush_s",
     "highest_speed_m_s",
     "length_m",

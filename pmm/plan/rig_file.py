@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from hardware.description.body import Ship
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
@@ -31,7 +32,6 @@ from pmm.plan.rig_tables import (
     PhotocellOffset,
     RecorderSettings,
     RigTables,
-    Ship,
     StructuralMode,
     Tank,
 )

@@ -4,20 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from hardware.description.body import Body
+from hardware.description.body import Ship
 from hardware.description.oscillator import Oscillator
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
 _SAFE_LOAD = 1.5  # of the full scale, where nobody says more
-
-
-@dataclass(frozen=True)
-class Ship(Body):
-    """The model as a body, and its length for speeds and frequencies without dimension."""
-
-    length_m: float | None = None
 
 
 @dataclass(frozen=True)

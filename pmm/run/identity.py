@@ -15,6 +15,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
+from hardware.description.body import DIMENSIONS
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.calibrated import CARRIED
 from pmm.calibration import as_table
@@ -33,7 +34,6 @@ _MOST: Final = 8  # changes of a file that are told one by one
 _MOST_RUNS: Final = 20  # runs whose changes a refusal tells one by one
 # Of a campaign, that tell how a run is to be read: the keys of pmm.campaign.RecordedWith.
 _TABLES: Final = ("oscillator", "model", "model_uncertainty", "hull", "reference")
-_LENGTH: Final = "length_m"  # of [model]: a campaign has it elsewhere
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,9 @@ def _campaign_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
     for name in ("model", "model_uncertainty"):  # what is infinite there is so by default
         if found[name] is not None:
             own = found[name].items()
-            found[name] = {key: one for key, one in own if key != _LENGTH and one != math.inf}
+            found[name] = {
+                key: one for key, one in own if key not in DIMENSIONS and one != math.inf
+            }
     return found
 
 

@@ -5,12 +5,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from hardware.description.body import Ship
 from hardware.description.oscillator import VERTICAL_1963, Oscillator
 from hardware.description.setpoint import SetPoint
 from hardware.rig_configuration import RigConfiguration, read_rig
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.rig_file import RigFile
-from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, Ship, Tank
+from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, Tank
 from pmm.plan.run_plan import RunPlan
 from tests.hardware.rigs import DRIVERS, ECCENTRICITY, PHASE, SHAFT
 

@@ -22,7 +22,7 @@ from pmm.plan.checks import (
 )
 from pmm.plan.duration import duration_rows, run_s, tank_length_m
 from pmm.plan.field_checks import field_findings, tank_modes_hz
-from pmm.plan.kinds import Motion, RunKind
+from pmm.plan.kinds import RunKind
 from pmm.plan.limits import bus_finding, limit_findings
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan
@@ -152,32 +152,6 @@ def test_no_instant_of_a_crank_is_faster_than_its_peaks(ratio: float, angle: flo
     assert abs(velocity) <= velocity_peak_m_s(one, oscillator) * (1.0 + 1e-5)
     top = omega**2 * abs(d(math.pi / 2 + h) - 2.0 * d(math.pi / 2) + d(math.pi / 2 - h)) / h**2
     assert acceleration_peak_m_s2(one, oscillator) == pytest.approx(top, rel=1e-5)
-
-
-def test_reduced_frequency_of_sway_and_yaw() -> None:
-    rig = rig_file(HORIZONTAL_1963)
-    for motion, value, verdict in (
-        (Motion.SWAY, 0.9, None),
-        (Motion.SWAY, 1.5, "note"),
-        (Motion.SWAY, 2.1, "warn"),
-        (Motion.YAW, 1.9, None),
-        (Motion.YAW, 2.5, "note"),
-        (Motion.YAW, 3.1, "warn"),
-    ):
-        one = run(value * 1.0 / (2.0 * math.pi * 2.5), speed_m_s=1.0, motion=motion)
-        found = [f for f in field_findings(one, rig) if f.quantity == "w' = w L / U"]
-        assert [(f.verdict, pytest.approx(f.value)) for f in found] == (
-            [] if verdict is None else [(verdict, value)]
-        )
-
-
-@pytest.mark.parametrize(
-    ("tau", "warned"), [(0.19, False), (0.21, True), (0.29, True), (0.31, False)]
-)
-def test_the_critical_frequency_of_encounter(tau: float, warned: bool) -> None:
-    one = run(tau * G / (2.0 * math.pi * 1.2), speed_m_s=1.2)
-    found = [f for f in field_findings(one, rig_file()) if f.quantity == "w U / g"]
-    assert [f.value for f in found] == ([pytest.approx(tau)] if warned else [])
 
 
 def test_transverse_modes_have_the_wavelengths_of_the_tank() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
+from hardware.description.body import Ship
 from hardware.rig_configuration import TABLES
 from pmm.cli import cli
 from pmm.plan.duration import duration_rows
@@ -26,7 +27,6 @@ from pmm.plan.rig_tables import (
     PhotocellOffset,
     RecorderSettings,
     RigTables,
-    Ship,
     StructuralMode,
     Tank,
 )
@@ -52,6 +52,21 @@ def test_the_rig_can_run_the_examples(name: str) -> None:
     document = json.loads(_pmm("plan", "check", _example(name), "--json").stdout)
     assert document["possible"] is True
     assert {*document["findings"][0]} == {field.name for field in fields(Finding)}
+
+
+def test_conditions_are_a_table_of_the_largest_numbers_and_their_limits() -> None:
+    """2.1 m is half the tank's width; atan(0.15 / 0.5) at most, less by the phase, and 8 deg."""
+    text = _pmm("plan", "check", _example("horizontal")).output
+    rows = [line.split("  ") for line in text.splitlines()]
+    told = {one[0].strip(): [cell.strip() for cell in one[1:] if cell.strip()] for one in rows}
+    assert told["condition"] == ["largest", "limit", "source", "in run"]
+    assert told["reach to the side [m]"][1:3] == ["2.1", "the tank's wall"]
+    assert told["w' = w L / U"][1:] == ["3", "ITTC 7.5-02-06-02, practice", "yaw-f0.15-a150"]
+    assert told["largest yaw [deg]"][1] == "none"
+    assert "reach to the side" not in text.split("condition")[0]
+    every = _pmm("plan", "check", _example("horizontal"), "--all").output
+    assert every.count("reach to the side [m] =") > 1
+    assert "in run" not in every
 
 
 def test_the_examples_hold_the_matrices_that_they_promise() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hardware.description.body import Ship
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.findings import Finding
@@ -14,6 +15,7 @@ from pmm.plan.rig_tables import Tank
 from tests.pmm.plan.plans import rig_file, run
 
 G, L, HALF = 9.80665, 2.5, 0.5
+SHIP = Ship(70.0, 27.5, length_m=L)
 TANK = Tank(100.0, 4.0, 0.5, 4.0, depth_m=2.0)
 
 
@@ -45,6 +47,7 @@ def test_a_yaw_of_a_modern_oscillator() -> None:
     swung = float((np.abs(y) + L / 2.0 * np.abs(np.sin(psi))).max())
     assert found["reach to the side [m]"].value == pytest.approx(swung, rel=1e-4)
     assert {each.verdict for each in found.values()} == {"note"}
+    assert all(each.source and each.is_stated for each in found.values())
 
 
 def test_a_model_that_would_strike_the_wall_is_refused() -> None:
@@ -73,3 +76,87 @@ def test_pitch_is_named_so_and_has_no_wall_beside_it() -> None:
     assert found["largest pitch [deg]"].value == pytest.approx(math.degrees(math.atan(0.04)))
     assert "reach to the side [m]" not in found
     assert "q' = q L / U" in found
+
+
+def test_the_beam_comes_on_top_of_the_reach_to_the_side() -> None:
+    one = run(0.1, 0.2, 0.0, 1.2, motion=Motion.SWAY)
+    reach = {
+        beam: told(one, rig_file(HORIZONTAL_1963, tank=TANK, model=replace(SHIP, beam_m=beam)))
+        for beam in (None, 0.4)
+    }
+    bare, whole = (reach[one]["reach to the side [m]"].value for one in (None, 0.4))
+    assert (bare, whole) == (pytest.approx(0.2), pytest.approx(0.2 + 0.4 / 2.0))
+
+
+def test_blockage_warns_where_loads_grow_by_two_percent() -> None:
+    """Continuity: U W h = U' (W h - B T), so loads with U'^2 grow by (1 - m)^-2 - 1."""
+    one = run(0.1, 0.1, 0.0, 1.0, motion=Motion.SWAY)
+    for draught, verdict in ((0.199, "note"), (0.201, "warn")):
+        ship = replace(SHIP, beam_m=0.4, draught_m=draught)
+        found = told(one, rig_file(HORIZONTAL_1963, tank=TANK, model=ship))["blockage B T / (W h)"]
+        section = 4.0 * 2.0
+        faster = section / (section - 0.4 * draught)
+        assert (found.value, found.verdict) == (pytest.approx(1.0 - 1.0 / faster), verdict)
+        assert (faster**2 - 1.0 > 0.0203) == (verdict == "warn")
+    still = told(run(0.8), rig_file(tank=TANK, model=replace(SHIP, beam_m=0.4, draught_m=0.2)))
+    assert "blockage B T / (W h)" not in still
+    assert still["depth over draught h / T"].value == pytest.approx(10.0)
+
+
+def test_a_model_that_would_strike_the_bottom_is_refused() -> None:
+    """Opposed struts pitch it about its middle, which swings aft of the pivot by little."""
+    ship = replace(SHIP, draught_m=0.2)
+    slope = math.atan(0.05 / HALF)
+    down = 0.2 + L / 2.0 * math.sin(slope) + 0.05 - HALF * math.sin(slope)
+    for depth, verdict in ((down + 1e-3, "note"), (down - 1e-3, "refuse")):
+        tank = replace(TANK, depth_m=depth)
+        found = told(run(0.5, 0.05, math.pi, 1.0), rig_file(tank=tank, model=ship))
+        assert found["reach down [m]"].value == pytest.approx(down, rel=1e-4)
+        assert found["reach down [m]"].verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("motion", "reduced", "verdict"),
+    [
+        (Motion.SWAY, 1.9, "note"),
+        (Motion.SWAY, 2.1, "warn"),
+        (Motion.YAW, 2.9, "note"),
+        (Motion.YAW, 3.1, "warn"),
+        (Motion.PHASE, 3.1, "note"),
+    ],
+)
+def test_reduced_frequency_of_each_motion(motion: Motion, reduced: float, verdict: str) -> None:
+    one = run(reduced / (2.0 * math.pi * L), speed_m_s=1.0, motion=motion)
+    found = told(one, rig_file(HORIZONTAL_1963))["w' = w L / U"]
+    assert (found.value, found.verdict) == (pytest.approx(reduced), verdict)
+
+
+@pytest.mark.parametrize(
+    ("tau", "heave", "sway"),
+    [
+        (0.19, "note", "note"),
+        (0.21, "warn", "warn"),
+        (0.29, "warn", "warn"),
+        (0.31, "note", "warn"),
+    ],
+)
+def test_heave_keeps_off_a_quarter_and_sway_below_it(tau: float, heave: str, sway: str) -> None:
+    one = run(tau * G / (2.0 * math.pi * 1.2), speed_m_s=1.2)
+    for oscillator, motion, quantity, verdict in (
+        (VERTICAL_1963, Motion.HEAVE, "w U / g (keep off 1/4)", heave),
+        (HORIZONTAL_1963, Motion.SWAY, "w U / g", sway),
+    ):
+        found = told(replace(one, motion=motion), rig_file(oscillator))[quantity]
+        assert (found.value, found.verdict) == (pytest.approx(tau), verdict)
+
+
+def test_echoes_of_the_walls_are_said_below_the_ittc_table() -> None:
+    """Table 1 of 7.5-02-07-02.1: 0.378 where the tank is as broad as the model is long."""
+    as_long = replace(TANK, width_m=L)
+    for tau, said in ((0.37, True), (0.39, False)):
+        one = run(tau * G / (2.0 * math.pi * 1.2), speed_m_s=1.2)
+        found = told(one, rig_file(tank=as_long))
+        assert ("w U / g for the walls' echoes" in found) is said
+    assert "w U / g for the walls' echoes" not in told(
+        one, rig_file(tank=replace(TANK, width_m=9 * L))
+    )
