@@ -21,6 +21,7 @@ from analysis.readers.checksums import BLOCK_SAMPLES, KIND, Summing
 from analysis.readers.conditioning import without_spikes
 from analysis.readers.damage import Damage, find_damage
 from analysis.readers.declared import check_declared
+from analysis.readers.heaps import check_heaps
 from analysis.readers.missing import with_missing_said
 from analysis.readers.reserved import reserved
 from analysis.readers.stored_samples import StoredSamples, identity, reading
@@ -45,6 +46,7 @@ def read_netcdf(path: Path) -> Recording:
 
     where = str(path)
     with reading(path):
+        check_heaps(path)
         check_declared(path)
     with reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
         variables = dict(file.variables)
