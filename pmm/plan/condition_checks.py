@@ -11,7 +11,6 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, Motion, motion
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
@@ -20,6 +19,7 @@ from pmm.plan import check_table as table
 from pmm.plan import kinds
 from pmm.plan.check_table import Check
 from pmm.plan.findings import Finding, Verdict
+from pmm.plan.geometry import geometry_of
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -76,14 +76,7 @@ def motion_of(run: RunPlan, rig: RigFile) -> Motion:
     struts = np.stack((angle, angle + point.strut_phase_rad))
     wave, slope = point.eccentricity_m * np.sin(struts), point.eccentricity_m * np.cos(struts)
     driven = Driven(wave, omega * slope, -(omega**2) * wave)
-    oscillator = rig.oscillator
-    geometry = Geometry(
-        oscillator.plane,
-        oscillator.half_spacing_m,
-        speed_m_s=point.carriage_speed_m_s,
-        drift_rad=run.drift_rad,
-    )
-    return motion(geometry, driven)
+    return motion(geometry_of(run, rig.oscillator), driven)
 
 
 def _of_motion(run: RunPlan, made: Motion) -> Iterator[_Condition]:

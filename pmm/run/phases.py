@@ -42,7 +42,7 @@ def _homing(c: Conduct) -> State | None:
 
 
 def _enter_setting(c: Conduct) -> None:
-    c.questions.ask(c.surroundings.before(c.present))
+    c.questions.ask(c.surroundings.before(c.present, c.rig_file.oscillator))
     for one in c.rig.powered():
         if not one.enabled:
             one.enable()

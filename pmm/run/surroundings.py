@@ -5,7 +5,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from hardware.demand import Demand
+from hardware.description.oscillator import Oscillator
 from hardware.driver import Prompt
+from pmm.plan.geometry import drift_prompt, geometry_of
 from pmm.plan.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 
@@ -21,7 +23,7 @@ class Surroundings:
     load
         Channel and newtons of the weight that hangs on a gauge.
     drift_rad
-        How the model is turned to the tow.
+        Mean heading of the model to the tow, however it is set.
     """
 
     medium: str = "water"
@@ -30,11 +32,11 @@ class Surroundings:
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
 
-    def before(self, run: RunPlan) -> Iterator[Demand]:
+    def before(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
         """Yield what has to be done before a run, at rest."""
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
-        yield from self._change_drift(run.drift_rad)
+        yield from self._change_drift(run, oscillator)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
         yield from self._change_load(
             ("", 0.0) if wanted is None else (wanted.channel, wanted.force_n)
@@ -84,11 +86,11 @@ class Surroundings:
         what = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if known else "take it off"
         yield Demand(f"mass: {what}; press Enter", "mass", mass_kg, at_m=at_m)
 
-    def _change_drift(self, drift_rad: float) -> Iterator[Demand]:
-        if drift_rad != self.drift_rad:
-            self.drift_rad = drift_rad
-            text = f"drift: turn the whole oscillator by {drift_rad:.4f} rad to the tow"
-            yield Demand(f"{text}; press Enter", "drift", drift_rad)
+    def _change_drift(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
+        if run.drift_rad != self.drift_rad:
+            self.drift_rad = run.drift_rad
+            text = f"drift: {drift_prompt(geometry_of(run, oscillator))}; press Enter"
+            yield Demand(text, "drift", run.drift_rad)
 
 
 class Questions:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hardware.demand import Demand
+from hardware.description.oscillator import VERTICAL_1963
 from pmm.calibration import read_calibration, write_calibration
 from pmm.plan.kinds import RunKind
 from pmm.plan.run_plan import KnownMass, LoadDirection, LoadStep
@@ -143,7 +144,7 @@ def test_the_operator_is_asked_for_what_the_rig_cannot_do_itself(tmp_path: Path)
         assert one.control.outcomes[0].outcome == "complete"
         assert one.world.plant.value("carriage_speed") == 0.0
     assert [q.part for q in asked if isinstance(q, Demand)] == ["prompt"]
-    turn, look = Surroundings().before(run)  # as a rig that is not simulated asks
+    turn, look = Surroundings().before(run, VERTICAL_1963)  # as a rig that is not simulated asks
     assert (turn.part, turn.value, look.part) == ("drift", 0.1, "prompt")
-    assert "by 0.1000 rad" in turn
+    assert "turn the whole oscillator on the carriage: 0.1000 rad (5.73 deg), bow up" in turn
     assert absent("anybody?") is None

@@ -18,7 +18,9 @@ ALARM = (
     "forces[0]: force_aft = -30 N (status 0x04); full scale 30 N; reduce amplitude or frequency, "
     "or take a gauge with a wider range"
 )
-QUESTION = "turn the model to a drift angle of 0.1000 rad (5.73 deg), bow to starboard; Enter: done"
+QUESTION = (
+    "turn the whole oscillator on the carriage: 0.1000 rad (5.73 deg), bow to starboard; Enter"
+)
 ROWS = (
     HarmonicRow("shaft_angle", "rad", 25.239, -1.9733, 0.21024, 1e-7, final=True),
     HarmonicRow("force_aft", "N", 0.0032118, 34.0703, 11.1604, 0.024, final=True),
