@@ -55,8 +55,8 @@ class Motion(StrEnum):
 
     Heave and sway: both struts together. Pitch and yaw: opposite at zero speed; with forward speed
     ``U`` the strut phase is that of ``tan(phase / 2) = omega l / U``, for which the angle of attack
-    stays zero. Yaw with drift: the same, the oscillator turned by a steady drift angle. Phase: the
-    strut phase is given. None: the shaft is at rest.
+    stays zero. Yaw with drift: the same at a steady drift angle, set as the oscillator's
+    arrangement has it. Phase: the strut phase is given. None: the shaft is at rest.
     """
 
     HEAVE = "heave"
