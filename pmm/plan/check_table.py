@@ -13,7 +13,7 @@ from hardware.bus import LARGEST_LOAD
 from sim.water.tank import interference_limit
 
 _RIG = "the rig's file"
-_OURS = "ours"
+_OURS = "this project"
 _ITTC = "ITTC 7.5-02-06-02"
 _NONE = "no limit stated"
 _ONLY_STATED = "nothing: it is stated, not judged"
