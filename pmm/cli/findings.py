@@ -6,7 +6,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
 from pmm.cli.printing import counted
-from pmm.plan.findings import Finding, Verdict
+from pmm.plan.findings import Finding, Verdict, largest_stated
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -56,10 +56,7 @@ def condition_table(found: Sequence[Finding]) -> "Table | None":
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    largest: dict[str, Finding] = {}
-    for one in found:
-        if one.is_stated and one.value >= largest.get(one.quantity, one).value:
-            largest[one.quantity] = one
+    largest = largest_stated(found)
     if not largest:
         return None
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
@@ -68,7 +65,7 @@ def condition_table(found: Sequence[Finding]) -> "Table | None":
     table.add_column("limit", justify="right")
     table.add_column("source")
     table.add_column("in run", overflow="fold")
-    for _, one in sorted(largest.items()):
+    for one in largest:
         limit = f"{one.limit:.4g}" if math.isfinite(one.limit) else "none"
         table.add_row(one.quantity, f"{one.value:.4g}", limit, one.source, one.run)
     return table

@@ -16,7 +16,7 @@ from pmm.console.limits import LARGEST_PLAN
 from pmm.console.messages import QueuedPlan
 from pmm.plan.checks import Verdict, check_plan, require_possible
 from pmm.plan.duration import duration_rows
-from pmm.plan.findings import Finding
+from pmm.plan.findings import Finding, largest_stated
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -157,7 +157,11 @@ def plan_picture(found: CheckedPlan) -> dict[str, Any]:
         "complete": len(one.plan.runs) - len(one.runs),
         "refused": found.refused,
         "findings": [
-            {"verdict": str(f.verdict), "run": f.run, "message": f.message} for f in found.findings
+            {"verdict": str(f.verdict), "run": f.run, "message": f.message}
+            for f in (
+                *(one for one in found.findings if not one.is_stated),
+                *largest_stated(found.findings),
+            )
         ],
     }
 

@@ -1,5 +1,6 @@
 """What a check of a plan finds, and what refuses a plan."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -46,6 +47,15 @@ class Finding:
     def is_stated(self) -> bool:
         """Whether it only states a number of the run's condition, with nothing against it."""
         return bool(self.source) and self.verdict is Verdict.NOTE
+
+
+def largest_stated(found: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return the numbers that only state the runs' conditions, each at its largest, by name."""
+    largest: dict[str, Finding] = {}
+    for one in found:
+        if one.is_stated and one.value >= largest.get(one.quantity, one).value:
+            largest[one.quantity] = one
+    return tuple(one for _, one in sorted(largest.items()))
 
 
 class PlanRefusedError(PmmError):

@@ -9,7 +9,7 @@ import pytest
 from hardware.description.body import Ship
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from pmm.plan.condition_checks import condition_findings
-from pmm.plan.findings import Finding
+from pmm.plan.findings import Finding, largest_stated
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.rig_tables import Tank
 from tests.pmm.plan.plans import rig_file, run
@@ -160,3 +160,17 @@ def test_echoes_of_the_walls_are_said_below_the_ittc_table() -> None:
     assert "w U / g for the walls' echoes" not in told(
         one, rig_file(tank=replace(TANK, width_m=9 * L))
     )
+
+
+def test_of_many_runs_each_number_is_stated_at_its_largest_and_warnings_stay_apart() -> None:
+    rig = rig_file(HORIZONTAL_1963, tank=TANK)
+    runs = [
+        run(f, a, 0.0, 1.0, motion=Motion.SWAY, name=f"{f}-{a}")
+        for f, a in ((0.1, 0.05), (0.05, 0.2), (0.2, 0.1))  # w' = 3.14 of the last one warns
+    ]
+    found = [each for one in runs for each in condition_findings(one, rig)]
+    stated = {each.quantity: (each.run, each.value) for each in largest_stated(found)}
+    assert stated["reach to the side [m]"] == ("0.05-0.2", pytest.approx(0.2))
+    assert stated["w' = w L / U"] == ("0.1-0.05", pytest.approx(0.2 * math.pi * L))
+    assert stated["w sqrt(L / g)"][0] == "0.2-0.1"
+    assert list(stated) == sorted(stated)
