@@ -13,6 +13,7 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference import PhaseReference, from_frequency
 from analysis.resolver.sums import period_sums
 from analysis.resolver.template import template
+from benchmarks import coverage_memory
 from benchmarks.noises import NOISES, SAMPLES_PER_PERIOD, Noise, white
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import recorded
@@ -66,11 +67,15 @@ def run(quick: bool, report: Report) -> Outcome:
             report(f"{name}, m = {periods}")
             rows.append(_covered(name, noise, periods, trials))
     variances = [_variances(periods, trials) for periods in _GATES]
+    fewer = trials // 5
+    memories = coverage_memory.rows(_readings, fewer, report)
     tables = {
         "Share of 95 % intervals that hold the truth": rows,
+        "The same under long memory and beats": memories,
         "Variance in white noise over the Cramer-Rao bound of the same model": variances,
     }
-    return Outcome(tables, {**_judged(rows), **_largest_variance(variances)}, _notes(trials))
+    measured = {**_judged(rows), **coverage_memory.judged(memories), **_largest_variance(variances)}
+    return Outcome(tables, measured, _notes(trials) + coverage_memory.notes(fewer))
 
 
 def _notes(trials: int) -> tuple[str, ...]:
@@ -124,6 +129,10 @@ def _of_order(shares: FloatArray) -> list[float]:
 def _whole_periods(batch: _Batch, *, take_out_drift: bool = True) -> Harmonics:
     sums = period_sums(batch.recording, batch.reference, edges_cycles=batch.edges_cycles)
     return resolve(batch.recording, sums, take_out_drift=take_out_drift)
+
+
+def _readings(noise: Noise, periods: int, trials: int) -> Iterator[Harmonics]:
+    return (_whole_periods(batch) for batch in _batches(noise, periods, trials))
 
 
 def _hann(batch: _Batch) -> Harmonics:

@@ -44,6 +44,39 @@ def random_walk(channels: int, cycles: FloatArray, rng: np.random.Generator) -> 
     return np.asarray(white(channels, cycles, rng) + np.cumsum(steps, axis=1))
 
 
+def remembering(correlation: float) -> Noise:
+    """Return AR(1) noise of a correlation from sample to sample."""
+
+    def draw(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
+        return _stationary(np.array([correlation, 0.0]), channels, len(cycles), rng)
+
+    return draw
+
+
+def flicker(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Draw noise whose spectrum is ``1 / f`` down to a sixteenth of the record's lowest."""
+    length = 16 * len(cycles)
+    size = 1.0 / np.sqrt(np.arange(1.0, length // 2 + 1.0))
+    drawn = np.empty((channels, len(cycles)))
+    for row in drawn:
+        parts = size * (rng.standard_normal(len(size)) + 1j * rng.standard_normal(len(size)))
+        whole = np.fft.irfft(np.concatenate(([0.0], parts)), length)
+        row[:] = whole[: len(cycles)]
+    return np.asarray(drawn / (np.sqrt(2.0) * np.sqrt((size**2).sum()) * np.sqrt(2.0) / length))
+
+
+def wave(order: float, decay_periods: float = np.inf) -> Noise:
+    """Return a wave of amplitude 1 beside the motion's frequency, in white noise of 0.2."""
+
+    def draw(channels: int, cycles: FloatArray, rng: np.random.Generator) -> FloatArray:
+        phase = rng.uniform(0.0, 2.0 * np.pi, (channels, 1))
+        size = np.exp(-(cycles - cycles[0]) / decay_periods)
+        beside = size * np.cos(2.0 * np.pi * order * cycles + phase)
+        return np.asarray(beside + 0.2 * white(channels, cycles, rng))
+
+    return draw
+
+
 def _stationary(
     coefficients: FloatArray, channels: int, samples: int, rng: np.random.Generator
 ) -> FloatArray:
@@ -67,3 +100,24 @@ NOISES: dict[str, Noise] = {
     "drift": drift,
     "random_walk": random_walk,
 }
+
+MEMORIES: dict[str, Noise] = {
+    "white": white,
+    "ar1 0.9": remembering(0.9),
+    "ar1 0.99": remembering(0.99),
+    "ar1 0.995": remembering(0.995),
+    "flicker": flicker,
+    "random walk": random_walk,
+}
+"""What the mean's interval meets: from no memory to one that outlasts any gate."""
+
+BEATS: dict[str, Noise] = {
+    "1.05 w": wave(1.05),
+    "1.02 w": wave(1.02),
+    "0.9 w": wave(0.9),
+    "1.2 w": wave(1.2),
+    "1.02 w, decays in 5": wave(1.02, 5.0),
+    "1.02 w, decays in 15": wave(1.02, 15.0),
+    "1.05 w, decays in 5": wave(1.05, 5.0),
+}
+"""What the first harmonic's interval meets: waves that beat slowly against the periods."""

@@ -14,7 +14,7 @@ import numpy as np
 from analysis.coefficients.phasors import FloatArray, Phasors, Source, joined
 from analysis.motion import strut_displacements
 from analysis.resolver.analyse import Analysis
-from analysis.resolver.estimate import fit_drift, no_drift, solve_periods, usable
+from analysis.resolver.estimate import fit_drift, no_drift, scatter_of, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics
 from analysis.resolver.sums import PeriodSums
 from hardware.description.channels import DISPLACEMENTS, FORCES
@@ -84,29 +84,11 @@ def joint_covariance(
     gate = usable(gate)
     stretch = gate if around is None or around.period_count == size else usable(around)
     drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
-    drifting = drift.source is not DriftSource.NONE
-    covariance, freedom = _scatter(stretch, drifting)
-    covariance = covariance / gate.period_count
-    if drifting:
+    scatter = scatter_of(gate, stretch, drift)
+    covariance = np.einsum("pci,pdj->cidj", scatter.deviations, scatter.deviations)
+    if drift.source is not DriftSource.NONE:
         covariance = covariance + _drift_part(gate, drift.variance, covariance)
-    return covariance, freedom
-
-
-def _scatter(stretch: PeriodSums, drifting: bool) -> tuple[FloatArray, FloatArray]:
-    values = solve_periods(stretch)
-    count, channels, size = values.coefficients.shape
-    freedom = np.full(size, max(count - 1.0, 0.0))
-    if count < 2:
-        return np.full((channels, size, channels, size), np.nan), freedom
-    left = values.coefficients - values.coefficients.mean(axis=0)
-    if drifting:
-        freedom[0] = count - 2.0
-        time = values.ramp[:, 0] - values.ramp[:, 0].mean()
-        slope = np.einsum("p,pc->c", time, values.coefficients[:, :, 0]) / (time @ time)
-        ramp = values.ramp - values.ramp.mean(axis=0)
-        left = left - slope[:, None] * ramp[:, None, :]
-    scaled = left / np.sqrt(np.where(freedom > 0.0, freedom, np.nan))
-    return np.einsum("pci,pdj->cidj", scaled, scaled), freedom
+    return covariance, scatter.degrees_of_freedom
 
 
 def _drift_part(gate: PeriodSums, variance: FloatArray, scatter: FloatArray) -> FloatArray:

@@ -6,8 +6,9 @@ parts. A trend column in the same equations would cost: where harmonics beyond N
 leak through it. The drift is found instead from the periods' own means, in which harmonics
 of every order cancel, and taken out before.
 
-The uncertainty comes from the scatter between periods (Student's t), which sees noise of any
-colour; the residual's figure, white only by assumption, is never used.
+The uncertainty comes from the scatter between periods (Student's t), widened by what their sequence
+shows of the noise's memory (:mod:`analysis.resolver.memory`); the residual's figure, white only by
+assumption, is never used.
 """
 
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
+from analysis.resolver.memory import widened
 from analysis.resolver.sums import PeriodSums
 from hardware.description.errors import DataError
 
@@ -37,6 +39,27 @@ class PeriodValues:
 
     coefficients: FloatArray
     ramp: FloatArray
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """What the periods of a stretch tell of a gate's uncertainty.
+
+    Attributes
+    ----------
+    deviations
+        Each period's deviations, scaled so that their products summed over the periods are the
+        covariance of the gate's coefficients, also across channels, shape
+        ``(periods, channels, K)``; NaN where there is but one period.
+    degrees_of_freedom
+        Shape ``(K,)``.
+    widening
+        How many times the noise's memory has widened them, shape ``(channels, K)``.
+    """
+
+    deviations: FloatArray
+    degrees_of_freedom: FloatArray
+    widening: FloatArray
 
 
 @dataclass(frozen=True)
@@ -104,8 +127,8 @@ def resolve(
     stretch = gate if around is None else usable(around)
     drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
     coefficients, ramp = _solve_gate(gate, drift.slope)
-    covariance, freedom = _scatter(stretch, drift.source is not DriftSource.NONE)
-    covariance = covariance / gate.period_count + _drift_covariance(drift, ramp)
+    scatter = scatter_of(gate, stretch, drift)
+    covariance = np.einsum("pci,pcj->cij", scatter.deviations, scatter.deviations)
     return Harmonics(
         run=recording.name,
         channel_names=gate.channel_names,
@@ -114,8 +137,9 @@ def resolve(
         closed_s=float(closed_s),
         periods=count,
         coefficients=coefficients,
-        covariance=covariance,
-        degrees_of_freedom=freedom,
+        covariance=covariance + _drift_covariance(drift, ramp),
+        degrees_of_freedom=scatter.degrees_of_freedom,
+        widening=scatter.widening,
         drift_per_s=drift.slope,
         drift_source=drift.source,
         interval_source=_interval_source(gate, stretch),
@@ -186,19 +210,23 @@ def _mean_variance(left: FloatArray) -> FloatArray:
     return np.asarray((left[:, :, 1:] ** 2).sum(axis=0).mean(axis=1) / 2.0)
 
 
-def _scatter(stretch: PeriodSums, drifting: bool) -> tuple[FloatArray, FloatArray]:
-    """Covariance of a single period's coefficients, and their degrees of freedom."""
+def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> Scatter:
+    """Return the scatter of a gate's coefficients from the periods of the stretch around it."""
     values = solve_periods(stretch)
     count, channels, size = values.coefficients.shape
     freedom = np.full(size, max(count - 1.0, 0.0))
     if count < 2:
-        return np.full((channels, size, size), np.nan), freedom
-    slope = _line(values)[0] if drifting else np.zeros(channels)
-    left = _about_line(values, slope)
+        nothing = np.full((count, channels, size), np.nan)
+        return Scatter(nothing, freedom, np.ones((channels, size)))
+    drifting = drift.source is not DriftSource.NONE
+    left = _about_line(values, _line(values)[0] if drifting else np.zeros(channels))
     if drifting:
         freedom[0] = count - 2.0
-    scaled = left / np.sqrt(np.where(freedom > 0.0, freedom, np.nan))
-    return np.einsum("pci,pcj->cij", scaled, scaled), freedom
+    wider = widened(left, stretch.opened_cycle, gate.period_count, drifting)
+    own, all_told = (left**2).sum(axis=0), (wider**2).sum(axis=0)
+    ratio = np.divide(all_told, own, out=np.ones_like(own), where=own > 0.0)
+    known = np.where(freedom > 0.0, freedom, np.nan) * gate.period_count
+    return Scatter(wider / np.sqrt(known), freedom, np.sqrt(ratio))
 
 
 def _drift_covariance(drift: Drift, ramp: FloatArray) -> FloatArray:

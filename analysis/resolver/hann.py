@@ -74,6 +74,7 @@ def resolve_hann(
         coefficients=coefficients,
         covariance=covariance,
         degrees_of_freedom=freedom,
+        widening=np.ones_like(coefficients),
         drift_per_s=drift.slope,
         drift_source=drift.source,
         interval_source=IntervalSource.BINS,

@@ -46,6 +46,9 @@ class Harmonics:
         Of the coefficients, shape ``(channels, K, K)``; NaN where no interval can be given.
     degrees_of_freedom
         Shape ``(K,)``, for Student's t.
+    widening
+        How many times wider than in white noise of the same scatter an interval is for the memory
+        that the periods show, 1 or more, shape ``(channels, K)``.
     drift_per_s
         Slope taken out, shape ``(channels,)``; zero where none was.
     """
@@ -59,6 +62,7 @@ class Harmonics:
     coefficients: FloatArray
     covariance: FloatArray
     degrees_of_freedom: FloatArray
+    widening: FloatArray
     drift_per_s: FloatArray
     drift_source: DriftSource
     interval_source: IntervalSource

@@ -102,8 +102,9 @@ def test_single_period_takes_its_scatter_from_its_neighbours(kind: str, at: int)
     run, _, sums = trials(kind)
     result = resolve(run, sums[at : at + 1], around=sums[:10])
     assert result.interval_source is IntervalSource.NEIGHBOURS
-    # The period is one of those that scatter, so one far out widens its own interval.
-    check(kind, coverage(result), highest_in_white=0.99)
+    # The period is one of those that scatter: far out, it widens its own interval, and its memory
+    # cannot be told from the level.
+    check(kind, coverage(result), highest_in_white=0.995)
 
 
 def test_single_period_alone_gives_no_interval_and_says_so() -> None:
