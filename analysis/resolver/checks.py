@@ -14,14 +14,13 @@ _SPEED_CHANGE = 0.005  # from the shortest to the longest period, relative
 _FEW_PERIODS = 3  # below it an interval is a formality
 _SURE = 4.0  # standard errors that make a trend sure
 _ROUNDING = 1e-9  # of the mean: what a constant channel may seem to drift
-_MUCH_WIDER = 3.0  # than white noise of the same scatter would have it
 _NOTABLE = 0.01  # of the first harmonic: a change that matters
 
 
 def gate_flags(gate: PeriodSums, result: Harmonics) -> tuple[Flag, ...]:
-    """Return the flags of one gate: gaps, few periods, memory, speed, drift, transient."""
+    """Return the flags of one gate: gaps, few periods, speed, drift, transient."""
     sound = usable(gate)
-    flags = [*_gap(gate, sound), *_few(result), *_memory(result), *_speed(gate), *_drift(result)]
+    flags = [*_gap(gate, sound), *_few(result), *_speed(gate), *_drift(result)]
     if sound.period_count >= 2 * _FEW_PERIODS:
         flags += _transient(solve_periods(sound), result)
     return tuple(flags)
@@ -46,24 +45,6 @@ def _few(result: Harmonics) -> list[Flag]:
         )
         return [Flag("few_periods", Severity.WARNING, message)]
     return []
-
-
-def _memory(result: Harmonics) -> list[Flag]:
-    """The mean or the first harmonic where its interval is wide for the memory of the noise."""
-    told = {"mean": result.widening[:, 0], "first harmonic": result.widening[:, 1:3].max(axis=1)}
-    return [
-        Flag(
-            "memory",
-            Severity.NOTE,
-            f"the periods' sequence shows slow noise: the interval of the {part} is "
-            f"{wider[row]:.2g} times as wide as their scatter alone would have it; gate more "
-            "periods to narrow it",
-            result.channel_names[row],
-        )
-        for row in range(len(result.channel_names))
-        for part, wider in told.items()
-        if wider[row] > _MUCH_WIDER
-    ]
 
 
 def _speed(gate: PeriodSums) -> list[Flag]:
@@ -111,7 +92,8 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
     amplitude = result.amplitude[:, 0]
     sure = (np.abs(slope) > _SURE * error) & (change > _NOTABLE * amplitude[:, None])
     flags = []
-    moves = amplitude > result.half_width()[:, 1:3].max(axis=1)  # else noise trends by itself
+    alone = (result.half_width() / result.widening)[:, 1:3].max(axis=1)  # a trend has memory itself
+    moves = amplitude > alone  # else noise trends by itself
     for row in np.flatnonzero(sure.any(axis=1) & moves):
         share = 100.0 * change[row].max() / amplitude[row]
         message = (
