@@ -146,11 +146,11 @@ def _watched() -> Iterator[list[float]]:
 def _trials(found: Found, blocks: int, report: Report) -> tuple[list[Row], float]:
     """Time blocks of trials of the first group, one worker against two that have started."""
     from analysis.coefficients.campaign_plan import plan
-    from analysis.coefficients.solve import problem_of
+    from analysis.coefficients.linear import linear_fit
 
     group = plan(found.cycles, Request())[0]
-    problem = problem_of([cycle.run() for cycle in group.cycles], Request().form)
-    work = [TrialBlock(problem, found.stated, _TRIALS, 1, k) for k in range(blocks)]
+    fit = linear_fit(group.cycles, Request().form, found.stated).fit
+    work = [TrialBlock(fit, _TRIALS, 1, k) for k in range(blocks)]
     report("Monte Carlo, one worker")
     one_s, _, one = _timed(lambda: list(map(draw_block, work)))
     two = LocalProcesses(2)

@@ -6,13 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.form_choice import BOTH, CUBIC, NOT_SEPARABLE, QUADRATIC, choose_form
-from analysis.coefficients.measured import measured_run
-from analysis.coefficients.run import from_struts
-from analysis.coefficients.solve import solve
+from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.names import Form
+from analysis.coefficients.stated import Stated
+from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.analyse import Settings, analyse
-from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up, scattered
+from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up
 from benchmarks.coefficients_coverage import CASES, cubic_rates, linear_rates, monte_carlo_ratio
 from benchmarks.machine import ROOT
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
@@ -82,9 +85,11 @@ def _forms(campaigns: int) -> tuple[list[Row], float]:
     points = [(name, point) for name, point in amplitudes() if name.startswith("sway")]
     for form, terms in _FORMS.items():
         generator = np.random.default_rng(3)
-        clean = [made_up(point, Made(linear | terms, orders=5), name) for name, point in points]
+        made = Made(linear | terms)
         named = Counter(
-            choose_form([scattered(one, generator) for one in clean], 0).verdict
+            choose_form(
+                [made_up(point, made, name, generator) for name, point in points], 0
+            ).verdict
             for _ in range(campaigns)
         )
         other = QUADRATIC if form == CUBIC else CUBIC
@@ -119,28 +124,26 @@ def _hull_rows(name: str, table: RadiationTable) -> list[Row]:
             _measured(own, SetPoint(frequency, eccentricity, phase), f"{phase:.0f}", k)
             for phase in (0.0, math.pi)
         ]
-        result = solve(runs)
-        for inertial, put_in in ((True, water.added_mass), (False, water.damping)):
-            matrix = result.matrix(inertial=inertial)
-            for place in ((0, 0), (1, 1)):
-                expected = put_in[place[0]][place[1]]
-                if expected == 0.0:
+        fit = linear_fit(runs, Form.SEAKEEPING, Stated()).fit
+        modes = "35" if table.plane is Plane.VERTICAL else "26"
+        for letter, put_in in (("a", water.added_mass), ("b", water.damping)):
+            for place, mode in enumerate(modes):
+                if put_in[place][place] == 0.0:
                     continue
-                letter = "ab"[not inertial]
-                mode = ("35" if table.plane is Plane.VERTICAL else "26")[place[0]]
-                half = result.half_width()[result.index(letter + 2 * mode)]
-                error = float(matrix[place] - expected)
-                missed = abs(error) > max(_CLOSE * abs(expected), float(half))
-                rows.append(
-                    {
-                        "hull": name,
-                        "coefficient": letter + 2 * mode,
-                        "error": error / expected,
-                        "half_width": float(half) / abs(expected),
-                        "missed": missed,
-                    }
-                )
+                rows.append(_hull_row(name, letter + 2 * mode, put_in[place][place], fit))
     return rows
+
+
+def _hull_row(hull: str, name: str, expected: float, fit: CycleFit) -> Row:
+    error = fit[name] - expected
+    half = float(fit.uncertain.half_width()[fit.names.index(name)])
+    return {
+        "hull": hull,
+        "coefficient": name,
+        "error": error / expected,
+        "half_width": half / abs(expected),
+        "missed": abs(error) > max(_CLOSE * abs(expected), half),
+    }
 
 
 def _water(table: RadiationTable, k: int) -> HullCoefficients:
@@ -152,11 +155,11 @@ def _water(table: RadiationTable, k: int) -> HullCoefficients:
     return HullCoefficients(added_mass=added, damping=damping, restoring=restoring)  # type: ignore[arg-type]
 
 
-def _measured(rig: SimulatedRig, point: SetPoint, name: str, seed: int):  # type: ignore[no-untyped-def]
+def _measured(rig: SimulatedRig, point: SetPoint, name: str, seed: int) -> Cycle:
     record = simulate(rig, point, periods=30, sample_rate_hz=100.0, seed=seed, name=name)
     analysis = analyse(from_dataset(record), settings=Settings(channels=_CHANNELS, harmonics=3))
-    run = from_struts(measured_run(analysis, rig.oscillator))
-    return run.without(rig.body, np.array(rig.water.restoring))
+    cycle = measured_cycle(analysis, rig.oscillator).model()
+    return cycle.without(rig.body, np.array(rig.water.restoring))
 
 
 def _worst(rows: list[Row]) -> list[Row]:

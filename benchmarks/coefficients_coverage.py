@@ -8,26 +8,31 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import fit_cycles
+from analysis.coefficients.cycle_trials import cycle_trials
+from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.solve import problem_of, solve
 from analysis.coefficients.stated import Stated
-from analysis.coefficients.uncertainty import monte_carlo
 from benchmarks.coefficients_campaigns import (
     CUBIC,
     HORIZONTAL,
     RESTORING,
     VERTICAL,
     Made,
+    Scatter,
     amplitudes,
+    made_struts,
     made_up,
     pure_pair,
     scattered,
+    taken,
     wrong,
     wrong_body,
 )
 from benchmarks.outcome import Report, Row
 from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
 
 FloatArray = NDArray[np.float64]
 
@@ -40,6 +45,8 @@ STATED = Stated(
     force_gain_relative=1e-3,
     amplitude_relative=5e-4,
 )
+_MANY = Scatter(periods=200)
+"""Student's t of few periods has a larger deviation than the budget's by its nature."""
 ACTING = tuple(name for name in STATED.__dataclass_fields__ if getattr(STATED, name) > 0.0)
 
 
@@ -74,22 +81,31 @@ def linear_rates(case: Case, campaigns: int) -> dict[str, float]:
     hits = dict.fromkeys(case.truth, 0)
     for k in range(campaigns):
         generator = np.random.default_rng(np.random.SeedSequence(1963, spawn_key=(k,)))
-        result = solve(_campaign(case, generator), Form.MANOEUVRING, stated=STATED)
-        half = result.half_width()
-        for name, value, width in zip(result.names, result.values, half, strict=True):
+        fit = linear_fit(_campaign(case, generator), Form.MANOEUVRING, STATED).fit
+        half = fit.uncertain.half_width()
+        for name, value, width in zip(fit.names, fit.values, half, strict=True):
             hits[name] += abs(value - case.truth[name]) <= width
     return {name: count / campaigns for name, count in hits.items()}
 
 
-def _campaign(case: Case, generator: Generator):  # type: ignore[no-untyped-def]
+def _campaign(case: Case, generator: Generator) -> list[Cycle]:
     """Both motions, with one error of everything stated for all runs."""
     errors = {name: float(generator.standard_normal()) for name in ACTING}
     restoring = RESTORING if case.plane is Plane.VERTICAL else None
     body = wrong_body(STATED, errors)
-    made = Made(case.truth, case.plane, orders=1, body=body, restoring=restoring)
+    made = Made(case.truth, case.plane, orders=3, body=body, restoring=restoring)
     points = pure_pair(case.frequency_hz, case.eccentricity_m, case.speed_m_s)
-    cycles = [made_up(point, made, name) for name, point in zip("ab", points, strict=True)]
-    return [scattered(wrong(one, STATED, errors), generator).run() for one in cycles]
+    return [
+        _read(point, made, name, errors, generator)
+        for name, point in zip("ab", points, strict=True)
+    ]
+
+
+def _read(
+    point: SetPoint, made: Made, name: str, errors: Mapping[str, float], generator: Generator
+) -> Cycle:
+    struts = wrong(made_struts(point, made, name), STATED, errors)
+    return taken(scattered(struts, generator), made)
 
 
 def cubic_rates(campaigns: int, report: Report) -> dict[str, float]:
@@ -104,11 +120,10 @@ def cubic_rates(campaigns: int, report: Report) -> dict[str, float]:
         generator = np.random.default_rng(np.random.SeedSequence(2026, spawn_key=(k,)))
         errors = {name: float(generator.standard_normal()) for name in ACTING}
         body = wrong_body(STATED, errors)
-        cycles = [
-            made_up(point, Made(truth, drift_rad=drift, body=body), name)
+        read = [
+            _read(point, Made(truth, drift_rad=drift, body=body), name, errors, generator)
             for name, point, drift in points
         ]
-        read = [scattered(wrong(one, STATED, errors), generator) for one in cycles]
         fit = fit_cycles(read, tuple(truth), stated=STATED)
         half = fit.uncertain.half_width()
         for name, value, width in zip(fit.names, fit.values, half, strict=True):
@@ -122,16 +137,14 @@ def monte_carlo_ratio(trials: int) -> tuple[float, list[Row]]:
     farthest = 1.0
     for case in CASES:
         generator = np.random.default_rng(7)
-        # many periods: Student's t of few has a larger deviation than the budget's by its nature
-        runs = [
-            scattered(made_up(point, _exact(case), name), generator, periods=200).run()
-            for name, point in zip(
-                "ab", pure_pair(case.frequency_hz, case.eccentricity_m, case.speed_m_s), strict=True
-            )
+        points = pure_pair(case.frequency_hz, case.eccentricity_m, case.speed_m_s)
+        cycles = [
+            made_up(point, _exact(case), name, generator, _MANY)
+            for name, point in zip("ab", points, strict=True)
         ]
-        linear = solve(runs, Form.MANOEUVRING, stated=STATED).standard_uncertainty
-        drawn = monte_carlo(problem_of(runs, Form.MANOEUVRING), STATED, trials=trials, seed=1)
-        ratio = drawn.standard_uncertainty / linear
+        fit = linear_fit(cycles, Form.MANOEUVRING, STATED).fit
+        drawn = cycle_trials(fit, trials, seed=1)
+        ratio = drawn.standard_uncertainty / fit.uncertain.standard_uncertainty
         worst = float(ratio[np.argmax(np.abs(np.log(ratio)))])
         rows.append({"case": case.name, "ratio farthest from 1": worst})
         farthest = max(farthest, math.exp(abs(math.log(worst))))
@@ -140,4 +153,4 @@ def monte_carlo_ratio(trials: int) -> tuple[float, list[Row]]:
 
 def _exact(case: Case) -> Made:
     restoring = RESTORING if case.plane is Plane.VERTICAL else None
-    return Made(case.truth, case.plane, orders=1, restoring=restoring)
+    return Made(case.truth, case.plane, orders=3, restoring=restoring)

@@ -33,6 +33,7 @@ NAMES = (
     "kill",
     "soak",
     "coefficients",
+    "exact",
     "campaign",
     "sealed",
     "gap",

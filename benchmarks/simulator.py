@@ -27,16 +27,20 @@ from sim.water.radiation import Radiation
 
 RATE_HZ = 200.0
 _SET_POINT = SetPoint(1.0, 0.02, 0.7)
-_HALF_SPACING_M = VERTICAL_1963.half_spacing_m
+# The rivals' equations are those of small angles: of struts that stand ten thousand times as far
+# apart, with moments as many times larger, angles are so small that ours are the same to 1e-10.
+_APART = 1e4
+_HALF_SPACING_M = _APART * VERTICAL_1963.half_spacing_m
+_SCALE = np.array([[1.0, _APART], [_APART, _APART**2]])
 MODEL = ModelOnGauges(
     frequency_hz=1.0,
     eccentricity_m=0.02,
     strut_phase_rad=0.7,
     ramp_s=1.5,
-    mass=np.array([[145.0, 3.0], [3.0, 49.5]]),
-    damping=np.array([[100.0, 12.0], [12.0, 30.0]]),
-    stiffness=np.array([[6900.0, 345.0], [345.0, 2400.0]]),
-    memory_gain=np.diag([500.0, 150.0]),
+    mass=_SCALE * np.array([[145.0, 3.0], [3.0, 49.5]]),
+    damping=_SCALE * np.array([[100.0, 12.0], [12.0, 30.0]]),
+    stiffness=_SCALE * np.array([[6900.0, 345.0], [345.0, 2400.0]]),
+    memory_gain=_SCALE * np.diag([500.0, 150.0]),
     memory_rad_s=6.0,
     memory_ratio=0.5,
     quadratic_n_s2_m2=300.0,
@@ -63,7 +67,7 @@ def rig_on_gauges() -> SimulatedRig:
     """Return the rig whose equations :class:`ModelOnGauges` writes down."""
     one = MODEL
     rig = vertical_rig().ideal()
-    body = Body(mass_kg=70.0, inertia_kg_m2=27.5)
+    body = Body(mass_kg=70.0, inertia_kg_m2=27.5 * _APART**2)
     w, eye = one.memory_rad_s, np.eye(2)
     memory = Radiation(
         one.mass - np.diag([body.mass_kg, body.inertia_kg_m2]),
@@ -73,6 +77,7 @@ def rig_on_gauges() -> SimulatedRig:
     )
     return replace(
         rig,
+        oscillator=replace(rig.oscillator, half_spacing_m=_HALF_SPACING_M),
         body=body,
         water=HullCoefficients(damping=_rows(one.damping), restoring=_rows(one.stiffness)),
         radiation=memory,

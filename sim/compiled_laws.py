@@ -1,18 +1,24 @@
-"""The force laws at one instant: what the compiled loops call; the same as :mod:`sim.laws`.
+"""Force laws and exact geometry at one instant: what the compiled loops call.
 
-Loaded when the first such loop runs, because numba is. Without numba the functions are Python.
+The same as :mod:`sim.laws` and :mod:`sim.geometry`. Loaded when the first such loop runs, because
+numba is. Without numba the functions are Python.
 """
 
 import math
 
+from sim import geometry
 from sim.compiled import compile_loop
+from sim.geometry import AT_REST, LINEAR, BodyMotion
 from sim.laws import CREEP_M_S
 from sim.signals import FloatArray
 
 _FIRST_WITH_REFERENCE = 4
 _FIRST_THAT_JUMPS = 7
-_ARC_SINE = 11
 _ROOT_PI = math.sqrt(math.pi)
+
+body_motion = compile_loop(geometry.body_motion)
+body_loads = compile_loop(geometry.body_loads)
+gauge_readings = compile_loop(geometry.gauge_readings)
 
 
 @compile_loop
@@ -59,19 +65,10 @@ def _jumping(
 
 
 @compile_loop
-def _arc_sine(p: FloatArray, i: int, x: float, v: float, a: float, load: float) -> float:
-    """Struts on parallel lines."""
-    cosine = math.sqrt(1.0 - x**2)
-    growing = a / cosine + x * v**2 / cosine**3
-    beyond = p[i, 1] * (growing - a) + p[i, 2] * (v / cosine - v) + p[i, 3] * (math.asin(x) - x)
-    return float((load + beyond) / cosine - load)
-
-
-@compile_loop
 def law_value(
     p: FloatArray,
     i: int,
-    at: tuple[float, float, float, float],
+    at: tuple[float, float, float],
     half: float,
     time_s: float,
     speed_m_s: float,
@@ -83,44 +80,47 @@ def law_value(
     p, i
         The laws, see :class:`sim.law_table.LawTable`, and the row of this one.
     at
-        Position, velocity, acceleration and load at the law's point.
+        Position, velocity and load at the law's point.
     half
         See :attr:`sim.force_law.Motion.half_change`.
     """
     kind = int(p[i, 0])
-    x, v, a, load = at
+    x, v, load = at
     if kind < _FIRST_WITH_REFERENCE:
         return _polynomial(kind, p, i, x, v)
     if kind < _FIRST_THAT_JUMPS:
         return _curved(kind, p, i, x, time_s, speed_m_s)
-    if kind == _ARC_SINE:
-        return _arc_sine(p, i, x, v, a, load)
     return _jumping(kind, p, i, x, v, half, load)
 
 
 @compile_loop
-def cross_flow_load(k: FloatArray, row: int, v: float, r: float) -> float:
-    """Return force (row 0) or moment (row 1) of both velocities through the water, coupled."""
-    cubic = k[row, 0] * v**3 + k[row, 1] * v * v * r + k[row, 2] * v * r * r + k[row, 3] * r**3
-    quadratic = k[row + 2, 0] * v * abs(v) + k[row + 2, 1] * v * abs(r)
-    return float(cubic + quadratic + k[row + 2, 2] * r * abs(v) + k[row + 2, 3] * r * abs(r))
+def motion_at(hull: FloatArray, at: FloatArray, line: int, speed_m_s: float) -> BodyMotion:
+    """Return how the model moves where a row holds h, h' and h'', two values each."""
+    return body_motion(
+        hull,
+        at[line, 0],
+        at[line, 1],
+        at[line, 2],
+        at[line, 3],
+        at[line, 4],
+        at[line, 5],
+        speed_m_s,
+    )
 
 
 @compile_loop
-def _cross_flow(k: FloatArray, at: FloatArray, line: int, force: FloatArray, into: int) -> None:
-    h0, h1, v0, v1 = at[line, 0], at[line, 1], at[line, 2], at[line, 3]
-    v = k[4, 0] * v0 + k[4, 1] * v1 + k[4, 2] * h0 + k[4, 3] * h1
-    r = k[5, 0] * v0 + k[5, 1] * v1 + k[5, 2] * h0 + k[5, 3] * h1
-    for row in range(2):
-        load = cross_flow_load(k, row, v, r)
-        force[into, 0] += k[4 + row, 0] * load
-        force[into, 1] += k[4 + row, 1] * load
+def hull_readings(
+    hull: FloatArray, moves: BodyMotion, more_across: float
+) -> tuple[float, float, float]:
+    """Return what the gauges read, aft, fore and along; as :func:`sim.hull_numbers.readings`."""
+    ahead, across, about = body_loads(hull, moves)
+    return gauge_readings(hull, moves.cosine, moves.sine, ahead, across + more_across, about)
 
 
 @compile_loop
 def law_force(
     laws: FloatArray,
-    cross_flow: FloatArray,
+    hull: FloatArray,
     at: FloatArray,
     line: int,
     time_s: float,
@@ -128,12 +128,14 @@ def law_force(
     speed_m_s: float,
     force: FloatArray,
     into: int,
-) -> None:
-    """Add the force of each strut that the laws ask for.
+) -> float:
+    """Add what each strut exerts beyond the linear parts; return the force along the model.
+
+    The same as :func:`sim.hull_forces.law_forces`.
 
     Parameters
     ----------
-    laws, cross_flow
+    laws, hull
         See :class:`sim.law_table.LawTable`.
     at, line
         The row that holds the model at the struts: h, h', h'' and the load of the linear parts, two
@@ -141,15 +143,26 @@ def law_force(
     force, into
         Where the forces go, to the first two columns of row ``into``.
     """
+    moves = motion_at(hull, at, line, speed_m_s)
+    across = 0.0
     for i in range(laws.shape[0]):
-        a0, a1, turn0, turn1 = laws[i, 5], laws[i, 6], laws[i, 9], laws[i, 10]
+        a0, a1, through = laws[i, 5], laws[i, 6], laws[i, 9] > 0.0
         x = at[line, 0] * a0 + at[line, 1] * a1
-        v = at[line, 2] * a0 + at[line, 3] * a1 + at[line, 0] * turn0 + at[line, 1] * turn1
-        a = at[line, 4] * a0 + at[line, 5] * a1 + at[line, 2] * turn0 + at[line, 3] * turn1
+        v = moves.v if through else at[line, 2] * a0 + at[line, 3] * a1
+        a = moves.v_rate if through else at[line, 4] * a0 + at[line, 5] * a1
         load = at[line, 6] * laws[i, 7] + at[line, 7] * laws[i, 8]
         half = math.sqrt((a * (step_s / 2.0)) ** 2 + CREEP_M_S**2)
-        value = law_value(laws, i, (x, v, a, load), half, time_s, speed_m_s)
-        force[into, 0] += value * a0
-        force[into, 1] += value * a1
-    if cross_flow.shape[0]:
-        _cross_flow(cross_flow, at, line, force, into)
+        value = law_value(laws, i, (x, v, load), half, time_s, speed_m_s)
+        if through:
+            across += value
+        else:
+            force[into, 0] += value * a0
+            force[into, 1] += value * a1
+    aft, fore, along = hull_readings(hull, moves, across)
+    aft, fore = aft - hull[AT_REST, 0], fore - hull[AT_REST, 1]
+    for j in range(6):
+        aft -= hull[LINEAR, j] * at[line, j]
+        fore -= hull[LINEAR + 1, j] * at[line, j]
+    force[into, 0] += aft
+    force[into, 1] += fore
+    return along - float(hull[AT_REST, 2])

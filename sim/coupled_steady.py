@@ -17,8 +17,8 @@ from sim.stage import Stage
 if TYPE_CHECKING:
     from sim.coupled import Coupled
 
-_FORCES = ("force_aft", "force_fore")
-_LOADING = ("shaft_angle", "shaft_speed", "lever_aft", "lever_fore", *_FORCES)
+_STRUTS = ("force_aft", "force_fore")
+_LOADING = ("shaft_angle", "shaft_speed", "lever_aft", "lever_fore", *_STRUTS)
 
 
 @dataclass
@@ -26,8 +26,8 @@ class CoupledSteady:
     """Sweeps of torque, motion and force over a period, until they fit each other.
 
     What is swept is one array, a column each: the torque less the reflected inertia's, and with
-    laws on a mounting that gives way, what these ask for at both struts. So the laws come to terms
-    with mounting and drive at once.
+    a mounting that gives way, what the laws ask for at both struts and along the model. So the
+    laws come to terms with mounting and drive at once.
     """
 
     stage: "Coupled"
@@ -42,11 +42,12 @@ class CoupledSteady:
 
     def solve(self) -> tuple[Period, Spectra]:
         """Return the period that the shaft has under its load, and the harmonics of all parts."""
-        columns = 1 if self._swept is None else 3
+        columns = 1 if self._swept is None else 4
         nothing = np.zeros((self.period.orders + 1, columns), dtype=np.complex128)
         start = self._respond(nothing)
-        size = np.full(columns, np.abs(start[:, 1:]).max(initial=0.0))
-        size[0] = np.abs(start[:, 0]).max()
+        size = np.full(columns, np.abs(start[:, 0]).max())
+        if self._model is not None:
+            size[1:] = self._model.scale(_struts(self._found), start[:, 1:])
         relax(self._respond, start, self.stage.name, size)
         return self._real, {one.name: self._found[one.name] for one in self.stage.writes}
 
@@ -81,14 +82,18 @@ class CoupledSteady:
         model = self._model
         if model is None or model.period != self._real:
             model = self._model = HullSteady(hull.at_speed(found), self._real)
-        y = np.stack([found["displacement_aft"], found["displacement_fore"]], axis=1)
+        y = _struts(found)
         laws = model.laws(y, laws)
-        return dict(zip(_FORCES, model.force(y, laws).T, strict=True)), laws
+        names = (one.name for one in hull.writes)
+        return dict(zip(names, model.force(y, laws).T, strict=True)), laws
+
+
+def _struts(found: Spectra) -> ComplexArray:
+    return np.stack([found["displacement_aft"], found["displacement_fore"]], axis=1)
 
 
 def _with_swept_laws(hull: Stage[Any]) -> Hull | None:
     """Return the model if the balance of its laws and mounting can be part of the sweeps."""
     if type(hull) is not Hull or hull.mounting.joint is not None or not hull.system.elastic_count:
         return None
-    loaded = hull.laws or hull.cross_flow is not None or hull.system.drifts
-    return hull if loaded else None
+    return hull

@@ -3,12 +3,13 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hardware.description.arrangement import Arrangement
 from hardware.description.body import Body
-from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
 from sim import signals
@@ -16,6 +17,7 @@ from sim.acting import Acting
 from sim.hull_blocks import BlockForces, HullState
 from sim.hull_coefficients import HullCoefficients, mass_matrix, weight_matrix
 from sim.hull_forces import CrossFlow, Instants
+from sim.hull_numbers import numbers_of, turns_with
 from sim.hull_steady import HullSteady
 from sim.hull_system import HullSystem
 from sim.linear import Hold
@@ -26,32 +28,32 @@ from sim.relaxation import LONGEST_SWEEP
 from sim.settled import fine_enough, last_period
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block
+from sim.surge import SurgeForces
 from sim.water.radiation import Radiation, constant
 
 __all__ = ["Hull", "HullCoefficients"]
+
+ValueT = TypeVar("ValueT", np.float64, np.complex128)
 
 
 @dataclass(frozen=True)
 class Hull:
     """A rigid model in water, or in air where the water has no coefficients, on its mounting.
 
-    With the motion q = (translation, rotation) of the midpoint and carriage speed U, the velocity
-    of the model through the water is v = q' + U (s rotation, 0), where s = +1 in the vertical plane
-    (w = z' + U pitch) and s = -1 in the horizontal plane (v = y' - U yaw). The struts exert
+    The struts' motion moves the model exactly (:mod:`sim.geometry`), whatever its angle: with its
+    velocities u, v and r through the water in body axes, what the gauges read balances
 
-        (force, moment) = M q'' + A v' + mu + B v + (C + G) q + laws
+        inertia + A (v', r') + B (v, r) + C (place, angle) + cross-flow - X + weight + mu + laws
 
-    with the model's mass matrix M, its weight G (pitch only: m g z_G) and the memory mu of the
-    water. Loads at rest, weight less buoyancy at zero displacement, are left out: dynamometers are
-    tared with the model in place. U is taken as steady within v'.
+    with the memory mu of the water, which is linear in the struts' motion, about the mean speed.
+    What gauges read at rest where the drift is set, weight among it, is left out: they are tared
+    with the model in place. The carriage's speed is taken as steady within v'.
 
-    A model that is set at a drift angle beta (trim, in the vertical plane) is moved by the struts
-    across its heading: v = q' + s U (cos(beta) rotation + sin(beta)). Of the steady part the memory
-    of the water knows nothing.
-
-    On a rigid mounting q is the motion of the struts. Else gauges and frame give way, and model,
-    water and mounting are solved together: the linear part exactly between the samples (see
-    :mod:`sim.hull_system`), the laws by sweeps over the block until nothing changes any more.
+    For the mounting and between samples the slopes of all this at small angles are a linear system
+    (:mod:`sim.hull_system`), solved exactly; what there is beyond them, and the laws, are solved
+    sample by sample, or by sweeps over the block until nothing changes any more. On a rigid
+    mounting the model moves as the struts do. Else gauges and frame give way, and model, water and
+    mounting are solved together.
 
     Attributes
     ----------
@@ -66,12 +68,16 @@ class Hull:
     flow_factor
         Speed of the flow past the model over the carriage's.
     drift_rad
-        Steady heading of the model against the carriage's way, bow to starboard or up.
-
-    Raises
-    ------
-    ConfigurationError
-        If a model at a drift angle hangs in gauges with a clearance, which is not simulated.
+        Steady heading of the model against the carriage's way, bow to starboard or up, set as the
+        arrangement says.
+    arrangement
+        Of struts, gauges and drift; not a turntable.
+    surge
+        The water's force along the model.
+    afloat
+        Whether buoyancy carries the model: it then displaces its own mass, centred between the
+        struts' attachments in height and below the centre of gravity along the model. Else, in the
+        vertical plane, the weight hangs on the struts whole.
     """
 
     plane: Plane
@@ -85,17 +91,13 @@ class Hull:
     carriage_speed_m_s: float = 0.0
     flow_factor: float = 1.0
     drift_rad: float = 0.0
+    arrangement: Arrangement = field(default_factory=Arrangement)
+    surge: SurgeForces | None = None
+    afloat: bool = True
 
     name: ClassVar[str] = "hull"
     reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
-    writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
-
-    def __post_init__(self) -> None:
-        if self.drift_rad and self.mounting.joint is not None:
-            raise ConfigurationError(
-                f"drift_rad = {self.drift_rad:g}: gauges with a clearance are simulated without a "
-                "drift angle only; leave one of both out"
-            )
+    writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 
     @property
     def system(self) -> HullSystem:
@@ -118,7 +120,10 @@ class Hull:
             force = self._over(instants).on_rigid_mounting(struts)
         else:
             state, force = self._with_memory(state, struts, instants)
-        return state, {"force_aft": force[:, 0].copy(), "force_fore": force[:, 1].copy()}
+        return state, self._written(np.ascontiguousarray(force.T))
+
+    def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
+        return {one.name: row for one, row in zip(self.writes, rows, strict=True)}
 
     def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
         """Return the model in the water as it is at the first of some samples, and for how many.
@@ -148,7 +153,7 @@ class Hull:
         return self._over(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
 
     def _over(self, instants: Instants, marching: Marching | None = None) -> BlockForces:
-        return BlockForces(self.laws, self.cross_flow, self.system, instants, marching)
+        return BlockForces(self.laws, self.system, instants, marching)
 
     def _with_memory(
         self, state: HullState, struts: FloatArray, instants: Instants
@@ -179,8 +184,7 @@ class Hull:
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         model = HullSteady(hull, period)
-        force = model.force(y, model.balanced(y))
-        return period, {"force_aft": force[:, 0], "force_fore": force[:, 1]}
+        return period, self._written(model.force(y, model.balanced(y)).T)
 
     def at_speed(self, inputs: Spectra) -> "Hull":
         """Return the model at the carriage's mean speed."""
@@ -208,21 +212,21 @@ def _system(hull: Hull) -> HullSystem:
     ).T
     radiation = constant(np.zeros((2, 2))) if hull.radiation is None else hull.radiation
     added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
-    damping = np.array(hull.water.damping)
+    water_damping = np.array(hull.water.damping)
     restoring = np.array(hull.water.restoring) + np.array(weight_matrix(hull.body, hull.plane))
-    side = 1.0 if hull.plane is Plane.VERTICAL else -1.0
-    turn = math.cos(hull.drift_rad) * np.array([[0.0, side], [0.0, 0.0]]) @ to
-    drift = np.array([side * math.sin(hull.drift_rad), 0.0])
+    turn = np.zeros((2, 2))
+    turn[0] = -turns_with(hull.plane) * math.cos(hull.drift_rad) * to[1]
     incidence = hull.carriage_speed_m_s * turn
+    mass = to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to
+    damping = to.T @ (water_damping @ to + added @ incidence)
+    stiffness = to.T @ (restoring @ to + water_damping @ incidence)
     return HullSystem(
-        mass=to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to,
-        damping=to.T @ (damping @ to + added @ incidence),
-        stiffness=to.T @ (restoring @ to + damping @ incidence),
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
         speed_m_s=hull.carriage_speed_m_s,
         turn=turn,
-        speed_loads=(to.T @ damping @ turn, to.T @ added @ turn),
-        drift=drift,
-        drift_load=to.T @ damping @ drift,
+        numbers=numbers_of(hull, added, np.hstack([stiffness, damping, mass])),
         to_motion=to,
         radiation=radiation,
         elastic=hull.mounting.elastic,

@@ -8,7 +8,8 @@ import numpy as np
 from hardware.description.errors import ConfigurationError
 from sim.acting import Acting
 from sim.compiled import follow
-from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
+from sim.hull_forces import Instants, ModelMotion, law_forces
+from sim.hull_numbers import geometry_only
 from sim.hull_system import LOAD_DEGREE, HullSystem
 from sim.law_table import has_number
 from sim.linear import Hold
@@ -42,12 +43,12 @@ class HullState(NamedTuple):
 class BlockForces:
     """The forces over one block; arrays have one row a sample.
 
-    Strut motion is (y, y', y''), aft and fore: six columns. Loads are (f, g): four columns.
+    Strut motion is (y, y', y''), aft and fore: six columns. Loads are (f, g): four columns. Forces
+    are those of the struts, aft and fore, and the one along the model: three.
     ``marching`` solves for them sample by sample; without it they are swept over the block.
     """
 
     laws: tuple[Acting, ...]
-    cross_flow: CrossFlow | None
     system: HullSystem
     instants: Instants
     marching: Marching | None = None
@@ -55,7 +56,14 @@ class BlockForces:
     def on_rigid_mounting(self, struts: FloatArray) -> FloatArray:
         """Return the forces where nothing is remembered: arithmetic on whole blocks."""
         linear = self._linear(struts)
-        return linear + self._loads(struts, linear)[:, :2]
+        force = self._forces(self.laws, self.system.numbers, struts, linear)
+        force[:, :2] += linear
+        return force
+
+    def whole(self, motion: FloatArray, at_struts: FloatArray) -> FloatArray:
+        """Return all forces, for the model's motion and those at the struts."""
+        along = self._forces(self.laws, self.system.numbers, motion, at_struts)[:, 2:]
+        return np.hstack([at_struts, along])
 
     def with_memory(
         self, state: HullState, struts: FloatArray, holds: tuple[Hold, Hold]
@@ -91,20 +99,15 @@ class BlockForces:
             loads = respond(loads)  # with the memory's part of what the linear parts ask
         elif loads.any():
             loads = relax(respond, loads, "hull", self.scale(struts))
-        states, _, linear = under(loads)
+        states, motion, linear = under(loads)
         tail = np.vstack([history[known:], loads])[-LOAD_DEGREE:]
         after = HullState(_value(states[-1]), _value(struts[-1]), tuple(map(_value, tail)))
-        return after, linear + loads[:, :2]
+        return after, self.whole(motion, linear + loads[:, :2])
 
     @property
     def acts_back(self) -> bool:
         """Whether loads depend on what they do: on how the mounting gives way to them."""
-        loaded = self._loaded or self.system.joint is not None
-        return bool(self.system.elastic_count and (loaded or self._extra.any()))
-
-    @property
-    def _loaded(self) -> bool:
-        return bool(self.laws) or self.cross_flow is not None or self.system.drifts
+        return self.system.elastic_count > 0
 
     @property
     def _extra(self) -> FloatArray:
@@ -116,20 +119,25 @@ class BlockForces:
         """Solve sample by sample; laws that the march does not know are swept around it."""
         course = self.course(state, struts, known)
         rest = tuple(one for one in self.laws if not has_number(one.law))
+        alone = geometry_only(self.system.numbers)
         outputs = march_model(marching, course)
 
         def respond(loads: FloatArray) -> FloatArray:
             nonlocal outputs
             course.given[:, :2] = loads
             outputs = march_model(marching, course)
-            return self._forces(rest, outputs) if outputs is not None else loads
+            return loads if outputs is None else swept(outputs)
+
+        def swept(found: FloatArray) -> FloatArray:
+            return self._forces(rest, alone, found[:, :6], found[:, 6:8])[:, :2]
 
         if rest and outputs is not None:
-            relax(respond, self._forces(rest, outputs), "hull", self.scale(struts)[:2])
+            relax(respond, swept(outputs), "hull", self.scale(struts)[:2])
         if outputs is None:
             self._check_unsettled()
             return None
-        return marched_state(course), outputs[:, 6:8] + course.loads[LOAD_DEGREE:, :2]
+        force = outputs[:, 6:8] + course.loads[LOAD_DEGREE:, :2]
+        return marched_state(course), self.whole(outputs[:, :6], force)
 
     def _check_unsettled(self) -> None:
         """Refuse a clearance that the march could not solve: sweeps cannot either."""
@@ -139,9 +147,15 @@ class BlockForces:
                 "sample faster, or make the gauges softer"
             )
 
-    def _forces(self, laws: tuple[Acting, ...], outputs: FloatArray) -> FloatArray:
-        at_struts = ModelMotion(*np.split(outputs[:, :8], 4, axis=1))
-        return law_forces(laws, None, self.system, at_struts, self.instants)
+    def _forces(
+        self,
+        laws: tuple[Acting, ...],
+        numbers: FloatArray,
+        motion: FloatArray,
+        linear: FloatArray,
+    ) -> FloatArray:
+        at_struts = ModelMotion(motion[:, :2], motion[:, 2:4], motion[:, 4:], linear)
+        return law_forces(laws, numbers, self.system, at_struts, self.instants)
 
     def course(self, state: HullState, struts: FloatArray, known: int) -> "Course":
         """Return what a march over the block starts from and is given."""
@@ -168,7 +182,6 @@ class BlockForces:
         """Return the state at a run's first sample: mounting and water at rest under the load."""
         first = BlockForces(
             self.laws,
-            self.cross_flow,
             self.system,
             self.instants._replace(
                 time_s=self.instants.time_s[:1], speed_m_s=self.instants.speed_m_s[:1]
@@ -188,18 +201,10 @@ class BlockForces:
     def _loads(self, motion: FloatArray, linear: FloatArray) -> FloatArray:
         """Return what is no part of the linear system, at this motion of the model."""
         loads = np.zeros((len(motion), 4))
-        position, velocity, acceleration = motion[:, :2], motion[:, 2:4], motion[:, 4:]
-        if self._loaded:
-            at_struts = ModelMotion(position, velocity, acceleration, linear)
-            loads[:, :2] = law_forces(
-                self.laws, self.cross_flow, self.system, at_struts, self.instants
-            )
+        loads[:, :2] = self._forces(self.laws, self.system.numbers, motion, linear)[:, :2]
         extra = self._extra
         if extra.any():
-            by_position, by_velocity = self.system.speed_loads
-            added = position @ by_position.T + velocity @ by_velocity.T
-            loads[:, :2] += extra[:, np.newaxis] * added
-            loads[:, 2:] = extra[:, np.newaxis] * (position @ self.system.turn.T)
+            loads[:, 2:] = extra[:, np.newaxis] * (motion[:, :2] @ self.system.turn.T)
         return loads
 
     def scale(self, struts: FloatArray) -> FloatArray:

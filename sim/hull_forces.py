@@ -1,19 +1,28 @@
-"""The forces on the model that its linear system does not have: laws, and a varying speed."""
+"""The forces on the model that its linear system does not have: exact geometry, and laws."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from sim import geometry
 from sim.acting import Acting, Point
 from sim.corners import nodes_between
+from sim.hull_numbers import (
+    corners_only,
+    geometry_only,
+    has_corners,
+    moving,
+    readings,
+    without_corners,
+)
 from sim.hull_system import HullSystem
 from sim.laws import Motion
 from sim.linear import ComplexArray, Rows, as_rows
 from sim.period import Period
 from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
-from sim.water.force_laws import cubic_loads, quadratic_loads
 
 
 @dataclass(frozen=True)
@@ -34,15 +43,6 @@ class CrossFlow:
     def scaled(self, factor: float) -> "CrossFlow":
         """Return loads that are larger by a factor."""
         return CrossFlow(_times(self.cubic, factor), _times(self.quadratic, factor))
-
-    def loads(self, velocity: FloatArray) -> FloatArray:
-        """Return force and moment, shape ``(2, samples)``, for velocities of that shape."""
-        total = np.zeros_like(velocity)
-        if self.cubic is not None:
-            total += cubic_loads(self.cubic, velocity)
-        if self.quadratic is not None:
-            total += quadratic_loads(self.quadratic, velocity)
-        return total
 
 
 def _times(rows: Rows | None, factor: float) -> Rows | None:
@@ -68,37 +68,41 @@ class Instants(NamedTuple):
 
 def law_forces(
     laws: tuple[Acting, ...],
-    cross_flow: CrossFlow | None,
+    numbers: FloatArray,
     system: HullSystem,
     motion: ModelMotion,
     instants: Instants,
 ) -> FloatArray:
-    """Return the force of each strut that the laws and a drift angle ask for, ``(samples, 2)``."""
-    total = np.zeros_like(motion.position)
+    """Return what the struts exert beyond the linear parts: aft, fore, along, ``(samples, 3)``.
+
+    Along the model there is no linear part, so that is the whole force, but for the laws': friction
+    and springs act across. A law of the model's motion through the water acts across the model at
+    its reference point, at its exact velocity.
+
+    Parameters
+    ----------
+    numbers
+        Of the hull: the system's, or a part of them (:mod:`sim.hull_numbers`).
+    """
+    moves = np.concatenate(motion[:3], axis=1)
+    at = moving(numbers, moves, instants.speed_m_s)
+    total, across = np.zeros((len(moves), 3)), np.zeros(len(moves))
     for acting in laws:
-        along, at_point = at(acting.point, system, motion, instants)
-        total += acting.law.force(at_point)[:, np.newaxis] * along
-    flow = instants.speed_m_s[:, np.newaxis]
-    if cross_flow is not None:
-        incidence = motion.position @ system.incidence.T + flow * system.drift
-        velocity = motion.velocity @ system.to_motion.T + incidence
-        total += cross_flow.loads(velocity.T).T @ system.to_motion
-    return total + flow * system.drift_load
-
-
-def at(
-    point: Point, system: HullSystem, motion: ModelMotion, instants: Instants
-) -> tuple[FloatArray, Motion]:
-    """Return the direction of a point's motion in strut coordinates, and that motion."""
-    along, load = direction(point, system.to_motion)
-    velocity, acceleration = motion.velocity @ along, motion.acceleration @ along
-    if point is Point.THROUGH_WATER:
-        velocity = velocity + motion.position @ system.incidence[0]
-        velocity = velocity + instants.speed_m_s * system.drift[0]
-        acceleration = acceleration + motion.velocity @ system.incidence[0]
-    return along, Motion(
-        motion.position @ along, velocity, acceleration, motion.load @ load, *instants
-    )
+        along, share = direction(acting.point, system.to_motion)
+        velocity, acceleration = motion.velocity @ along, motion.acceleration @ along
+        through = acting.point is Point.THROUGH_WATER
+        if through:
+            velocity, acceleration = at.v, at.v_rate
+        force = acting.law.force(
+            Motion(motion.position @ along, velocity, acceleration, motion.load @ share, *instants)
+        )
+        if through:
+            across += force
+        else:
+            total[:, :2] += force[:, np.newaxis] * along
+    total += readings(numbers, at, across) - numbers[geometry.AT_REST, :3]
+    total[:, :2] -= moves @ numbers[geometry.LINEAR : geometry.LINEAR + 2, :6].T
+    return total
 
 
 def direction(point: Point, to_motion: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -112,13 +116,12 @@ def direction(point: Point, to_motion: FloatArray) -> tuple[FloatArray, FloatArr
 
 def law_harmonics(
     laws: tuple[Acting, ...],
-    cross_flow: CrossFlow | None,
     system: HullSystem,
     waves: ComplexArray,
     period: Period,
     speed_m_s: float,
 ) -> ComplexArray:
-    """Return the harmonics of :func:`law_forces` over a period, shape ``(orders + 1, 2)``.
+    """Return the harmonics of :func:`law_forces` over a period, shape ``(orders + 1, 3)``.
 
     What jumps or bends is integrated between its corners, all else at the period's points.
 
@@ -130,23 +133,21 @@ def law_harmonics(
     """
     laws = tuple(one for one in laws if one.law.periodic)
     smooth = tuple(one for one in laws if not one.law.corners)
-    at_points = ModelMotion(*np.split(period.values(waves), 4, axis=1))
+    values = period.values(waves)
+    at_points = ModelMotion(*np.split(values, 4, axis=1))
     instants = Instants(period.time_s, period.step_s, np.full(period.points, speed_m_s))
-    found = period.harmonics(law_forces(smooth, None, system, at_points, instants))
-    alone = replace(system, drift_load=np.zeros(2))
-    orders = np.arange(len(waves))
-    for one in (*(one for one in laws if one.law.corners), cross_flow):
-        if one is None:
-            continue
-        signals, corners = _cornered(one, system, waves, speed_m_s)
+    numbers = system.numbers
+    found = period.harmonics(
+        law_forces(smooth, without_corners(numbers), system, at_points, instants)
+    )
+    at = moving(numbers, values[:, :6], instants.speed_m_s)
+    through = period.harmonics(np.stack([at.v, at.r, at.v_rate], axis=1))
+    for own, part, signals, corners in _cornered(laws, system, np.hstack([waves, through])):
         phase, weight = nodes_between(signals, corners, period.points)
-        turned = np.exp(1j * np.outer(phase, orders))
+        turned = np.exp(1j * np.outer(phase, np.arange(len(waves))))
         motion = ModelMotion(*np.split((turned @ waves).real, 4, axis=1))
         instants = Instants(phase / period.omega_rad_s, 0.0, np.full(phase.size, speed_m_s))
-        if isinstance(one, CrossFlow):
-            force = law_forces((), one, alone, motion, instants)
-        else:
-            force = law_forces((one,), None, alone, motion, instants)
+        force = law_forces(own, part, system, motion, instants)
         added = 2.0 * (turned.conj() * weight[:, np.newaxis]).T @ force
         added[0] = added[0].real / 2.0
         found += added
@@ -154,19 +155,38 @@ def law_harmonics(
 
 
 def _cornered(
-    one: Acting | CrossFlow, system: HullSystem, waves: ComplexArray, speed_m_s: float
-) -> tuple[ComplexArray, FloatArray]:
-    """Return the harmonics of what a force depends on, a row each, and its corners."""
-    h, velocity, acceleration, load = np.split(waves, 4, axis=1)
-    flow = np.zeros(len(waves))
-    flow[0] = speed_m_s
-    if isinstance(one, CrossFlow):
-        through = velocity @ system.to_motion.T + h @ system.incidence.T
-        through = through + flow[:, np.newaxis] * system.drift
-        return through.T, np.array([[0.0, 0.0], [1.0, 0.0]])
-    along, share = direction(one.point, system.to_motion)
-    v, a = velocity @ along, acceleration @ along
-    if one.point is Point.THROUGH_WATER:
-        v = v + h @ system.incidence[0] + flow * system.drift[0]
-        a = a + velocity @ system.incidence[0]
-    return np.stack([h @ along, v, a, load @ share]), np.array(one.law.corners, dtype=float)
+    laws: tuple[Acting, ...], system: HullSystem, waves: ComplexArray
+) -> Iterator[tuple[tuple[Acting, ...], FloatArray, ComplexArray, FloatArray]]:
+    """Yield each force with corners: laws and numbers that have it alone, what it depends on.
+
+    Of that the harmonics, a row each, and the corners.
+
+    Parameters
+    ----------
+    waves
+        With those of the velocities v and r and the acceleration v' as the last three columns.
+    """
+    for one in laws:
+        if one.law.corners:
+            signals = arguments_of(one, system) @ waves.T
+            corners = np.array(one.law.corners, dtype=float)
+            yield (one,), geometry_only(system.numbers), signals, corners
+    if has_corners(system.numbers):
+        corners = np.array([[0.0, 0.0], [1.0, 0.0]])
+        yield (), corners_only(system.numbers), waves[:, 8:10].T, corners
+
+
+def arguments_of(acting: Acting, system: HullSystem) -> FloatArray:
+    """Return what a law depends on, shape ``(4, 11)``.
+
+    Rows are position, velocity, acceleration and load (:class:`sim.force_law.Argument`); columns
+    h, h', h'' and the linear load at both struts, then v, r and v' through the water.
+    """
+    along, share = direction(acting.point, system.to_motion)
+    found = np.zeros((4, 11))
+    found[0, :2], found[3, 6:8] = along, share
+    if acting.point is Point.THROUGH_WATER:
+        found[1, 8] = found[2, 10] = 1.0
+    else:
+        found[1, 2:4] = found[2, 4:6] = along
+    return found

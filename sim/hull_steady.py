@@ -20,7 +20,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class HullSteady:
-    """A model over one period, at its mean speed. All harmonics have shape ``(orders + 1, 2)``."""
+    """A model over one period, at its mean speed.
+
+    Harmonics of the struts have shape ``(orders + 1, 2)``, of forces ``(orders + 1, 3)``: aft, fore
+    and along the model. ``laws`` are what :func:`sim.hull_forces.law_forces` asks for.
+    """
 
     hull: "Hull"
     period: Period
@@ -35,16 +39,12 @@ class HullSteady:
         """What the model gives way per rigid load, as large; ``None`` for a rigid mounting."""
         return _mounting_gain(self.hull.system, self.impedance, self.period)
 
-    @property
-    def has_laws(self) -> bool:
-        """Whether anything is not linear."""
-        hull = self.hull
-        return bool(hull.laws) or hull.cross_flow is not None or hull.system.drifts
-
     def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
-        """Return the force of each strut where the laws ask for ``laws``."""
+        """Return the forces where the laws ask for ``laws``."""
         h = self._model(y, laws)
-        return _apply(self.impedance, h) + laws
+        found = laws.copy()
+        found[:, :2] += _apply(self.impedance, h)
+        return found
 
     def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return what the laws ask for where the model gives way to ``laws``."""
@@ -56,7 +56,6 @@ class HullSteady:
         hull = self.hull
         return law_harmonics(
             hull.laws,
-            hull.cross_flow,
             hull.system,
             waves,
             self.period,
@@ -65,20 +64,27 @@ class HullSteady:
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
         """Return what the laws ask for, in balance with what the mounting gives way."""
-        nothing = np.zeros_like(y)
-        if not self.has_laws:
-            return nothing
         found = None if self._compiled is None else self._compiled.balanced(y)
         if found is not None:
             return found
-        start = self.laws(y, nothing)
-        return start if self.give is None else relax(lambda at: self.laws(y, at), start, "hull")
+        start = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
+        if self.give is None:
+            return start
+        return relax(lambda at: self.laws(y, at), start, "hull", self.scale(y, start))
+
+    def scale(self, y: ComplexArray, laws: ComplexArray) -> float:
+        """Return what a change of the laws counts relative to: them, or the linear force.
+
+        By the rounding of the linear force all of what is beyond it is off.
+        """
+        linear = _apply(self.impedance, y)
+        return float(max(np.abs(laws).max(), np.abs(linear).max()))
 
     def _model(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return the motion of the model at the struts."""
         if self.give is None:
             return y
-        return y + _apply(self.give, _apply(self.impedance, y) + laws)
+        return y + _apply(self.give, _apply(self.impedance, y) + laws[:, :2])
 
     @cached_property
     def _compiled(self) -> "LawBalance | None":

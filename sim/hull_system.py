@@ -7,7 +7,8 @@ and v the velocity through the water, v = T h' + U S T h:
     xi' = A_m xi + B_m (v + g)                    memory of the water
     M_e p'' + C_e p' + K_e p = - E^T F            mounting
 
-f are the forces that are no part of the linear system, and g the velocity through the water that a
+f are the forces that are no part of the linear system: those of laws, and what the exact geometry
+asks for beyond M, B and C, its slopes at small angles. g is the velocity through the water that a
 carriage adds which is not at its mean speed. Where the gauges' joints have a clearance, c is what
 their springs then have too much, on the right of the last line. The states are (p, p', xi).
 """
@@ -37,13 +38,10 @@ class HullSystem:
         Mean carriage speed U.
     turn
         The velocity through the water that a displacement gives per unit of speed: S T.
-    speed_loads
-        Forces per unit of speed beyond the mean, and per displacement and velocity.
-    drift, drift_load
-        The steady velocity through the water that a drift angle gives per unit of speed, and the
-        force of each strut that it asks for, shape ``(2,)``.
+    numbers
+        Of the exact geometry and loads (:mod:`sim.geometry`), which f has beyond M, B and C.
     to_motion
-        T: from the struts to translation and rotation.
+        T: from the struts to translation and rotation, at small angles.
     joint
         The clearance of the gauges, which are the first two elastic coordinates then.
     """
@@ -53,9 +51,7 @@ class HullSystem:
     stiffness: FloatArray
     speed_m_s: float
     turn: FloatArray
-    speed_loads: tuple[FloatArray, FloatArray]
-    drift: FloatArray
-    drift_load: FloatArray
+    numbers: FloatArray
     to_motion: FloatArray
     radiation: Radiation
     elastic: Elastic
@@ -70,11 +66,6 @@ class HullSystem:
     def states(self) -> int:
         """Number of states: 2 r and those of the memory."""
         return 2 * self.elastic_count + self.radiation.states
-
-    @cached_property
-    def drifts(self) -> bool:
-        """Whether the model is set at a drift angle."""
-        return bool(self.drift.any())
 
     @cached_property
     def incidence(self) -> FloatArray:

@@ -247,38 +247,6 @@ class Tone(ForceLaw):
         return tone
 
 
-@dataclass(frozen=True)
-class ArcSine(ForceLaw):
-    """What a couple at struts on parallel lines has more than one that is linear in their motion.
-
-    With u the difference of the struts over their spacing, the model turns by asin(u), and the
-    struts' couple is that of the model over cos(asin(u)).
-
-    Attributes
-    ----------
-    inertia_kg_m2, damping_n_m_s, stiffness_n_m
-        Of the model's rotation with the water, at constant coefficients.
-    """
-
-    inertia_kg_m2: float
-    damping_n_m_s: float
-    stiffness_n_m: float
-
-    def force(self, motion: Motion) -> FloatArray:
-        """Return the couple."""
-        u, rate = motion.position, motion.velocity
-        cosine = np.sqrt(1.0 - u**2)
-        angle, turning = np.arcsin(u), rate / cosine
-        growing = motion.acceleration / cosine + u * rate**2 / cosine**3
-        beyond: FloatArray = (
-            self.inertia_kg_m2 * (growing - motion.acceleration)
-            + self.damping_n_m_s * (turning - rate)
-            + self.stiffness_n_m * (angle - u)
-        )
-        couple: FloatArray = (motion.load + beyond) / cosine - motion.load
-        return couple
-
-
 def _dynamic(motion: Motion, reference_speed_m_s: float | None) -> FloatArray | float:
     """Return (U/U_0)^2, or 1 where the law does not depend on the speed."""
     if reference_speed_m_s is None:

@@ -35,8 +35,7 @@ class ModelLoop(NamedTuple):
     from_states, from_struts, from_loads
         To the outputs: ``(n, 10)``, ``(6, 10)`` and ``(6, 10)``.
     by_speed
-        Forces per speed beyond the mean and per displacement (two rows), per velocity (two), and
-        velocities through the water per displacement (two): shape ``(6, 2)``.
+        Velocities through the water per speed beyond the mean and per displacement: ``(2, 2)``.
     gap
         Stiffness, half clearance and preload of the gauges' joints; a clearance of zero for none.
     """
@@ -228,7 +227,7 @@ def march(
     struts, states, loads, known = course.struts, course.states, course.loads, course.known
     step, before, after, by_loads = model.step, model.before, model.after, model.by_loads
     given, driven, told, torques = course.given, shaft.driven, shaft.told, shaft.torques
-    laws, cross_flow, by_speed, gap = table.laws, table.cross_flow, model.by_speed, model.gap
+    laws, hull, by_speed, gap = table.laws, table.hull, model.by_speed, model.gap
     instants, step_s, scale = course.instants, course.step_s, course.scale
     by_torque, numbers, cogging, shaft_gap = (
         shaft.at_once, shaft.numbers, shaft.cogging, shaft.gap
@@ -253,7 +252,7 @@ def march(
         else:
             add_struts(struts, k, work, 0)
         settled = settle(
-            laws, cross_flow, by_speed, gap, instants, step_s, given, struts, scale, driven, told,
+            laws, hull, by_speed, gap, instants, step_s, given, struts, scale, driven, told,
             by_torque, numbers, cogging, shaft_gap, links.rows, k, unknown, slope, work, room,
         )  # fmt: skip
         if not settled:

@@ -35,32 +35,30 @@ class Marching(NamedTuple):
 def periodic_laws(hull: "Hull") -> LawTable | None:
     """Return the laws that repeat as a table; ``None`` where they cannot be in one.
 
-    That is without numba, where a law has no number, and for a model at a drift angle, whose steady
-    velocity the table does not hold.
+    That is without numba, and where a law has no number.
     """
     laws = tuple(one for one in hull.laws if one.law.periodic)
-    known = all(has_number(one.law) for one in laws) and not hull.drift_rad
-    if not (available() and known):
+    if not (available() and all(has_number(one.law) for one in laws)):
         return None
-    return table_of(laws, hull.cross_flow, hull.system)
+    return table_of(laws, hull.system)
 
 
 @lru_cache(maxsize=64)
 def marching_of(hull: "Hull", step_s: float, needed: bool = False) -> Marching | None:
     """Return model and laws for the march; ``None`` where sweeps do instead.
 
-    Sweeps do without numba, and for a model at a drift angle. A clearance needs the march, compiled
-    or not. Laws that have no number are left out of the table; they are swept around the march.
+    Sweeps do without numba. A clearance needs the march, compiled or not. Laws that have no number
+    are left out of the table; they are swept around the march.
 
     Parameters
     ----------
     needed
         True where something else than the model needs the march.
     """
-    if hull.drift_rad or not (available() or needed or hull.mounting.joint):
+    if not (available() or needed or hull.mounting.joint):
         return None
     laws = tuple(one for one in hull.laws if has_number(one.law))
-    table = table_of(laws, hull.cross_flow, hull.system)
+    table = table_of(laws, hull.system)
     return Marching(_model(hull.system, step_s), table)
 
 
@@ -88,7 +86,7 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
         np.hstack([by_states, opening]),
         np.hstack([by_struts, struts]),
         from_loads,
-        np.vstack([*system.speed_loads, system.turn]),
+        system.turn,
         gap,
     )
     return ModelLoop(*(np.array(one, dtype=np.float64, order="C") for one in arrays))

@@ -25,7 +25,7 @@ TOLERANCE: Final = 1e-13
 ROUNDING: Final = 1e-11  # changes below it that shrink no more are rounding
 MOST_SWEEPS: Final = 80
 LONGEST_SWEEP: Final = 1024  # samples that are swept together
-_DEPTH: Final = 4
+_DEPTH: Final = 12  # with 8 a motor that turns a model on springs to 25 degrees does not settle
 STALLED: Final = 3  # sweeps without a smaller change: mixing now and then makes one worse
 
 

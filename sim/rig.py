@@ -4,7 +4,9 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
+from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition import Acquisition, Digitiser
@@ -21,7 +23,7 @@ from sim.mechanism import Mechanism, Setting
 from sim.mounting import Mounting
 from sim.photocell import Photocell
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
-from sim.surge import Surge, SurgeForces
+from sim.surge import SurgeForces
 from sim.water.radiation import Radiation
 
 
@@ -85,8 +87,10 @@ class SimulatedRig:
         Raises
         ------
         ConfigurationError
-            If the oscillator cannot run the set-point.
+            If the oscillator cannot run the set-point, or has a turntable, or the struts would move
+            further apart than the model's attachments can reach.
         """
+        self._check_joint(set_point, drift_rad)
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -109,20 +113,25 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        along = () if self.acquisition.force_x is None else (self._surge(hull, set_point.medium),)
-        behind = (*along, self.dynamometers, self.acquisition)
+        behind = (self.dynamometers, self.acquisition)
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
-    def _surge(self, hull: Hull, medium: Medium) -> Surge:
-        return Surge(
-            hull.plane,
-            hull.half_spacing_m,
-            hull.body,
-            self.surge if medium is Medium.WATER else None,
-            hull.drift_rad,
-            hull.flow_factor,
-        )
+    def _check_joint(self, set_point: SetPoint, drift_rad: float) -> None:
+        if self.oscillator.joint is Joint.YAW_TABLE:
+            raise ConfigurationError(
+                'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
+                '"slides_on_model" or "slides_on_rig", which have two struts'
+            )
+        apart = abs(math.sin(set_point.strut_phase_rad / 2.0)) * set_point.eccentricity_m
+        sine = apart / self.oscillator.half_spacing_m
+        if self.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
+            sine += abs(math.sin(drift_rad))
+        if self.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:
+            raise ConfigurationError(
+                f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
+                "spacing (limit 1, where the model stands across); lower eccentricity_m"
+            )
 
     def _hull(self, medium: Medium, carriage_speed_m_s: float, drift_rad: float) -> Hull:
         in_water = medium is Medium.WATER
@@ -138,6 +147,9 @@ class SimulatedRig:
             carriage_speed_m_s * self.flow_factor,
             self.flow_factor,
             drift_rad,
+            self.oscillator.arrangement,
+            self.surge if in_water else None,
+            in_water,
         )
 
     def ideal(self) -> "SimulatedRig":

@@ -44,7 +44,7 @@ def joint_return(gap: FloatArray, opening: float) -> float:
 @compile_loop
 def _model_loads(
     laws: FloatArray,
-    cross_flow: FloatArray,
+    hull: FloatArray,
     by_speed: FloatArray,
     gap: FloatArray,
     instants: FloatArray,
@@ -57,14 +57,12 @@ def _model_loads(
     """Fill in row 0 of ``room``: the loads that belong to the outputs in row 1 of ``work``."""
     for j in range(given.shape[1]):
         room[0, j] = given[k, j]
-    law_force(laws, cross_flow, work, 1, instants[k, 0], step_s, instants[k, 2], room, 0)
+    law_force(laws, hull, work, 1, instants[k, 0], step_s, instants[k, 2], room, 0)
     extra = instants[k, 1]
     if extra != 0.0:
         for i in range(2):
             for j in range(2):
-                added = by_speed[i, j] * work[1, j] + by_speed[2 + i, j] * work[1, 2 + j]
-                room[0, i] += extra * added
-                room[0, 2 + i] += extra * by_speed[4 + i, j] * work[1, j]
+                room[0, 2 + i] += extra * by_speed[i, j] * work[1, j]
     if gap[1] > 0.0:
         for i in range(2):
             room[0, 4 + i] += joint_return(gap, work[1, 8 + i])
@@ -124,7 +122,7 @@ def _turn_shaft(
 @compile_loop
 def _respond(
     laws: FloatArray,
-    cross_flow: FloatArray,
+    hull: FloatArray,
     by_speed: FloatArray,
     gap: FloatArray,
     instants: FloatArray,
@@ -152,7 +150,7 @@ def _respond(
         for i in range(loads):
             total += unknown[i] * work[9 + i, j]
         work[1, j] = total
-    _model_loads(laws, cross_flow, by_speed, gap, instants, step_s, given, k, work, room)
+    _model_loads(laws, hull, by_speed, gap, instants, step_s, given, k, work, room)
     if driven:
         rest = numbers[0] * told[k, 2] - numbers[1] * (work[2, 2] - told[k, 2])
         room[0, loads] = _shaft_torque(numbers, cogging, work, room) + rest
@@ -204,7 +202,7 @@ def _change(scale: FloatArray, unknown: FloatArray, room: FloatArray) -> float:
 @compile_loop
 def settle(
     laws: FloatArray,
-    cross_flow: FloatArray,
+    hull: FloatArray,
     by_speed: FloatArray,
     gap: FloatArray,
     instants: FloatArray,
@@ -229,7 +227,7 @@ def settle(
     best, stalled = np.inf, 0
     for sweep in range(_MOST):
         _respond(
-            laws, cross_flow, by_speed, gap, instants, step_s, given, struts, driven, told,
+            laws, hull, by_speed, gap, instants, step_s, given, struts, driven, told,
             by_torque, numbers, cogging, shaft_gap, links, k, unknown, work, room,
         )  # fmt: skip
         largest = _change(scale, unknown, room)

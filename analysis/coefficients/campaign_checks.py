@@ -1,5 +1,6 @@
 """Consistency between runs: one quantity from two ways, with what both share cancelled."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +16,7 @@ from analysis.coefficients.campaign_records import (
     Entry,
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
 from analysis.coefficients.zero_frequency import extrapolate
 from analysis.motion import mass_matrix, weight_matrix
 from analysis.uncertainty import Contribution, UncertainValues, stacked
@@ -164,7 +165,7 @@ def restoring_pairs(cycles: Sequence[Cycle]) -> list[Pair]:
 def _serves(cycle: Cycle, column: int) -> bool:
     if cycle.frequency_hz == 0.0 or cycle.speed_m_s != 0.0 or cycle.body is None:
         return False
-    size = np.abs(cycle.run().motion.values * np.array([1.0, cycle.half_spacing_m]))
+    size = np.abs(cycle.at_struts)
     return bool(size[1 - column] <= _PURE * size[column])
 
 
@@ -180,13 +181,13 @@ def _restoring(cycles: Sequence[Cycle], row: int, column: int) -> Pair:
 
 def _stiffness(cycle: Cycle, row: int, column: int) -> UncertainValues:
     """Load in phase with the motion, over it, less the model's inertia and weight."""
-    run = cycle.run()
-    chosen = run.phasors.select((("translation", "rotation")[column], ("force", "moment")[row]))
+    chosen = cycle.phasors.select((at_order(MOTIONS[column], 1), at_order(LOADS[row], 1)))
     own, load = chosen.values
     ratio = load / own
-    body = run.body
+    body = cycle.body
     assert body is not None  # noqa: S101 - _serves saw to it
-    taken = weight_matrix(body, run.plane) - run.omega**2 * mass_matrix(body, run.plane)
+    square = (2.0 * math.pi * cycle.frequency_hz) ** 2
+    taken = weight_matrix(body, cycle.plane) - square * mass_matrix(body, cycle.plane)
     value = np.array([ratio.real - taken[row, column]])
     slope = np.array([-ratio / own, 1.0 / own])
     real = np.array([part for z in slope for part in (z.real, -z.imag)])

@@ -7,11 +7,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-import numpy as np
-
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.determined import told_apart
-from analysis.coefficients.model import Problem
+from analysis.coefficients.determined import moved_of, told_apart
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated import Stated
 from hardware.description.errors import ConfigurationError
@@ -166,15 +163,12 @@ def _by_amplitude(cycles: Sequence[Cycle], request: Request) -> list[Group]:
 
 def _told(cycles: Sequence[Cycle], form: Form) -> tuple[int, ...]:
     """Which motions' coefficients these runs determine."""
-    runs = tuple(cycle.run() for cycle in cycles)
-    velocity, _ = Problem(runs, form, (0, 1), np.ones((len(runs), 2))).velocities()
-    return told_apart(runs, velocity * np.array([1.0, runs[0].half_spacing_m]))
+    return told_apart(moved_of(cycles, form))
 
 
 def strut_amplitude(cycle: Cycle) -> float:
     """Return the larger amplitude of both struts, m."""
-    way, turn = cycle.run().motion.values
-    arm = turn * cycle.half_spacing_m
+    way, arm = cycle.at_struts
     return float(max(abs(way + arm), abs(way - arm)))
 
 

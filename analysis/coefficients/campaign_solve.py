@@ -1,7 +1,7 @@
 """One group of a campaign, solved: its entries of the table, and what was noticed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,16 +9,11 @@ from analysis.coefficients.campaign_nonlinear import SINGLE_RUN, nonlinear_fits,
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, Entry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
-from analysis.coefficients.cycle import CHANNELS, Cycle, at_order
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
-from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.coefficients.phasors import parts_of
-from analysis.coefficients.result import Coefficients
-from analysis.coefficients.solve import problem_of, solve
-from analysis.coefficients.stated import STATED
-from analysis.coefficients.uncertainty import monte_carlo, slopes
-from analysis.uncertainty import Contribution, UncertainValues, added, stacked
+from analysis.coefficients.linear import lacking_places, linear_fit
+from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 
@@ -45,71 +40,23 @@ def solve_group(group: Group, request: Request) -> Block:
 
 
 def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
-    runs = [cycle.run() for cycle in cycles]
+    missing = tuple(Missing(*one) for one in lacking_places(cycles, request.form))
     try:
-        result = solve(runs, request.form, stated=request.stated)
-    except DataError as error:
-        names = [name_of(place, cycles[0].plane, request.form) for place in PLACES]
-        missing = tuple(Missing(name, str(error)) for name in names)
+        found = linear_fit(cycles, request.form, request.stated)
+    except DataError:
         return Block((), UncertainValues(np.zeros(0)), no_trials(0), missing=missing)
-    uncertain = UncertainValues(result.values, _contributions(cycles, request))
-    entries = tuple(_entry(result, k) for k in range(len(result.names)))
-    trials = no_trials(len(entries))
-    if request.trials:
-        problem = problem_of(runs, request.form)
-        drawn = monte_carlo(
-            problem, request.stated, trials=request.trials, seed=request.seed, level=request.level
+    fit = found.fit
+    entries = tuple(
+        replace(
+            _fit_entry(LINEAR, fit, k),
+            unit=place.unit,
+            retained=float(found.retained[k]),
+            misfit=found.misfit,
         )
-        trials = TrialColumns(request.trials, drawn.standard_uncertainty, drawn.low, drawn.high)
-    missing = tuple(_lacking(result, cycles, request.form))
-    return Block(entries, uncertain, trials, missing=missing, flags=result.flags)
-
-
-def _lacking(result: Coefficients, cycles: Sequence[Cycle], form: Form) -> list[Missing]:
-    """Say of each coefficient that these runs do not tell which run would."""
-    found = []
-    for place in PLACES:
-        name = name_of(place, cycles[0].plane, form)
-        if name not in result.names:
-            try:
-                solve([cycle.run() for cycle in cycles], form, wanted=[name])
-            except DataError as error:
-                found.append(Missing(name, str(error)))
-    return found
-
-
-def _entry(result: Coefficients, k: int) -> Entry:
-    here = result.conditions
-    return Entry(
-        result.names[k],
-        result.units[k],
-        LINEAR,
-        here.frequency_hz,
-        here.speed_m_s,
-        here.translation_amplitude_m,
-        here.rotation_amplitude_rad,
-        here.runs,
-        float(result.retained[k]),
-        float(result.misfit),
+        for k, place in enumerate(found.places)
     )
-
-
-def _contributions(cycles: Sequence[Cycle], request: Request) -> tuple[Contribution, ...]:
-    """What every input adds, on the deviates of whole cycles, as non-linear fits use them too."""
-    problem = problem_of([cycle.run() for cycle in cycles], request.form)
-    by_phasor, by_stated = slopes(problem, request.stated)
-    rows, found = np.arange(len(by_phasor)), []
-    for k, cycle in enumerate(cycles):
-        slope = by_phasor[:, 2 * k * len(CHANNELS) : 2 * (k + 1) * len(CHANNELS)]
-        places = parts_of([cycle.phasors.index(at_order(name, 1)) for name in CHANNELS])
-        for source in cycle.phasors.sources:
-            parts = slope @ source.root[places]
-            found.append(Contribution(source.label, source.degrees_of_freedom, rows, parts))
-    for k, (name, spread) in enumerate(zip(STATED, request.stated.vector, strict=True)):
-        if spread > 0.0:
-            column = by_stated[:, k, None] * spread
-            found.append(Contribution(name, request.stated.freedom(name), rows, column))
-    return added(found)
+    trials = _fits_trials([(LINEAR, fit)], request)
+    return Block(entries, fit.uncertain, trials, missing=missing, flags=found.flags)
 
 
 def _fits_block(
@@ -145,7 +92,7 @@ def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> Tria
 
 def _fit_entry(method: str, fit: CycleFit, k: int) -> Entry:
     cycles = fit.problem.cycles
-    moving = [cycle.run().motion.values for cycle in cycles if cycle.frequency_hz > 0.0]
+    moving = [cycle.motion for cycle in cycles if cycle.frequency_hz > 0.0]
     size = np.abs(np.stack(moving)).max(axis=0) if moving else np.zeros(2)
     return Entry(
         fit.names[k],

@@ -7,11 +7,10 @@ omega) H`` for a harmonic H, so the reading is divided by it.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.measured import StrutRun
 from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
 from analysis.recording import Recording
 from hardware.description.channels import FORCES
@@ -72,28 +71,6 @@ class LowPass:
         return complex(np.polyval(above, s) / np.polyval(below, s))
 
 
-def without_response(run: StrutRun, responses: Mapping[str, Response]) -> StrutRun:
-    """Take known responses out of some channels.
-
-    Parameters
-    ----------
-    responses
-        By channel name; several of one channel in a chain are multiplied beforehand.
-
-    Raises
-    ------
-    ConfigurationError
-        If a channel is unknown.
-    DataError
-        If a channel lets less than a tenth of this harmonic through.
-    """
-    factors = np.ones(len(run.phasors.values), dtype=np.complex128)
-    found = response_factors(run.name, run.frequency_hz, run.order, responses)
-    for name, factor in found.items():
-        factors[run.phasors.index(name)] = factor
-    return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
-
-
 def response_factors(
     run: str, frequency_hz: float, order: int, responses: Mapping[str, Response]
 ) -> dict[str, complex]:
@@ -123,25 +100,6 @@ def response_at(response: Response, omega: float) -> complex:
     step_s = 0.0 if step is None or step is True else float(step)
     argument = complex(np.exp(1j * omega * step_s)) if step_s > 0.0 else 1j * omega
     return complex(np.asarray(response(argument)).item())
-
-
-def calibrated(run: StrutRun, matrix: FloatArray) -> StrutRun:
-    """Apply the calibration matrix of the two dynamometers: ``force = matrix @ reading``.
-
-    Parameters
-    ----------
-    matrix
-        Shape ``(2, 2)``, aft and fore: gains on the diagonal, cross-talk beside it.
-
-    Raises
-    ------
-    ConfigurationError
-        If its shape is another, or it is singular: two gauges would tell the same.
-    """
-    whole = np.eye(len(run.phasors.values))
-    places = [run.phasors.index(name) for name in FORCES]
-    whole[np.ix_(places, places)] = calibration(matrix)
-    return replace(run, phasors=run.phasors.mapped(whole))
 
 
 def calibration(matrix: FloatArray) -> FloatArray:
@@ -220,23 +178,3 @@ def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:
     count = len(before.offsets.values)
     first = before.offsets.mapped((1.0 - part) * np.eye(count))
     return first.minus(after.offsets.mapped(-part * np.eye(count)))
-
-
-def without_zero(run: StrutRun, offsets: Phasors) -> StrutRun:
-    """Take the zero runs' offsets off the means of a run (order 0).
-
-    Raises
-    ------
-    ConfigurationError
-        If the run holds a harmonic: an offset has no part in it.
-    """
-    if run.order != 0:
-        raise ConfigurationError(
-            f"{run.name}: an offset is taken off the mean, not off harmonic {run.order}"
-        )
-    count = len(run.phasors.values)
-    place = np.zeros((count, len(offsets.values)))
-    for k, name in enumerate(offsets.names):
-        place[run.phasors.index(name), k] = 1.0
-    whole = offsets.mapped(place, run.phasors.names, run.phasors.units)
-    return replace(run, phasors=run.phasors.minus(whole))

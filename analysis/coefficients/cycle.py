@@ -1,37 +1,52 @@
-"""The averaged cycle of a run: all harmonics of motion and loads together, mean included.
+"""The averaged cycle of a run in body axes: all harmonics of motion and loads, mean included.
 
 Non-linear terms are had from several harmonics at once, and these scatter together: one covariance
-holds all of them. Phasors are named ``translation 0``, ``translation 1`` ...; order 0 is real.
+holds all of them. Phasors are named ``force 0``, ``force 1`` ...; order 0 is real.
 """
 
+import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray, Phasors
-from analysis.coefficients.run import LOADS, MOTIONS, Run
+from analysis.coefficients.body_axes import at_order, labels
+from analysis.coefficients.hull_cycle import HullCycle, on_hull
+from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors
+from analysis.coefficients.stated import STATED
+from analysis.kinematics.averaged import CHANNELS
+from analysis.kinematics.cycle import INSTANTS
+from analysis.motion import mass_matrix, weight_matrix
 from hardware.description.body import Body
-from hardware.description.errors import DataError
-from hardware.description.flags import Flag
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
-CHANNELS = (*MOTIONS, *LOADS)
-SURGE_FORCE = "surge_force"
+MOTIONS = ("translation", "rotation")
+LOADS = ("force", "moment")
+SURGE_FORCE = CHANNELS[-1]
+_GAUGED = (*LOADS, SURGE_FORCE)
 
-
-def at_order(name: str, order: int) -> str:
-    """Return what a phasor of a cycle is called."""
-    return f"{name} {order}"
+_SAME_FREQUENCY = 5e-3
+_SAME_MOTION = 1e-2
 
 
 def _nothing() -> FloatArray:
     return np.zeros((2, 2))
 
 
+def _still() -> FloatArray:
+    return np.array([0.0, 1.0, 0.0])[:, None] * np.ones(INSTANTS)
+
+
 @dataclass(frozen=True, eq=False)
 class Cycle:
     """Motion and loads of the model about the midpoint, at the harmonics 0 to ``orders``.
+
+    The loads are gross, as the struts exerted them. What is known of them (the model's inertia and
+    weight, hydrostatic restoring) is named beside them and taken off in :attr:`hull`, so that an
+    uncertain mass or amplitude acts there as it does in truth.
 
     Attributes
     ----------
@@ -40,12 +55,25 @@ class Cycle:
     speed_m_s
         Of the carriage.
     phasors
-        By order: ``translation`` (m), ``rotation`` (rad), ``force`` (N), ``moment`` (N m) and,
-        where there is a gauge for it, ``surge_force`` (N, of the strut on the model, ahead).
+        By order, :data:`analysis.kinematics.averaged.CHANNELS`: displacement across the tank (m),
+        rotation from where the drift sets the model (rad), velocities through the water along and
+        across it (m/s), force (N), moment (N m) and, where there is a gauge for it, surge force (N)
+        of the struts on the model.
+    sensitivity
+        Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
     mean_known
         Whether zero runs were taken off, so that the means are loads of the water.
-    body, restoring, point_ahead_m, drift_rad
-        As in :class:`analysis.coefficients.run.Run`.
+    body
+        What is taken off as inertia and weight; ``None`` where nothing is (a dry run was).
+    restoring
+        Hydrostatic restoring that is taken off, N/m, N and N m; about the midpoint.
+    of_tare
+        Loads of what the gauges read of 1 N m at rest, shape ``(2 or 3, INSTANTS)``: that which a
+        zero run took off.
+    point_ahead_m
+        Where coefficients are wanted, ahead of the midpoint.
+    drift_rad
+        Steady heading of the model against the carriage's way, bow to starboard (bow up).
     """
 
     name: str
@@ -62,6 +90,8 @@ class Cycle:
     drift_rad: float = 0.0
     mean_known: bool = False
     flags: tuple[Flag, ...] = ()
+    sensitivity: FloatArray = field(default_factory=lambda: np.zeros((0, len(STATED))))
+    of_tare: FloatArray = field(default_factory=_still)
 
     @property
     def has_surge(self) -> bool:
@@ -69,64 +99,147 @@ class Cycle:
         return at_order(SURGE_FORCE, 0) in self.phasors.names
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The phasors' names in the order that fits work in: by order, then by channel."""
-        channels = (*CHANNELS, SURGE_FORCE) if self.has_surge else CHANNELS
-        return tuple(at_order(name, n) for n in range(self.orders + 1) for name in channels)
+    def channels(self) -> tuple[str, ...]:
+        """What there are phasors of."""
+        return CHANNELS if self.has_surge else CHANNELS[:-1]
 
-    def run(self, order: int = 1) -> Run:
-        """Return one harmonic as a run of its own."""
-        if not 0 <= order <= self.orders:
-            raise DataError(
-                f"{self.name} has harmonics 0 to {self.orders}, not {order}; resolve more of them"
-            )
-        chosen = self.phasors.select([at_order(name, order) for name in CHANNELS])
-        return Run(
-            self.name,
-            self.plane,
-            self.half_spacing_m,
-            self.frequency_hz,
-            self.speed_m_s,
-            self.medium,
-            replace(chosen, names=CHANNELS),
-            order,
-            self.body,
-            self.restoring,
-            self.point_ahead_m,
-            self.flags,
-            self.drift_rad,
+    @property
+    def motion_is_asked(self) -> bool:
+        """Whether the set-point's motion stands in for one that was not measured."""
+        return any(flag.code == "motion_from_set_point" for flag in self.flags)
+
+    @property
+    def motion(self) -> ComplexArray:
+        """Translation and rotation at the fundamental (of a static run none), shape ``(2,)``."""
+        return self._at(MOTIONS)
+
+    @property
+    def at_struts(self) -> ComplexArray:
+        """The same with the rotation's as a displacement at the struts, m."""
+        return np.asarray(self.motion * np.array([1.0, self.half_spacing_m]))
+
+    @property
+    def loads(self) -> ComplexArray:
+        """Force and moment at the fundamental, gross, shape ``(2,)``."""
+        return self._at(LOADS)
+
+    @property
+    def taken(self) -> FloatArray:
+        """Sizes of what inertia, weight and restoring ask of the struts at the fundamental.
+
+        Of each, force and moment about the midpoint; shape ``(3, 2)``.
+        """
+        found = np.zeros((3, 2, 2))
+        if self.body is not None:
+            square = (2.0 * math.pi * self.frequency_hz) ** 2
+            found[0] = square * mass_matrix(self.body, self.plane)
+            found[1] = weight_matrix(self.body, self.plane)
+        found[2] = self.restoring
+        return np.abs(found @ self.motion)
+
+    def _at(self, names: tuple[str, ...], order: int = 1) -> ComplexArray:
+        if order > self.orders:
+            return np.zeros(len(names), dtype=np.complex128)
+        return self.phasors.values[[self.phasors.index(at_order(one, order)) for one in names]]
+
+    @cached_property
+    def hull(self) -> HullCycle:
+        """Motion through the water about the wanted point, and the water's loads on the hull."""
+        return on_hull(
+            self.phasors,
+            self.sensitivity if len(self.sensitivity) else self._insensitive(),
+            self.channels,
+            plane=self.plane,
+            frequency_hz=self.frequency_hz,
+            speed_m_s=self.speed_m_s,
+            drift_rad=self.drift_rad,
+            of_tare=self.of_tare,
+            body=self.body,
+            restoring=self.restoring,
+            point_ahead_m=self.point_ahead_m,
         )
 
+    def _insensitive(self) -> FloatArray:
+        return np.zeros((2 * len(self.phasors.names), len(STATED)))
+
     def without(self, body: Body | None = None, restoring: FloatArray | None = None) -> "Cycle":
-        """Return the cycle with what is to be taken off; see :meth:`Run.without`."""
-        run = self.run(min(1, self.orders)).without(body, restoring)
-        return replace(self, body=run.body, restoring=run.restoring)
+        """Return the cycle with what is to be taken off.
 
-    def without_dry(self, dry: "Cycle") -> "Cycle":
-        """Return the cycle less the harmonics of a run in still air with the same motion.
-
-        Each harmonic is turned by its own multiple of the angle between the two; the means stay,
-        because zero runs are what they are taken from.
+        Parameters
+        ----------
+        body
+            The model with all that moves below the dynamometers, about the midpoint.
+        restoring
+            Hydrostatic, shape ``(2, 2)``, about the midpoint.
 
         Raises
         ------
         ConfigurationError
-            As :meth:`Run.without_dry`.
+            If a dry run was taken off already, which holds the inertia.
         """
-        first = self.run(1)
-        flags = first.without_dry(dry.run(1)).flags
-        lever = np.array([1.0, self.half_spacing_m])
-        own, other = first.motion.values * lever, dry.run(1).motion.values * lever
-        ratio = np.vdot(other, own) / np.vdot(other, other)
+        if body is not None and any(flag.code == "dry_run_taken_off" for flag in self.flags):
+            raise ConfigurationError(
+                f"{self.name}: a dry run was taken off; the body's inertia must not be, again"
+            )
+        return replace(
+            self,
+            body=self.body if body is None else body,
+            restoring=self.restoring if restoring is None else np.asarray(restoring),
+        )
+
+    def without_dry(self, dry: "Cycle") -> "Cycle":
+        """Return the cycle less the loads of a run in still air with the same motion.
+
+        They are scaled by the ratio of the motions, and each harmonic is turned by its own multiple
+        of the angle between the two; the means stay, because zero runs are what they are taken
+        from.
+
+        Raises
+        ------
+        ConfigurationError
+            If the dry run is not one: in water, another frequency or motion.
+        """
+        self._check_dry(dry)
+        wet, own = self.at_struts, dry.at_struts
+        ratio = np.vdot(own, wet) / np.vdot(own, own)
+        left = np.abs(wet - ratio * own).max() / np.abs(wet).max()
+        if left > _SAME_MOTION or abs(abs(ratio) - 1.0) > 0.1:
+            raise ConfigurationError(
+                f"{self.name}: dry run {dry.name} moved {abs(ratio):.3g} times as far with "
+                f"{100 * left:.2g} % in another motion (limits 0.9 to 1.1 and "
+                f"{100 * _SAME_MOTION:g} %); run it with the same set-point"
+            )
         scale = np.zeros((len(self.phasors.names), len(dry.phasors.names)), dtype=np.complex128)
         for n in range(1, min(self.orders, dry.orders) + 1):
-            for name in LOADS:
-                place = self.phasors.names.index(at_order(name, n))
-                turn = abs(ratio) * np.exp(1j * n * np.angle(ratio))
+            turn = abs(ratio) * np.exp(1j * n * np.angle(ratio))
+            for name in (
+                one for one in CHANNELS[4:] if one in self.channels and one in dry.channels
+            ):
+                place = self.phasors.index(at_order(name, n))
                 scale[place, dry.phasors.index(at_order(name, n))] = turn
         taken = dry.phasors.shared.mapped(scale, self.phasors.names, self.phasors.units)
-        return replace(self, phasors=self.phasors.minus(taken), flags=flags)
+        text = f"the loads of dry run {dry.name} were taken off"
+        flag = Flag("dry_run_taken_off", Severity.NOTE, text)
+        return replace(self, phasors=self.phasors.minus(taken), flags=(*self.flags, flag))
+
+    def _check_dry(self, dry: "Cycle") -> None:
+        faults = []
+        if dry.medium is not Medium.AIR:
+            faults.append("it was run in water")
+        if self.body is not None or dry.body is not None:
+            faults.append("the body's inertia is taken off as well")
+        if dry.plane is not self.plane:
+            faults.append("its plane is another")
+        if abs(dry.frequency_hz / self.frequency_hz - 1.0) > _SAME_FREQUENCY:
+            faults.append(f"it ran at {dry.frequency_hz:g} Hz, not {self.frequency_hz:g} Hz")
+        if faults:
+            raise ConfigurationError(
+                f"{self.name}: {dry.name} cannot be its dry run: {'; '.join(faults)}"
+            )
 
     def about(self, ahead_m: float) -> "Cycle":
         """Return the cycle with its coefficients wanted about a point ahead of the midpoint."""
         return replace(self, point_ahead_m=ahead_m)
+
+
+__all__ = ["LOADS", "MOTIONS", "SURGE_FORCE", "Cycle", "at_order", "labels"]

@@ -7,11 +7,11 @@ import numpy as np
 
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_model import CycleProblem
-from analysis.coefficients.phasors import ComplexArray
 from analysis.coefficients.terms import SURGE, Term, name_of_term
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
 
+_STILL = 1e-3  # of a term's typical size: pure yaw has less of v v r than this up to 20 degrees
 _APART = 1e-2  # least over greatest singular value of the terms' scaled columns
 
 
@@ -53,35 +53,28 @@ def _unfit(cycle: Cycle, first: Cycle) -> Iterator[str]:
         yield f"{cycle.name} has values that are not finite; leave the run out"
 
 
-def check_determined(problem: CycleProblem, design: ComplexArray) -> None:
+def check_determined(problem: CycleProblem) -> None:
     """Refuse terms that the cycles cannot tell apart.
-
-    Parameters
-    ----------
-    design
-        The terms' phasors, shape ``(cycles, orders, terms)``.
 
     Raises
     ------
     DataError
         Naming the terms of each load that go together and what run would tell them apart.
     """
-    for row in sorted({term.row for term in problem.terms}):
-        columns = [k for k, term in enumerate(problem.terms) if term.row == row]
+    for row, columns in problem.rows:
         if row == SURGE and not all(cycle.has_surge for cycle in problem.cycles):
             lacking = [cycle.name for cycle in problem.cycles if not cycle.has_surge]
             raise DataError(
                 f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
             )
-        flat = design[..., columns].reshape(-1, len(columns))
-        matrix = np.concatenate((flat.real, flat.imag))
+        matrix = problem.weighted(problem.nominal[0][..., columns], row)
         _check_apart(problem, matrix, [problem.terms[k] for k in columns])
 
 
 def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -> None:
     plane, runs = problem.cycles[0].plane, ", ".join(cycle.name for cycle in problem.cycles)
     size = np.sqrt((matrix**2).sum(axis=0))
-    still = [t for t, s in zip(terms, size, strict=True) if not s > 1e-9 * _typical(t, problem)]
+    still = [t for t, s in zip(terms, size, strict=True) if not s > _STILL * _typical(t, problem)]
     if still:
         names = ", ".join(name_of_term(term, plane) for term in still)
         raise DataError(
@@ -102,11 +95,12 @@ def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -
 
 def _typical(term: Term, problem: CycleProblem) -> float:
     """Size of a term if both motions moved the struts as much as the greatest one does."""
-    velocity, omega = problem.linear.velocities()
     half = problem.cycles[0].half_spacing_m
-    pace = float(np.abs(velocity * np.array([1.0, half])).max())
+    across, turn = np.abs(problem.moved[:, 1:3]).max(axis=(0, 2))
+    pace = float(max(across, half * turn))
+    omega = 2.0 * np.pi * max(cycle.frequency_hz for cycle in problem.cycles)
     turning = sum("r" in factor.replace("dot", "") for factor in term.factors)
-    return float(pace**term.degree * omega.max() ** term.rates / half**turning)
+    return float(pace**term.degree * omega**term.rates / half**turning)
 
 
 def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:

@@ -1,39 +1,43 @@
-"""Terms of a manoeuvring model from whole cycles: one linear fit, one function of all uncertain.
+"""Terms of a manoeuvring model from whole cycles: one linear fit, and how it follows all numbers.
 
-The velocity through the water is put together over the cycle from its measured harmonics, each term
-is evaluated there and taken apart into harmonics again, and the loads' harmonics are fitted with
-them. A pure sway of ``V sin`` gives ``Y_vvv`` 3/4 V^3 at the first harmonic and 1/4 V^3 at the
-third; nothing of this is written down by hand, so mixed motions, drift and cranks are the same.
+Each term is evaluated over the cycle, in body axes, and taken apart into harmonics, and the loads'
+harmonics are fitted with them. A pure sway of ``V sin`` gives ``Y_vvv`` 3/4 V^3 at the first
+harmonic and 1/4 V^3 at the third; nothing of this is written down by hand, so mixed motions, drift,
+cranks and angles of any size are the same. The least squares' own derivative is exact:
+
+    dx = N^-1 (A' (dy - dA x) + dA' (y - A x))        N = A' A, weights in A and y
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.least_squares import least_squares
-from analysis.coefficients.model import Problem
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import (
-    ComplexArray,
-    FloatArray,
-    from_interleaved,
-    interleaved,
-    parts_of,
-)
+from analysis.coefficients.phasors import FloatArray, interleaved
 from analysis.coefficients.stated import STATED
-from analysis.coefficients.terms import SURGE, Term, waves_of
-from hardware.description.oscillator import Plane
+from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
+from analysis.coefficients.terms import Term
+from analysis.kinematics.averaged import CHANNELS
+from analysis.kinematics.cycle import basis, mean
 
 DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB
-_INSTANTS = 64  # |v|v folds back 1e-5 of itself, cubic terms nothing
+_LOADS = 4
+"""Where the loads begin among the channels."""
+_AHEAD, _ROTATION, _TRANSLATION = 2, 1, 0
+_WORKED_OUT = ("parts", "moved", "nominal", "apart", "real", "_slopes", "_omega")  # without weights
+_ACROSS = {Form.MANOEUVRING: 3, Form.SEAKEEPING: _TRANSLATION}
 
 
 @dataclass(frozen=True, eq=False)
 class CycleProblem:
     """Cycles of one plane on one oscillator, and the terms that are sought from them.
+
+    The numbers of a cycle are its hull's phasors, real and imaginary part in turn, order by order,
+    and last the relative error of its frequency.
 
     Attributes
     ----------
@@ -45,6 +49,8 @@ class CycleProblem:
         One over the standard deviation, shape ``(cycles, orders, 3)``: force, moment, surge.
     highest
         Harmonic of the motion that is taken into account: all cycles have it.
+    form
+        Which velocity goes with the translation: through the water, or across the tank.
     """
 
     cycles: tuple[Cycle, ...]
@@ -52,194 +58,216 @@ class CycleProblem:
     orders: tuple[int, ...]
     weights: FloatArray
     highest: int
+    form: Form = Form.MANOEUVRING
 
-    @property
-    def per_cycle(self) -> int:
-        """Real numbers of each cycle, surge force included."""
-        return 2 * (len(CHANNELS) + 1) * (self.highest + 1)
-
-    @property
-    def linear(self) -> Problem:
-        """Every harmonic of every cycle as a run: corrections and what is taken off."""
-        return _linear(self.cycles, self.highest)
-
-    def places(self, cycle: Cycle) -> list[int]:
-        """Where the fit's phasors stand among a cycle's; -1 for a surge force not measured."""
-        names = [
-            at_order(name, n) for n in range(self.highest + 1) for name in (*CHANNELS, SURGE_FORCE)
-        ]
-        known = {name: k for k, name in enumerate(cycle.phasors.names)}
-        return [known.get(name, -1) for name in names]
-
-    def measured(self, cycle: Cycle) -> tuple[list[int], list[int]]:
-        """Return which numbers of the fit a cycle has, and where they stand among its own."""
-        places = self.places(cycle)
-        have = [k for k, place in enumerate(places) if place >= 0]
-        return parts_of(have), parts_of([places[k] for k in have])
-
+    @cached_property
     def parts(self) -> FloatArray:
-        """Return the cycles' phasors as real numbers, shape ``(cycles, per_cycle)``."""
-        rows = []
-        for cycle in self.cycles:
-            places = np.array(self.places(cycle))
-            rows.append(interleaved(np.where(places < 0, 0.0, cycle.phasors.values[places])))
-        return np.stack(rows)
+        """The cycles' numbers, shape ``(cycles, numbers)``."""
+        return np.stack([self._filled(interleaved(one.hull.phasors.values), one)
+                         for one in self.cycles])  # fmt: skip
 
-    def solve(self, parts: FloatArray, deviations: FloatArray) -> FloatArray:
-        """Return the terms' coefficients of each trial, shape ``(trials, terms)``.
+    def filled(self, cycle: Cycle, rows: FloatArray) -> FloatArray:
+        """Return what stands by a cycle's own phasors as it stands by its numbers here.
+
+        Parameters
+        ----------
+        rows
+            Shape ``(2 n, k)``, to ``(numbers, k)``: a surge force not measured has nothing, nor has
+            the frequency.
+        """
+        return self._filled(rows, cycle)
+
+    def _filled(self, rows: FloatArray, cycle: Cycle) -> FloatArray:
+        shaped = rows.reshape(cycle.orders + 1, len(cycle.channels), 2, *rows.shape[1:])
+        count = self.highest + 1
+        found = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
+        found[:, : len(cycle.channels)] = shaped[:count]
+        return np.concatenate((found.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:]))))
+
+    def sensitivity(self, cycle: Cycle) -> FloatArray:
+        """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""
+        found = self.filled(cycle, cycle.hull.sensitivity)
+        found[-1, STATED.index("frequency_relative")] = 1.0
+        return found
+
+    def solve(self, parts: FloatArray) -> FloatArray:
+        """Return the terms' coefficients of each trial, ``(trials, terms)``.
 
         Parameters
         ----------
         parts
-            Shape ``(trials, cycles, per_cycle)``.
-        deviations
-            Of the stated quantities, shape ``(trials, len(STATED))``.
+            Shape ``(trials, cycles, numbers)``.
         """
-        return self.fit(*self.design(parts, deviations))
+        return self._solved(*self.design(parts))
 
-    def nominal_design(self) -> tuple[ComplexArray, ComplexArray]:
-        """Return :meth:`design` of the cycles as they are, with one trial."""
-        return self.design(self.parts()[None], np.zeros((1, len(STATED))))
+    def solve_nominal(self) -> FloatArray:
+        """Return the coefficients of the cycles as they are, ``(terms,)``."""
+        design, loads = self.nominal
+        return np.asarray(self._solved(design[None], loads[None])[0])
 
-    def fit(self, design: ComplexArray, loads: ComplexArray) -> FloatArray:
-        """Return the coefficients that fit loads best, by trial; shapes as :meth:`design`."""
+    def weighed(self, weights: FloatArray) -> "CycleProblem":
+        """Return the same problem, all that was worked out included, with other weights."""
+        found = replace(self, weights=weights)
+        known = {name: self.__dict__[name] for name in _WORKED_OUT if name in self.__dict__}
+        found.__dict__.update(known)
+        return found
+
+    def _solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
         found = np.empty((len(design), len(self.terms)))
-        for row in sorted({term.row for term in self.terms}):
-            columns = [k for k, term in enumerate(self.terms) if term.row == row]
-            matrix = _stack(self.weights[..., row, None] * design[..., columns])
-            target = _stack((self.weights[..., row] * loads[..., row])[..., None])
-            found[:, columns] = least_squares(matrix, target[..., 0])
+        for row, columns in self.rows:
+            matrix = self.weighted(design[..., columns], row)
+            target = self.weighted(loads[..., row, None], row)[..., 0]
+            found[:, columns] = least_squares(matrix, target)
         return found
 
-    def followed(
-        self, values: FloatArray, by_design: ComplexArray, by_load: ComplexArray
-    ) -> FloatArray:
-        """Return how fitted coefficients follow their design and loads, cycle by cycle.
+    def weighted(self, values: FloatArray, row: int) -> FloatArray:
+        """Return what stands by cycle and number, ``(..., cycles, 2 orders, k)``, as equations.
 
-        The least squares' own derivative, ``N^-1 (A' (dy - dA x) + dA' r)`` with the normal matrix
-        ``N = A' A`` and the residuals r, of which each cycle has its part of the sum.
-
-        Parameters
-        ----------
-        values
-            What :meth:`fit` found for the cycles as they are.
-        by_design, by_load
-            Changes of the design and of the loads, shapes as :meth:`design`.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape ``(trials, cycles, terms)``: the change by each cycle's part.
+        Weighted as one load's, all below each other: ``(..., equations, k)``.
         """
-        design, loads = self.nominal_design()
-        found = np.zeros((*by_design.shape[:2], len(values)))
-        for row in sorted({term.row for term in self.terms}):
-            columns = [k for k, term in enumerate(self.terms) if term.row == row]
-            weight = self.weights[..., row, None]
-            A, dA = weight * design[0][..., columns], weight * by_design[..., columns]
-            dy = weight[..., 0] * by_load[..., row]
-            left = weight[..., 0] * loads[0][..., row] - A @ values[columns]
-            pull = np.einsum("koc,jko->jkc", A.conj(), dy - dA @ values[columns])
-            pull = pull + np.einsum("jkoc,ko->jkc", dA.conj(), left)
-            flat = A.reshape(-1, len(columns))
-            normal = (flat.conj().T @ flat).real
-            scale = 1.0 / np.sqrt(np.diagonal(normal))
-            inverse = np.linalg.inv(normal * np.outer(scale, scale)) * np.outer(scale, scale)
-            found[..., columns] = pull.real @ inverse
-        return found
+        weighted = self._weight(row)[..., None] * values
+        return weighted.reshape(*values.shape[:-3], -1, values.shape[-1])
 
-    def design(
-        self, parts: FloatArray, deviations: FloatArray
-    ) -> tuple[ComplexArray, ComplexArray]:
-        """Return the terms' phasors and those of the loads on the hull.
+    @property
+    def rows(self) -> list[tuple[int, list[int]]]:
+        """Each load that has terms, and which."""
+        return [
+            (row, [k for k, term in enumerate(self.terms) if term.row == row])
+            for row in sorted({term.row for term in self.terms})
+        ]
+
+    def _weight(self, row: int) -> FloatArray:
+        """Of in phase and quadrature of each order, ``(cycles, 2 orders)``; a mean has but one."""
+        return np.repeat(self.weights[..., row], 2, axis=-1) * self.real
+
+    @cached_property
+    def real(self) -> FloatArray:
+        """1 for what is a number of a harmonic, 0 for a mean's quadrature; ``(2 orders,)``."""
+        return np.array([float(n > 0 or part == 0) for n in self.orders for part in (0, 1)])
+
+    @cached_property
+    def nominal(self) -> tuple[FloatArray, FloatArray]:
+        """:meth:`design` of the cycles as they are."""
+        return self._design(self.parts, self.moved)
+
+    @cached_property
+    def moved(self) -> FloatArray:
+        """:meth:`moves` of the cycles as they are."""
+        return self.moves(self.parts)
+
+    def design(self, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the terms' harmonics and those of the loads on the hull.
 
         Returns
         -------
         terms
-            Shape ``(trials, cycles, orders, terms)``.
+            Shape ``(trials, cycles, 2 orders, terms)``: in phase and quadrature of each order.
         loads
-            Shape ``(trials, cycles, orders, 3)``: force, moment, surge force.
+            Shape ``(trials, cycles, 2 orders, 3)``: force, moment, surge force; those of the
+            struts in the form that writes these.
         """
-        trials, cycles, count = len(parts), len(self.cycles), self.highest + 1
-        shaped = parts.reshape(trials, cycles, count, 2 * (len(CHANNELS) + 1))
-        four = shaped[..., : 2 * len(CHANNELS)].reshape(trials, cycles * count, -1)
-        velocity, load, omega = self.linear.reduce(four, deviations)
-        velocity = velocity.reshape(trials, cycles, count, 2)
-        rate = 1j * omega.reshape(trials, cycles, count, 1) * velocity
-        over = _instants(np.stack((velocity, rate), axis=-2))  # ..., (velocity, rate), 2, instants
-        waves = waves_of(self.terms, over[..., 0, :, :], over[..., 1, :, :])
-        surge = from_interleaved(shaped[..., 2 * len(CHANNELS) :])
-        surge = surge - self._surge_inertia(velocity, omega.reshape(*rate.shape[:3], 1), deviations)
-        hull = -np.concatenate((load.reshape(trials, cycles, count, 2), surge), axis=-1)
-        chosen = list(self.orders)
-        return _harmonics(waves, self.orders), hull[:, :, chosen]
+        return self._design(parts, self.moves(parts))
 
-    def _surge_inertia(
-        self, velocity: ComplexArray, omega: FloatArray, deviations: FloatArray
-    ) -> ComplexArray:
-        """What the gauge reads of the model's own ``m (-s a q - x_G q'^2)``.
+    def _design(self, parts: FloatArray, moves: FloatArray) -> tuple[FloatArray, FloatArray]:
+        waves = waves_of(self.terms, moves) @ self.apart
+        shaped = self._shaped(parts)[..., list(self.orders), _LOADS:, :]
+        loads = np.moveaxis(shaped, -1, -2).reshape(*parts.shape[:-1], -1, 3)
+        return np.moveaxis(waves, -1, -2), -self.form.sign * loads
 
-        With the midpoint's acceleration a across the tank, the rotation q, and s = +1 in the
-        vertical, -1 in the horizontal plane: the component of a along the turned model, which is
-        the ``m (u' - v r - x_G r^2)`` of the equations of motion.
+    @cached_property
+    def apart(self) -> FloatArray:
+        """What takes waves apart into the fitted harmonics, shape ``(instants, 2 orders)``."""
+        places = [2 * n + part for n in self.orders for part in (0, 1)]
+        return mean(max(self.orders) + 1)[:, places]
+
+    def _shaped(self, parts: FloatArray) -> FloatArray:
+        return parts[..., :-1].reshape(*parts.shape[:-1], self.highest + 1, len(CHANNELS), 2)
+
+    @cached_property
+    def _omega(self) -> FloatArray:
+        return np.array([2.0 * math.pi * one.frequency_hz for one in self.cycles])
+
+    @cached_property
+    def _made_of(self) -> tuple[tuple[int, int], ...]:
+        """Channel that each of the moves is of, and how often it is differentiated."""
+        across = _ACROSS[self.form]
+        first = int(across == _TRANSLATION)
+        return (_AHEAD, 0), (across, first), (_ROTATION, 1), (across, first + 1), (_ROTATION, 2)
+
+    def moves(self, parts: FloatArray) -> FloatArray:
+        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 5, instants)``."""
+        shaped = self._shaped(parts)
+        pace = self._omega * (1.0 + parts[..., -1])
+        found = []
+        for channel, times in self._made_of:
+            own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
+            found.append((pace**times)[..., None] * (own @ basis(self.highest + 1, times)))
+        return np.stack(found, axis=-2)
+
+    def residual_slopes(self, values: FloatArray, row: int) -> FloatArray:
+        """Return how one load's residuals follow a cycle's numbers, terms' values held.
+
+        Shape ``(cycles, 2 orders, numbers)``.
         """
-        shape = (*velocity.shape[:3], 1)
-        if not any(term.row == SURGE for term in self.terms):
-            return np.zeros(shape, dtype=np.complex128)
-        off = dict(zip(STATED, deviations.T, strict=True))
-        has, mass, arm, point, speed, cosine = self._along
-        speed = cosine * (speed + off["speed_m_s"][:, None])
-        side = 1.0 if self.cycles[0].plane is Plane.VERTICAL else -1.0
-        rate = 1j * omega * velocity
-        turn = velocity[..., 1]
-        across = rate[..., 0] - side * (speed[..., None] * turn - point[:, None] * rate[..., 1])
-        angle = turn / np.where(omega > 0.0, 1j * omega, np.inf)[..., 0]
-        waves = _instants(np.stack((across, angle, turn), axis=-1)[..., None, :])[..., 0, :, :]
-        mass = (mass + has * off["mass_kg"][:, None])[..., None]
-        arm = (arm + has * off["cg_x_m"][:, None])[..., None]
-        force = mass * (-side * waves[..., 0, :] * waves[..., 1, :] - arm * waves[..., 2, :] ** 2)
-        return _harmonics(force[..., None, :], tuple(range(shape[2])))
+        columns = dict(self.rows)[row]
+        pull = np.einsum("c,kcbt->kbt", values[columns], self._slopes[:, columns])
+        by_motion = self._by_numbers(pull[:, None] * self.apart.T[None, :, None, :])
+        return self._load_slope(row) - by_motion
 
-    @property
-    def _along(self) -> FloatArray:
-        """Whether there is a body, m, x_G, point, U and the drift's cosine, ``(6, cycles)``."""
-        rows = []
-        for one in self.cycles:
-            mass, arm = (0.0, 0.0) if one.body is None else (one.body.mass_kg, one.body.cg_x_m)
-            has, cosine = float(one.body is not None), float(np.cos(one.drift_rad))
-            rows.append((has, mass, arm, one.point_ahead_m, one.speed_m_s, cosine))
-        return np.array(rows).T
+    def followed(self, values: FloatArray) -> FloatArray:
+        """Return how fitted coefficients follow each cycle's numbers, ``(cycles, terms, numbers)``.
+
+        Parameters
+        ----------
+        values
+            What :meth:`solve` found for the cycles as they are.
+        """
+        design, loads = self.nominal
+        found = np.zeros((len(self.cycles), len(values), self.parts.shape[1]))
+        for row, columns in self.rows:
+            weight = self._weight(row)
+            matrix = weight[..., None] * design[..., columns]
+            left = weight * loads[..., row] - matrix @ values[columns]
+            flat = matrix.reshape(-1, len(columns))
+            normal = flat.T @ flat
+            scale = 1.0 / np.sqrt(np.diagonal(normal))
+            inverse = np.linalg.inv(normal * np.outer(scale, scale)) * np.outer(scale, scale)
+            by_terms = self._slopes[:, columns]
+            left_over = (weight * left) @ self.apart.T
+            change = left_over[:, None, None, :] * by_terms
+            pulled = (weight[..., None] * matrix).transpose(0, 2, 1)  # (cycles, terms, 2 orders)
+            pull = np.einsum("c,kcbt->kbt", values[columns], by_terms)
+            change = change - (pulled @ self.apart.T)[:, :, None, :] * pull[:, None]
+            total = self._by_numbers(change) + pulled @ self._load_slope(row)
+            found[:, columns] = inverse @ total
+        return found
+
+    @cached_property
+    def _slopes(self) -> FloatArray:
+        """How the terms follow the moves, ``(cycles, terms, 5, instants)``."""
+        return slopes_of(self.terms, self.moved)
+
+    def _load_slope(self, row: int) -> FloatArray:
+        found = np.zeros((2 * len(self.orders), self.parts.shape[1]))
+        place = np.arange(self.parts.shape[1] - 1).reshape(self.highest + 1, len(CHANNELS), 2)
+        rows = place[list(self.orders), _LOADS + row].ravel()
+        found[np.arange(len(rows)), rows] = -self.form.sign
+        return found
+
+    def _by_numbers(self, over: FloatArray) -> FloatArray:
+        """Return what changes per move and instant are per number: the moves' own slope after.
+
+        Shape ``(cycles, k, 5, instants)`` to ``(cycles, k, numbers)``.
+        """
+        count = self.highest + 1
+        found = np.zeros((*over.shape[:2], count, len(CHANNELS), 2))
+        by_pace = np.zeros(over.shape[:2])
+        for k, (channel, times) in enumerate(self._made_of):
+            own = over[:, :, k] @ basis(count, times).T * (self._omega**times)[:, None, None]
+            found[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
+            by_pace += times * np.einsum("kct,kt->kc", over[:, :, k], self.moved[:, k])
+        flat = found.reshape(*over.shape[:2], -1)
+        return np.concatenate((flat, by_pace[..., None]), axis=-1)
 
 
-@lru_cache(maxsize=128)  # all forms and methods of a group ask for the same cycles
-def _linear(cycles: tuple[Cycle, ...], highest: int) -> Problem:
-    runs = [cycle.run(n) for cycle in cycles for n in range(highest + 1)]
-    return Problem(tuple(runs), Form.MANOEUVRING, (0, 1), np.ones((len(runs), 2)))
-
-
-def _stack(values: ComplexArray) -> FloatArray:
-    """Put in phase and quadrature of all cycles and orders below each other, for each trial."""
-    flat = values.reshape(len(values), -1, values.shape[-1])
-    return np.concatenate((flat.real, flat.imag), axis=1)
-
-
-def _angles() -> FloatArray:
-    return 2.0 * np.pi * np.arange(_INSTANTS) / _INSTANTS
-
-
-def _instants(phasors: ComplexArray) -> FloatArray:
-    """Return the waves of phasors: shape ``(..., orders, k, 2)`` to ``(..., k, 2, instants)``."""
-    which = np.arange(phasors.shape[-3])[:, None]
-    turns = which * _angles()
-    sines = np.where(which == 0, 1.0, np.sin(turns))  # the mean is real
-    cosines = np.where(which == 0, 0.0, np.cos(turns))
-    found = np.einsum("...nkc,nt->...kct", phasors.real, sines, optimize=True)
-    return np.asarray(found + np.einsum("...nkc,nt->...kct", phasors.imag, cosines, optimize=True))
-
-
-def _harmonics(waves: FloatArray, orders: Sequence[int]) -> ComplexArray:
-    """Return phasors of waves: shape ``(..., k, instants)`` to ``(..., orders, k)``."""
-    which = np.array(orders)[:, None]
-    turns = which * _angles()
-    both = np.where(which == 0, 1.0, 2.0 * (np.sin(turns) + 1j * np.cos(turns))) / _INSTANTS
-    return np.asarray(np.einsum("...kt,nt->...nk", waves, both, optimize=True))
+__all__ = ["DESIGNS_AT_ONCE", "MOVES", "CycleProblem"]

@@ -1,14 +1,14 @@
-"""Monte Carlo of non-linear fits, beside their linear budget: the same function, drawn through."""
+"""Monte Carlo of fits, beside their linear budget: all that is uncertain, drawn through the fit."""
 
 import numpy as np
+from numpy.random import Generator
 
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
-from analysis.coefficients.phasors import FloatArray
-from analysis.coefficients.uncertainty import Scatter
+from analysis.coefficients.phasors import FloatArray, Source
 
-TRIALS_AT_ONCE = 500  # whole cycles are wide
+TRIALS_AT_ONCE = 5_000
 
 
 def cycle_trials(fit: CycleFit, trials: int, seed: int, level: float = 0.95) -> TrialColumns:
@@ -16,11 +16,21 @@ def cycle_trials(fit: CycleFit, trials: int, seed: int, level: float = 0.95) -> 
 
     Weights stay those of the fit, as its budget has it.
     """
-    counts = [min(TRIALS_AT_ONCE, trials - start) for start in range(0, trials, TRIALS_AT_ONCE)]
-    drawn = np.concatenate([draw_cycles(fit, count, (seed, k)) for k, count in enumerate(counts)])
+    counts = block_sizes(trials)
+    drawn = [draw_cycles(fit, count, (seed, k)) for k, count in enumerate(counts)]
+    return columns(np.concatenate(drawn), level)
+
+
+def block_sizes(trials: int) -> list[int]:
+    """Return how many trials each block draws."""
+    return [min(TRIALS_AT_ONCE, trials - start) for start in range(0, trials, TRIALS_AT_ONCE)]
+
+
+def columns(values: FloatArray, level: float) -> TrialColumns:
+    """Return what a campaign's table holds of trials, shape ``(trials, n)``."""
     tail = (1.0 - level) / 2.0
-    low, high = np.quantile(drawn, (tail, 1.0 - tail), axis=0)
-    return TrialColumns(trials, drawn.std(axis=0, ddof=1), low, high)
+    low, high = np.quantile(values, (tail, 1.0 - tail), axis=0)
+    return TrialColumns(len(values), values.std(axis=0, ddof=1), low, high)
 
 
 def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
@@ -33,12 +43,42 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
     problem = fit.problem
-    parts = np.repeat(problem.parts()[None], count, axis=0)
     scatter = Scatter(count, generator)
-    for k, cycle in enumerate(problem.cycles):
-        to, places = problem.measured(cycle)
-        for source in cycle.phasors.sources:
-            parts[:, k, to] += scatter.of(source)[:, places]
     deviations = fit.stated.drawn(count, generator)
+    ways = []
+    for cycle in problem.cycles:
+        own = [
+            (scatter.of(source), problem.filled(cycle, source.root).T)
+            for source in cycle.hull.phasors.sources
+        ]
+        ways.append([*own, (deviations, problem.sensitivity(cycle).T)])
     pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
-    return np.concatenate([problem.solve(parts[some], deviations[some]) for some in pieces])
+    found = []
+    for some in pieces:
+        parts = [
+            nominal + sum(deviates[some] @ way for deviates, way in own)
+            for nominal, own in zip(problem.parts, ways, strict=True)
+        ]
+        found.append(problem.solve(np.stack(parts, axis=1)))
+    return np.concatenate(found)
+
+
+class Scatter:
+    """Draws of the sources' deviates: runs that share a source get the same ones of it."""
+
+    def __init__(self, count: int, generator: Generator) -> None:
+        self._count, self._generator = count, generator
+        self._deviates: dict[str, FloatArray] = {}
+
+    def of(self, source: Source) -> FloatArray:
+        """Return the deviates, shape ``(count, k)``: Student's t where that is known."""
+        if source.label not in self._deviates:
+            self._deviates[source.label] = self._drawn(source)
+        return self._deviates[source.label]
+
+    def _drawn(self, source: Source) -> FloatArray:
+        normal = self._generator.standard_normal((self._count, source.root.shape[1]))
+        nu = source.degrees_of_freedom
+        if np.isfinite(nu) and nu > 0.0:
+            normal *= np.sqrt(nu / self._generator.chisquare(nu, self._count))[:, None]
+        return normal

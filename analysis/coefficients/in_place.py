@@ -9,14 +9,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.corrections import Delay
-from analysis.coefficients.measured import StrutRun
-from analysis.coefficients.phasors import FloatArray
-from analysis.coefficients.run import from_struts
-from analysis.motion import ComplexArray, motion, strut_forces
+from analysis.coefficients.phasors import ComplexArray, FloatArray, from_interleaved, interleaved
+from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.kinematics.cycle import driven, harmonics
+from analysis.kinematics.motion import motion as turned
+from analysis.kinematics.projection import readings
+from analysis.kinematics.rigid_body import inertia, weight, zero_readings
+from analysis.motion import mass_matrix, motion, strut_forces, weight_matrix
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
 _LEAST_FORCE = 0.05  # of the larger strut's: below, the other strut's errors decide
@@ -51,46 +56,53 @@ class InPlace:
         }
 
 
-def in_place(run: StrutRun, body: Body) -> InPlace:
-    """Return gain and lag of both dynamometers.
+def in_place(struts: StrutCycle, body: Body) -> InPlace:
+    """Return gain and lag of both dynamometers at the fundamental.
 
     Parameters
     ----------
-    run
-        In air, fundamental, with measured displacements or its set-point's.
+    struts
+        In air, with measured displacements or its set-point's.
     body
         What moved below the dynamometers, the known mass included; about the midpoint.
 
     Raises
     ------
     ConfigurationError
-        If the run was not in air, or is not a fundamental.
+        If the run was not in air.
     DataError
         If a strut hardly carried anything.
     """
-    if run.set_point.medium is not Medium.AIR or run.order != 1:
-        raise ConfigurationError(f"{run.name}: a fundamental of a run in air is needed")
-    loaded = from_struts(run).without(body)
-    asked = loaded.known() @ loaded.motion.values
-    forces = strut_forces(asked, run.oscillator.half_spacing_m, run.oscillator.plane)
+    if struts.set_point.medium is not Medium.AIR:
+        raise ConfigurationError(f"{struts.name}: a run in air is needed")
+    omega = 2.0 * math.pi * struts.frequency_hz
+    ordered = struts.phasors.select([at_order(name, 1) for name in (*DISPLACEMENTS, *FORCES)])
+    read = ordered.values[2:]
+    forces = _forces(struts, body, omega)
     weakest = np.abs(forces).min() / np.abs(forces).max()
     if not weakest > _LEAST_FORCE:
         raise DataError(
-            f"{run.name}: one strut carries {100 * weakest:.2g} % of the other's force (limit "
+            f"{struts.name}: one strut carries {100 * weakest:.2g} % of the other's force (limit "
             f"{100 * _LEAST_FORCE:g} %); shift the mass, or run another motion"
         )
-    ratio = run.forces.values / forces
-    relative = _relative(run, loaded.known(), forces)
-    omega = 2.0 * math.pi * run.frequency_hz
-    spread = np.stack((np.abs(ratio) * relative[0::2], relative[1::2] / omega), axis=-1)
-    return InPlace(np.abs(ratio), -np.angle(ratio) / omega, spread, run.frequency_hz)
-
-
-def _relative(run: StrutRun, known: FloatArray, forces: ComplexArray) -> FloatArray:
-    """Standard uncertainty of each ratio's relative size and angle: d(ratio) / ratio."""
-    half, plane = run.oscillator.half_spacing_m, run.oscillator.plane
-    ordered = run.phasors.select((*DISPLACEMENTS, *FORCES))
+    plane, half = struts.oscillator.plane, struts.oscillator.half_spacing_m
+    known = weight_matrix(body, plane) - omega**2 * mass_matrix(body, plane)
     unit = np.eye(2, dtype=np.complex128)
     per_strut = strut_forces((known @ motion(unit, half, plane).T).T, half, plane).T
-    slope = np.hstack((-per_strut / forces[:, None], np.diag(1.0 / run.forces.values)))
-    return np.sqrt(np.diagonal(ordered.mapped(slope, FORCES, ("1", "1")).covariance))
+    slope = np.hstack((-per_strut / forces[:, None], np.diag(1.0 / read)))
+    relative = np.sqrt(np.diagonal(ordered.mapped(slope, FORCES, ("1", "1")).covariance))
+    ratio = read / forces
+    spread = np.stack((np.abs(ratio) * relative[0::2], relative[1::2] / omega), axis=-1)
+    return InPlace(np.abs(ratio), -np.angle(ratio) / omega, spread, struts.frequency_hz)
+
+
+def _forces(struts: StrutCycle, body: Body, omega: float) -> ComplexArray:
+    """What the body asks of both gauges at the fundamental, less what it asks of them at rest."""
+    geometry = struts.geometry()
+    moved = struts.phasors.select(labels(DISPLACEMENTS, struts.orders))
+    state = turned(geometry, driven(interleaved(moved.values), omega))
+    asked = inertia(body, state, geometry.plane)
+    if geometry.plane is Plane.VERTICAL:
+        asked = asked + weight(body, state)
+    found = readings(geometry, state.line_rad, asked) - zero_readings(geometry, body)[:, None]
+    return from_interleaved(harmonics(found[:2], 1))[2:]

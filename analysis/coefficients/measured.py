@@ -7,21 +7,16 @@ independent, and a flag says so.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray, Phasors, Source, joined
-from analysis.motion import strut_displacements
+from analysis.coefficients.phasors import FloatArray, Phasors, Source
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.estimate import fit_drift, no_drift, scatter_of, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics
 from analysis.resolver.sums import PeriodSums
-from hardware.description.channels import DISPLACEMENTS, FORCES
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-from hardware.description.oscillator import Oscillator
-from hardware.description.setpoint import SetPoint
 
 MOTION_ASKED = Flag(
     "motion_from_set_point",
@@ -29,40 +24,6 @@ MOTION_ASKED = Flag(
     "no strut displacements were measured: the set-point's are used, without uncertainty; state "
     "those of amplitude, strut phase and the photocell's latency",
 )
-
-
-@dataclass(frozen=True, eq=False)
-class StrutRun:
-    """Phasors of the struts at one harmonic of one run.
-
-    Attributes
-    ----------
-    frequency_hz
-        Measured, of the fundamental.
-    displacements
-        ``displacement_aft``, ``displacement_fore`` in m; ``forces``: ``force_aft``, ``force_fore``
-        in N. Together in ``phasors``, so that their joint covariance is kept.
-    order
-        The harmonic; 0 for the means, which are real.
-    """
-
-    name: str
-    oscillator: Oscillator
-    set_point: SetPoint
-    frequency_hz: float
-    phasors: Phasors
-    order: int = 1
-    flags: tuple[Flag, ...] = ()
-
-    @property
-    def displacements(self) -> Phasors:
-        """Of the aft and the fore strut, m."""
-        return self.phasors.select(DISPLACEMENTS)
-
-    @property
-    def forces(self) -> Phasors:
-        """Of the aft and the fore strut on the model, N."""
-        return self.phasors.select(FORCES)
 
 
 def joint_covariance(
@@ -152,43 +113,6 @@ def reading_phasors(
     return Phasors(tuple(names), tuple(reading.units[r] for r in rows), phasors, (source,))
 
 
-def measured_run(
-    analysis: Analysis,
-    oscillator: Oscillator,
-    *,
-    reading_index: int = 0,
-    order: int = 1,
-    set_point: SetPoint | None = None,
-) -> StrutRun:
-    """Return the strut phasors of one reading; set-points stand in for displacements not measured.
-
-    Parameters
-    ----------
-    set_point
-        By default that of the recording.
-
-    Raises
-    ------
-    DataError
-        If a force channel is missing, or there is no set-point.
-    """
-    reading = analysis.readings[reading_index]
-    set_point = analysis.recording.set_point if set_point is None else set_point
-    if set_point is None:
-        raise DataError(
-            f"{reading.run}: no set-point; give frequency, eccentricity, strut phase and speed"
-        )
-    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
-    names = (*DISPLACEMENTS, *FORCES) if has_sensors else FORCES
-    joint, flags = joint_of(analysis, reading_index)
-    phasors = reading_phasors(reading, names, order, joint)
-    run = StrutRun(
-        reading.run, oscillator, set_point, reading.frequency_hz, phasors, order, reading.flags
-    )
-    run = replace(run, flags=run.flags + flags)
-    return run if has_sensors else with_set_point_motion(run)
-
-
 def joint_of(
     analysis: Analysis, reading_index: int
 ) -> tuple[tuple[FloatArray, FloatArray] | None, tuple[Flag, ...]]:
@@ -201,51 +125,3 @@ def joint_of(
     gate = steady[reading_index * size : (reading_index + 1) * size]
     drifting = analysis.settings.take_out_drift
     return joint_covariance(gate, steady, take_out_drift=drifting), ()
-
-
-def with_set_point_motion(run: StrutRun) -> StrutRun:
-    """Return the run with the displacements that its set-point asks for, exact and flagged."""
-    orders = max(run.order, 1)
-    asked = strut_displacements(run.oscillator, run.set_point, orders)[run.order]
-    values = asked if run.order else asked.imag.astype(np.complex128)  # H[0] = i A0
-    exact = Phasors(DISPLACEMENTS, ("m", "m"), values)
-    return replace(run, phasors=joined(exact, run.phasors), flags=(*run.flags, MOTION_ASKED))
-
-
-def from_harmonics(
-    reading: Harmonics,
-    oscillator: Oscillator,
-    set_point: SetPoint,
-    order: int = 1,
-) -> StrutRun:
-    """Return the strut phasors of a reading alone, without the sums it came from.
-
-    The struts' scatter is taken as independent, and flagged so.
-
-    Raises
-    ------
-    DataError
-        If a force channel is missing.
-    ConfigurationError
-        If the set-point and the reading differ by more than 5 % in frequency.
-    """
-    asked = set_point.frequency_hz
-    if abs(reading.frequency_hz / asked - 1.0) > 0.05:
-        raise ConfigurationError(
-            f"{reading.run}: measured {reading.frequency_hz:.4g} Hz, but the set-point is "
-            f"{asked:.4g} Hz; give the run its own set-point"
-        )
-    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
-    names = (*DISPLACEMENTS, *FORCES) if has_sensors else FORCES
-    text = "the sums of the periods are not at hand: the channels' scatter is taken as independent"
-    flag = Flag("channels_independent", Severity.NOTE, text)
-    run = StrutRun(
-        reading.run,
-        oscillator,
-        set_point,
-        reading.frequency_hz,
-        reading_phasors(reading, names, order),
-        order,
-        (*reading.flags, flag),
-    )
-    return run if has_sensors else with_set_point_motion(run)

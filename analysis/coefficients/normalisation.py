@@ -13,13 +13,9 @@ seakeeping            rho V               rho V sqrt(g/L)
 """
 
 import math
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from analysis.coefficients.names import Place
-from analysis.coefficients.phasors import FloatArray
-from analysis.coefficients.result import Coefficients, Share
 from analysis.coefficients.terms import Term
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -68,58 +64,6 @@ class Normalisation:
         """Return what the linear coefficient at a place is divided by, in either form."""
         unit = self.mass_kg if place.inertial else self.mass_per_second
         return float(unit * self.length_m ** (place.row + place.column))
-
-    def factors(self, coefficients: Coefficients) -> FloatArray:
-        """Return what each value is divided by, shape ``(n,)``."""
-        return np.array([self.place_factor(place) for place in coefficients.places()])
-
-    def without_dimensions(self, coefficients: Coefficients) -> Coefficients:
-        """Return coefficients in this system, uncertainties and all.
-
-        Raises
-        ------
-        ConfigurationError
-            If they are in a system already.
-        """
-        if coefficients.normalisation != DIMENSIONAL:
-            raise ConfigurationError(
-                f"the coefficients are in the system {coefficients.normalisation!r}; bring them "
-                "back to dimensions first"
-            )
-        units = ("1",) * len(coefficients.names)
-        return _scaled(coefficients, 1.0 / self.factors(coefficients), units, self.name)
-
-    def with_dimensions(self, coefficients: Coefficients) -> Coefficients:
-        """Return coefficients of this system in SI units: the inverse.
-
-        Raises
-        ------
-        ConfigurationError
-            If they are in another system.
-        """
-        if coefficients.normalisation != self.name:
-            raise ConfigurationError(
-                f"the coefficients are in the system {coefficients.normalisation!r}, not in "
-                f"{self.name!r}"
-            )
-        units = tuple(place.unit for place in coefficients.places())
-        return _scaled(coefficients, self.factors(coefficients), units, DIMENSIONAL)
-
-
-def _scaled(
-    coefficients: Coefficients, factors: FloatArray, units: tuple[str, ...], name: str
-) -> Coefficients:
-    shares = tuple(
-        Share(s.label, s.variance * factors**2, s.degrees_of_freedom) for s in coefficients.shares
-    )
-    return replace(
-        coefficients,
-        values=coefficients.values * factors,
-        covariance=coefficients.covariance * np.outer(factors, factors),
-        units=units,
-        shares=shares,
-        normalisation=name,
-    )
 
 
 def prime(length_m: float, speed_m_s: float, density_kg_m3: float) -> Normalisation:

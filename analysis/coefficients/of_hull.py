@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.coefficients.run import point_matrix
 from analysis.motion import incidence
 from analysis.uncertainty import FloatArray
 from hardware.description.oscillator import Plane
@@ -55,3 +54,12 @@ def as_reported(
         omega = 2.0 * math.pi * frequency_hz
         added, damped = added - damped @ turn / omega**2, damped + added @ turn
     return named(added, damped, plane, form)
+
+
+def point_matrix(ahead_m: float, plane: Plane) -> FloatArray:
+    """Return what turns the midpoint's motion into that of a point ahead of it.
+
+    Its inverse, transposed, does the same to loads, because the power stays.
+    """
+    side = -1.0 if plane is Plane.VERTICAL else 1.0
+    return np.array([[1.0, side * ahead_m], [0.0, 1.0]])

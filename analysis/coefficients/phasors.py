@@ -4,15 +4,13 @@ A phasor ``S + iC`` counts as two real numbers. A covariance has the order S1, C
 is kept by source, because each source has its own degrees of freedom.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.kinematics.geometry import Waves
-from analysis.kinematics.linearised import slope
 from hardware.description.errors import ConfigurationError
 
 FloatArray = NDArray[np.float64]
@@ -126,28 +124,12 @@ class Phasors:
             Of the result; by default the same ones.
         """
         matrix = np.asarray(matrix, dtype=np.complex128)
-        return self._carried(
+        return self.carried(
             matrix @ self.values,
             real_form(matrix),
             self.names if names is None else tuple(names),
             self.units if units is None else tuple(units),
         )
-
-    def through(
-        self, function: Callable[[Waves], Waves], names: Sequence[str], units: Sequence[str]
-    ) -> "Phasors":
-        """Return what a function makes of the phasors, with the covariance of its slope.
-
-        Parameters
-        ----------
-        function
-            Of interleaved parts, as :func:`analysis.kinematics.linearised.slope` takes it.
-        names, units
-            Of the result.
-        """
-        parts = interleaved(self.values)
-        values = from_interleaved(function(parts[None])[0])
-        return self._carried(values, slope(function, parts), tuple(names), tuple(units))
 
     def select(self, names: Sequence[str]) -> "Phasors":
         """Return some of the phasors, in this order."""
@@ -177,7 +159,7 @@ class Phasors:
         angle = np.zeros(len(slope))  # d(angle) = Im(conj(own) d(own)) / |own|^2
         angle[column : column + 2] = np.array([-own.imag, own.real]) / abs(own) ** 2
         slope -= np.outer(interleaved(1j * values), angle)
-        return self._carried(values, slope, self.names, self.units)
+        return self.carried(values, slope, self.names, self.units)
 
     def minus(self, other: "Phasors") -> "Phasors":
         """Return the difference of independent phasors of the same names.
@@ -200,13 +182,14 @@ class Phasors:
         """The same for several runs to take: what they have of its scatter is one and the same."""
         return replace(self, sources=tuple(source.shared for source in self.sources))
 
-    def _carried(
+    def carried(
         self,
         values: ComplexArray,
         slope: FloatArray,
         names: tuple[str, ...],
         units: tuple[str, ...],
     ) -> "Phasors":
+        """Return values that follow these phasors' real numbers with a slope."""
         sources = tuple(source.carried(slope) for source in self.sources)
         return Phasors(names, units, values, sources)
 

@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.campaign_records import Outlier
-from analysis.coefficients.cycle import Cycle, at_order
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Source
-from analysis.coefficients.run import LOADS
+from analysis.coefficients.cycle import LOADS, Cycle, at_order
+from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
 
 _SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 2e-2
@@ -156,12 +155,8 @@ def _groups(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
     return groups
 
 
-def _lever(cycle: Cycle) -> ComplexArray:
-    return np.asarray(cycle.run().motion.values * np.array([1.0, cycle.half_spacing_m]))
-
-
 def _ratio(first: Cycle, other: Cycle) -> complex:
-    own, found = _lever(first), _lever(other)
+    own, found = first.at_struts, other.at_struts
     return complex(np.vdot(own, found) / np.vdot(own, own))
 
 
@@ -173,27 +168,30 @@ def _same(first: Cycle, other: Cycle) -> bool:
     if abs(other.drift_rad - first.drift_rad) > 1e-3:
         return False
     ratio = _ratio(first, other)
-    left = np.abs(_lever(other) - ratio * _lever(first)).max()
+    left = np.abs(other.at_struts - ratio * first.at_struts).max()
     alike = abs(abs(ratio) - 1.0) < _SAME_MOTION
-    return bool(alike and left < _SAME_MOTION * np.abs(_lever(first)).max())
+    return bool(alike and left < _SAME_MOTION * np.abs(first.at_struts).max())
 
 
 def _size(cycle: Cycle) -> FloatArray:
     """Largest part of each load at the fundamental: measured, or what is taken off."""
-    run = cycle.run()
-    return np.maximum(np.abs(run.loads.values), np.abs(run.known() @ run.motion.values)) + 1e-300
+    return np.asarray(np.maximum(np.abs(cycle.loads), cycle.taken.max(axis=0)) + 1e-300)
 
 
 def _kind(cycles: Sequence[Cycle]) -> Kind:
     loads, variance, freedom = [], [], math.inf
     for cycle in cycles:
-        run = cycle.run()
-        loads.append(run.loads.values / _ratio(cycles[0], cycle))
-        net = np.diagonal(run.net().covariance).reshape(2, 2).mean(axis=1)
-        variance.append(np.maximum(net, np.diagonal(run.loads.covariance).reshape(2, 2).mean(1)))
-        freedom = min([freedom, *(s.degrees_of_freedom for s in run.phasors.sources)])
+        loads.append(cycle.loads / _ratio(cycles[0], cycle))
+        variance.append(np.maximum(_variance(cycle.hull.phasors), _variance(cycle.phasors)))
+        freedom = min([freedom, *(s.degrees_of_freedom for s in cycle.phasors.sources)])
     names = tuple(cycle.name for cycle in cycles)
     return Kind(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
+
+
+def _variance(phasors: Phasors) -> FloatArray:
+    """Of both loads at the fundamental, the mean of their two parts."""
+    chosen = phasors.select([at_order(name, 1) for name in LOADS])
+    return np.asarray(np.diagonal(chosen.covariance).reshape(2, 2).mean(axis=1))
 
 
 def _squares(loads: ComplexArray) -> FloatArray:

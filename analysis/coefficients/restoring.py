@@ -1,11 +1,11 @@
 """Quasi-static restoring: force and moment for a displacement, of a turn slower than all waves."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle, at_order
+from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
 from analysis.coefficients.phasors import FloatArray, Phasors
 from analysis.motion import mass_matrix, weight_matrix
 from analysis.uncertainty import student_factor
@@ -16,6 +16,7 @@ from hardware.description.oscillator import Plane
 _LEVEL = 0.95
 _PURE = 0.02  # of the larger motion, at the struts: as much of the other one may be in it
 _POINTS = 400
+_CHANNELS = (*MOTIONS, *LOADS)
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def restoring_of(
     """
     column = _moved(cycle)
     motion = ("translation", "rotation")[column]
-    first = _of_order(cycle, 1).referred_to(motion)
+    first = _first(cycle).referred_to(motion)
     values, widths = _stiffness(first, motion)
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     inertia = -square * (_mass(body, cycle.plane) + added_mass)[:, column]
@@ -150,13 +151,14 @@ def track_of(one: Restoring, cycle: Cycle) -> Track:
                  drawn("moment"))  # fmt: skip
 
 
-def _of_order(cycle: Cycle, order: int) -> Phasors:
-    return cycle.run(order).phasors
+def _first(cycle: Cycle) -> Phasors:
+    chosen = cycle.phasors.select([at_order(name, 1) for name in _CHANNELS])
+    return replace(chosen, names=_CHANNELS)
 
 
 def _moved(cycle: Cycle) -> int:
     """Return which motion it is: 0 for the translation, 1 for the rotation."""
-    first = _of_order(cycle, 1)
+    first = _first(cycle)
     sizes = np.array([abs(first["translation"]), cycle.half_spacing_m * abs(first["rotation"])])
     if sizes.min() > _PURE * sizes.max():
         raise DataError(

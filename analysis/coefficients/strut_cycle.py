@@ -9,16 +9,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.body_axes import at_order, labels, of_struts
 from analysis.coefficients.corrections import (
     Response,
     ZeroReading,
     calibration,
     response_factors,
 )
-from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.measured import MOTION_ASKED, joint_of, reading_phasors
 from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source, joined
-from analysis.coefficients.run import strut_matrix
+from analysis.kinematics.geometry import Geometry
 from analysis.motion import strut_displacements
 from analysis.resolver.analyse import Analysis
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
@@ -47,7 +48,7 @@ class StrutCycle:
         Raises
         ------
         ConfigurationError
-            As :func:`analysis.coefficients.corrections.calibrated`.
+            As :func:`analysis.coefficients.corrections.calibration`.
         """
         return self._mapped(FORCES, lambda _: calibration(matrix))
 
@@ -57,7 +58,7 @@ class StrutCycle:
         Raises
         ------
         DataError
-            As :func:`analysis.coefficients.corrections.without_response`.
+            As :func:`analysis.coefficients.corrections.response_factors`.
         """
         names = tuple(responses)
 
@@ -84,30 +85,39 @@ class StrutCycle:
             whole[np.ix_(places, places)] = matrix(n)
         return replace(self, phasors=self.phasors.mapped(whole))
 
+    def geometry(self, drift_rad: float = 0.0) -> Geometry:
+        """Return how the run's rig stands."""
+        return Geometry.of(self.oscillator, self.set_point.carriage_speed_m_s, drift_rad)
+
     def model(self, *, drift_rad: float = 0.0) -> Cycle:
-        """Return motion and loads of the model about the midpoint between the struts."""
+        """Return motion and loads of the model about the midpoint between the struts.
+
+        Raises
+        ------
+        DataError
+            As :func:`analysis.kinematics.averaged.in_body_axes`.
+        """
+        point, oscillator = self.set_point, self.oscillator
+        geometry = self.geometry(drift_rad)
         surge = at_order(FORCE_X.name, 0) in self.phasors.names
-        single = strut_matrix(self.oscillator)
         inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
-        outputs = (*CHANNELS, *((SURGE_FORCE,) if surge else ()))
-        if surge:
-            single = np.block([[single, np.zeros((4, 1))], [np.zeros((1, 4)), np.ones((1, 1))]])
-        orders = range(self.orders + 1)
-        ordered = self.phasors.select([at_order(name, n) for n in orders for name in inputs])
-        units = ("m", "rad", "N", "N m", "N")[: len(outputs)] * len(orders)
-        names = [at_order(name, n) for n in orders for name in outputs]
+        ordered = self.phasors.select(labels(inputs, self.orders)).shared
+        asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
+        found = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
         return Cycle(
             self.name,
-            self.oscillator.plane,
-            self.oscillator.half_spacing_m,
+            oscillator.plane,
+            oscillator.half_spacing_m,
             self.frequency_hz,
-            self.set_point.carriage_speed_m_s,
-            ordered.mapped(np.asarray(np.kron(np.eye(len(orders)), single)), names, units),
+            point.carriage_speed_m_s,
+            found.phasors,
             self.orders,
-            self.set_point.medium,
+            point.medium,
             drift_rad=drift_rad,
             mean_known=self.mean_known,
             flags=self.flags,
+            sensitivity=found.sensitivity,
+            of_tare=found.of_tare,
         )
 
 

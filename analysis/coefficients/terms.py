@@ -1,21 +1,20 @@
 """Terms of a manoeuvring model: ``Y_vvr`` is the coefficient of v v r in Y, without factorials.
 
-A name is a load, an underscore and factors: velocities (``v``, ``r`` or ``w``, ``q``), their rates
-(``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the constant. X takes the same.
+A name is a load, an underscore and factors: velocities (``u``, ``v``, ``r`` or ``u``, ``w``,
+``q``), their rates (``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the constant.
+X takes the same.
 """
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from analysis.coefficients.phasors import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
 LOAD_WORDS = ("force", "moment", "surge force")
 LOAD_LETTERS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
+AHEAD_LETTER = "u"
 VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
 SURGE = 2  # row of X
 
@@ -33,7 +32,7 @@ class Term:
         0 force, 1 moment, 2 surge force.
     factors
         ``"v"``, ``"vdot"``, ``"|v|"`` for the translation, ``"r"``, ``"rdot"``, ``"|r|"`` for the
-        rotation, in either plane; none for the constant.
+        rotation and ``"u"`` ahead, in either plane; none for the constant.
     """
 
     row: int
@@ -78,7 +77,7 @@ def term_of(name: str, plane: Plane) -> Term:
     ConfigurationError
         If it means none in this plane.
     """
-    velocities, loads = VELOCITY_LETTERS[plane], LOAD_LETTERS[plane] + "X"
+    velocities, loads = VELOCITY_LETTERS[plane] + AHEAD_LETTER, LOAD_LETTERS[plane] + "X"
     found = _WORD.fullmatch(name)
     letters = {one.strip("|")[0] for one in _FACTOR.findall(found[2])} if found else set()
     if found is None or found[1] not in loads or not letters <= set(velocities):
@@ -88,7 +87,7 @@ def term_of(name: str, plane: Plane) -> Term:
             f"underscore and factors of {velocities[0]} and {velocities[1]}; for example {example}"
         )
     row = loads.index(found[1])
-    common = {velocities[0]: "v", velocities[1]: "r"}
+    common = dict(zip(velocities, "vr" + AHEAD_LETTER, strict=True))
     factors = [
         re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]
         for f in _FACTOR.findall(found[2])
@@ -110,36 +109,6 @@ def load_of(name: str) -> str:
     """Return the load that a coefficient of either form is of; one of :data:`LOAD_WORDS`."""
     letter = name[1] if name[0] in "ab" else name[0]
     return LOAD_WORDS[0 if letter in "YZ23" else 1 if letter in "MN56" else 2]
-
-
-def waves_of(terms: Sequence[Term], velocity: FloatArray, rate: FloatArray) -> FloatArray:
-    """Return each term's product of factors over a cycle.
-
-    Parameters
-    ----------
-    velocity, rate
-        Translation and rotation through the water and their rates, shape ``(..., 2, instants)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(..., terms, instants)``.
-    """
-    factors = {
-        "v": velocity[..., 0, :],
-        "r": velocity[..., 1, :],
-        "vdot": rate[..., 0, :],
-        "rdot": rate[..., 1, :],
-        "|v|": np.abs(velocity[..., 0, :]),
-        "|r|": np.abs(velocity[..., 1, :]),
-    }
-    found = []
-    for term in terms:
-        product = np.ones_like(factors["v"])
-        for factor in term.factors:
-            product = product * factors[factor]
-        found.append(product)
-    return np.stack(found, axis=-2)
 
 
 def linear_terms(plane: Plane, rows: Sequence[int] = (0, 1)) -> tuple[str, ...]:

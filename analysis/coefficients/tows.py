@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.coefficients.cycle import SURGE_FORCE, Cycle, at_order
-from analysis.motion import incidence
 from analysis.uncertainty import student_factor
 from hardware.description.oscillator import Plane
 
@@ -67,7 +66,7 @@ def tow_of(kind: str, cycle: Cycle) -> Tow:
         cycle.plane,
         cycle.speed_m_s,
         cycle.drift_rad,
-        float(incidence(cycle.plane)[0, 1]) * cycle.speed_m_s * math.sin(cycle.drift_rad),
+        cycle.phasors[at_order("across", 0)].real,
         -value["force"],
         u["force"],
         -value["moment"],

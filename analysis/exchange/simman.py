@@ -14,8 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.cycle import CHANNELS, SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.cycle import LOADS, SURGE_FORCE, Cycle, at_order, labels
 from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors
+from analysis.kinematics import averaged
+from analysis.kinematics.averaged import CHANNELS
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 
@@ -29,6 +31,7 @@ NAMES: Final[Mapping[Plane, tuple[str, ...]]] = {
 UNITS: Final = ("N", "N m", "m", "rad", "m/s", "rad/s", "m/s2", "rad/s2")
 AHEAD: Final = ("x", "u", "du/dt")
 AHEAD_UNITS: Final = ("m", "m/s", "m/s2")
+AHEAD_CHANNEL: Final = CHANNELS[2]
 
 
 @dataclass(frozen=True)
@@ -114,15 +117,11 @@ def deliverables_of(cycle: Cycle, description: Description, samples: int = SAMPL
 
 def _all_phasors(cycle: Cycle) -> dict[str, ComplexArray]:
     """Loads, motion, velocities through the water and accelerations by name, order 0 real."""
-    translation, rotation, force, moment = (_rows(cycle, name) for name in CHANNELS)
+    own = {name: _rows(cycle, name) for name in cycle.channels}
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
-    side = 1.0 if cycle.plane is Plane.VERTICAL else -1.0
-    ahead = cycle.speed_m_s * math.cos(cycle.drift_rad)
-    velocity = rate * translation + side * ahead * rotation
-    velocity[0] += side * cycle.speed_m_s * math.sin(cycle.drift_rad)
-    turning = rate * rotation
-    values = (-force, -moment, translation, rotation, velocity, turning,
-              rate * velocity, rate * turning)  # fmt: skip
+    turning = rate * own["rotation"]
+    values = (-own["force"], -own["moment"], own["translation"], own["rotation"], own["across"],
+              turning, rate * own["across"], rate * turning)  # fmt: skip
     found = dict(zip(NAMES[cycle.plane], values, strict=True))
     if cycle.has_surge:
         found = {"X": -_rows(cycle, SURGE_FORCE), **found}
@@ -135,21 +134,14 @@ def _rows(cycle: Cycle, name: str) -> ComplexArray:
 
 
 def _ahead(cycle: Cycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return x, u and du/dt of a carriage that keeps its speed while the model's heading turns.
-
-    ``u = U cos(beta + psi) + y' sin(psi)``, in the vertical plane ``- z' sin(theta)``: what
-    carriage and struts move along the model's own axis.
-    """
-    names = NAMES[cycle.plane]
-    angle, turning = columns[names[3]], columns[names[5]]
-    side = -1.0 if cycle.plane is Plane.VERTICAL else 1.0
+    """Return x, u and du/dt: x of the carriage, the others along the model's own axis."""
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
-    across, faster = (_wave(rate**k * _rows(cycle, CHANNELS[0]), len(angle)) for k in (1, 2))
-    heading = cycle.drift_rad + angle
-    along = cycle.speed_m_s * np.cos(heading) + side * across * np.sin(angle)
-    slope = -cycle.speed_m_s * np.sin(heading) * turning
-    slope += side * (faster * np.sin(angle) + across * np.cos(angle) * turning)
-    return {"x": cycle.speed_m_s * columns["t"], "u": along, "du/dt": slope}
+    own, samples = _rows(cycle, AHEAD_CHANNEL), len(columns["t"])
+    return {
+        "x": cycle.speed_m_s * columns["t"],
+        "u": _wave(own, samples),
+        "du/dt": _wave(rate * own, samples),
+    }
 
 
 def _wave(phasors: ComplexArray, samples: int) -> FloatArray:
@@ -176,6 +168,12 @@ def fourier(
     return mean, sine, cosine
 
 
+def _harmonics(values: FloatArray, orders: int) -> ComplexArray:
+    """Return the phasors of an evenly sampled cycle, the first its mean."""
+    spectrum = np.fft.rfft(values)[: orders + 1] / len(values)
+    return np.concatenate((spectrum[:1], 2j * spectrum[1:]))
+
+
 def _phasor(one: Deliverables, name: str, order: int) -> complex:
     if order == 0:
         return complex(one.mean[name])
@@ -190,21 +188,23 @@ def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> Cycle:
     half_spacing_m
         A length that makes rotations comparable with translations; any of the model's size does.
     """
-    names = NAMES[one.plane][:4]
-    signs = dict(zip(names, (-1.0, -1.0, 1.0, 1.0), strict=True))
-    order: tuple[str, ...] = (names[2], names[3], names[0], names[1])
-    channels: tuple[str, ...] = CHANNELS
+    names = NAMES[one.plane]
+    force, moment, place, angle, across = names[:5]
+    sources = {"translation": place, "rotation": angle, "across": across, "force": force,
+               "moment": moment}  # fmt: skip
     if "X" in one.mean:
-        order, channels = (*order, "X"), (*CHANNELS, SURGE_FORCE)
-        signs["X"] = -1.0
-    orders = len(one.sine[names[0]])
-    values, labels = [], []
-    for n in range(orders + 1):
-        for name, channel in zip(order, channels, strict=True):
-            values.append(signs[name] * _phasor(one, name, n))
-            labels.append(at_order(channel, n))
-    units = ("m", "rad", "N", "N m", "N")[: len(channels)] * (orders + 1)
-    phasors = Phasors(tuple(labels), units, np.array(values, dtype=np.complex128))
+        sources[SURGE_FORCE] = "X"
+    orders = len(one.sine[force])
+    rows: dict[str, ComplexArray] = {
+        channel: complex(-1.0 if channel in (*LOADS, SURGE_FORCE) else 1.0)
+        * np.array([_phasor(one, name, n) for n in range(orders + 1)], dtype=np.complex128)
+        for channel, name in sources.items()
+    }
+    rows[AHEAD_CHANNEL] = _harmonics(one.columns["u"], orders)
+    channels = CHANNELS if SURGE_FORCE in rows else CHANNELS[:-1]
+    values = np.stack([rows[channel] for channel in channels], axis=-1).ravel()
+    units = averaged.UNITS[: len(channels)] * (orders + 1)
+    phasors = Phasors(labels(channels, orders), units, values)
     return Cycle(
         one.description.run,
         one.plane,

@@ -1,59 +1,40 @@
-"""A run's averaged cycle in body axes, from the harmonics of what was measured."""
+"""A run's model in body axes at each instant: its motion through the water, and what holds it."""
 
-from dataclasses import dataclass
+import numpy as np
 
-from analysis.kinematics.cycle import driven, waves
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Motion, motion
+from analysis.kinematics.motion import Driven, motion
 from analysis.kinematics.projection import loads
 
-DISPLACED = 2
-"""Channels of displacements; those of the gauges follow."""
+CHANNELS = ("translation", "rotation", "ahead", "across", "force", "moment", "surge_force")
+UNITS = ("m", "rad", "m/s", "m/s", "N", "N m", "N")
 
 
-@dataclass(frozen=True, eq=False)
-class BodyCycle:
-    """The model over a cycle, waves over the instants.
-
-    Attributes
-    ----------
-    loads
-        Of the struts on the model, gross: force, moment and, with an X gauge, surge force; shape
-        ``(..., 2 or 3, instants)``.
-    """
-
-    motion: Motion
-    loads: Waves
-
-
-def in_body_axes(
-    geometry: Geometry, parts: Waves, omega: Waves | float, *, gauges: int = 3
-) -> BodyCycle:
-    """Return motion and loads of the model over the averaged cycle.
+def in_body_axes(geometry: Geometry, driven: Driven, readings: Waves) -> Waves:
+    """Return motion and loads of the model about its reference point.
 
     The loads are as complete as the readings' harmonics are: a gauge's order left out is missed in
-    its neighbours by the sine of the angle. A fit that turns its terms into readings
-    (:func:`analysis.kinematics.projection.readings`) misses nothing.
+    its neighbours by the sine of the angle.
 
     Parameters
     ----------
-    parts
-        Interleaved harmonics of the channels, order by order: the displacements of aft and fore
-        strut, m, and what the gauges aft, fore and X read, N (of a turntable sway or heave, m, and
-        its angle, rad; force, moment and X). Shape ``(..., 2 * (2 + gauges) * (orders + 1))``.
-    omega
-        Angular frequency, shape ``(...)``, rad/s.
-    gauges
-        3, or 2 without an X gauge.
+    readings
+        Of the gauges aft, fore and X, N (of a turntable force, moment and X), shape
+        ``(..., 3, instants)``; ``(..., 2, instants)`` without an X gauge.
+
+    Returns
+    -------
+    numpy.ndarray
+        :data:`CHANNELS`, the last only with an X gauge: displacement across the tank and rotation
+        against it, velocities through the water along and across the model, and the struts' loads
+        on it, gross; shape ``(..., 6 or 7, instants)``.
 
     Raises
     ------
     DataError
         If the struts cannot reach, or an X gauge is missing that the other loads depend on.
     """
-    channels = DISPLACED + gauges
-    shaped = parts.reshape(*parts.shape[:-1], -1, channels, 2)
-    moved = shaped[..., :DISPLACED, :].reshape(*parts.shape[:-1], -1)
-    read = shaped[..., DISPLACED:, :].reshape(*parts.shape[:-1], -1)
-    found = motion(geometry, driven(moved, omega))
-    return BodyCycle(found, loads(geometry, found.line_rad, waves(read, gauges)))
+    found = motion(geometry, driven)
+    place = np.stack((found.across_m, found.rotation_rad), axis=-2)
+    held = loads(geometry, found.line_rad, readings)
+    return np.concatenate((place, found.velocity[..., :2, :], held), axis=-2)

@@ -5,6 +5,7 @@ Phasors have their orders on the axis before the last, ``(..., orders + 1, k)``,
 of each channel in turn, order by order, as :mod:`analysis.coefficients.phasors` has them.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import Driven
 
+FloatArray = NDArray[np.float64]
 INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 degrees
 
 
@@ -33,7 +35,7 @@ def waves(parts: Waves, channels: int, times: int = 0) -> Waves:
     """
     shaped = parts.reshape(*parts.shape[:-1], -1, channels, 2)
     by_channel = np.moveaxis(shaped, -2, -3).reshape(*parts.shape[:-1], channels, -1)
-    return np.asarray(by_channel @ _basis(shaped.shape[-3], times))
+    return np.asarray(by_channel @ basis(shaped.shape[-3], times))
 
 
 def driven(parts: Waves, omega: Waves | float) -> Driven:
@@ -48,13 +50,36 @@ def harmonics(over: Waves, orders: int) -> Waves:
 
     Shape ``(..., k, INSTANTS)`` to ``(..., 2 * k * (orders + 1))``.
     """
-    by_channel = (over @ _mean(orders + 1)).reshape(*over.shape[:-1], orders + 1, 2)
+    by_channel = (over @ mean(orders + 1)).reshape(*over.shape[:-1], orders + 1, 2)
     return np.asarray(np.moveaxis(by_channel, -2, -3).reshape(*over.shape[:-2], -1))
 
 
+def per_part(
+    count: int, channels: int, wanted: Sequence[tuple[int, int]], omega: float
+) -> FloatArray:
+    """Return the waves of some channels, differentiated in time, per interleaved part.
+
+    Parameters
+    ----------
+    count
+        Number of orders, the mean included.
+    wanted
+        Channel, and how often it is differentiated.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(len(wanted), 2 * channels * count, INSTANTS)``.
+    """
+    found = np.zeros((len(wanted), count, channels, 2, INSTANTS))
+    for k, (channel, times) in enumerate(wanted):
+        found[k, :, channel] = omega**times * basis(count, times).reshape(count, 2, -1)
+    return found.reshape(len(wanted), -1, INSTANTS)
+
+
 @lru_cache(maxsize=32)
-def _basis(count: int, times: int) -> NDArray[np.float64]:
-    """Sine and cosine of each order, differentiated; shape ``(2 * count, INSTANTS)``."""
+def basis(count: int, times: int) -> FloatArray:
+    """Return sine and cosine of each order, differentiated; shape ``(2 * count, INSTANTS)``."""
     order = np.arange(count)[:, None]
     angle = order * 2.0 * np.pi * np.arange(INSTANTS) / INSTANTS + times * np.pi / 2.0
     found = (order**times)[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=1)
@@ -63,7 +88,7 @@ def _basis(count: int, times: int) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=32)
-def _mean(count: int) -> NDArray[np.float64]:
-    """Means with sine and cosine that give the parts back, shape ``(INSTANTS, 2 * count)``."""
+def mean(count: int) -> FloatArray:
+    """Return what gives the parts back of waves, shape ``(INSTANTS, 2 * count)``."""
     scale = np.where(np.arange(2 * count) < 2, 1.0, 2.0) / INSTANTS
-    return np.asarray(_basis(count, 0).T * scale, dtype=np.float64)
+    return np.asarray(basis(count, 0).T * scale, dtype=np.float64)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
-from hardware.description.oscillator import Plane
+from hardware.description.oscillator import Oscillator, Plane
 
 Waves = NDArray[Any]
 """Over instants, the last axis; complex only for :func:`analysis.kinematics.linearised.slope`."""
@@ -32,6 +32,17 @@ class Geometry:
     arrangement: Arrangement = field(default_factory=Arrangement)
     speed_m_s: Waves | float = 0.0
     drift_rad: Waves | float = 0.0
+
+    @classmethod
+    def of(cls, oscillator: Oscillator, speed_m_s: float, drift_rad: float = 0.0) -> "Geometry":
+        """Return the geometry of an oscillator at a speed and a drift angle."""
+        return cls(
+            oscillator.plane,
+            oscillator.half_spacing_m,
+            oscillator.arrangement,
+            speed_m_s,
+            drift_rad,
+        )
 
     @property
     def side(self) -> float:

@@ -1,29 +1,55 @@
-"""Slopes by complex step: exact to rounding, for covariances to be carried with."""
+"""Slopes by complex step: exact to rounding, for covariances to be carried with.
+
+What is reckoned at each instant alone has a slope at each instant; harmonics follow by their waves.
+"""
 
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analysis.kinematics.cycle import FloatArray, harmonics
 from analysis.kinematics.geometry import Waves
 
 _STEP = 1e-30  # its square is lost in rounding: the slope has no truncation error
 
+Pointwise = Callable[[Waves], Waves]
+"""Of waves ``(..., k, instants)`` to ``(..., m, instants)``, each instant by itself; analytic:
+nothing conjugated, no absolute values."""
 
-def slope(function: Callable[[Waves], Waves], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the Jacobian of a function of real numbers.
+
+def pointwise(function: Pointwise, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return what a function makes of waves, and its slope.
 
     Parameters
     ----------
-    function
-        Of ``(trials, n)`` to ``(trials, m)``, analytic: nothing conjugated, no absolute values.
-    values
-        Shape ``(n,)``.
+    inputs
+        Shape ``(k, instants)``.
+
+    Returns
+    -------
+    values, slope
+        Shapes ``(m, instants)`` and ``(m, k, instants)``.
+    """
+    stepped = inputs + 1j * _STEP * np.eye(len(inputs))[:, :, None]
+    found = function(stepped)
+    slope = np.moveaxis(found.imag, 0, 1) / _STEP
+    return np.asarray(found[0].real), np.asarray(slope, dtype=np.float64)
+
+
+def by_parts(slope: FloatArray, inputs: FloatArray, orders: int) -> FloatArray:
+    """Return the slope of the outputs' harmonics by the inputs' interleaved parts.
+
+    Parameters
+    ----------
+    slope
+        Of :func:`pointwise`, shape ``(m, k, instants)``.
+    inputs
+        Waves of each input per part, shape ``(k, parts, instants)``.
 
     Returns
     -------
     numpy.ndarray
-        Shape ``(m, n)``.
+        Shape ``(2 * m * (orders + 1), parts)``.
     """
-    stepped = values + 1j * _STEP * np.eye(len(values))
-    return np.asarray(function(stepped).imag.T / _STEP, dtype=np.float64)
+    over = np.einsum("mkt,kpt->pmt", slope, inputs, optimize=True)
+    return np.asarray(harmonics(over, orders).T)

@@ -59,7 +59,7 @@ def check_surge_spared(geometry: Geometry) -> None:
     what = None
     if not geometry.gauges_turn:
         what = 'gauges = "rig": the gauges across read a part of the force along the model'
-    elif np.any(geometry.turned(DriftBy.MODEL_TURNED) != 0.0):
+    elif np.any(np.real(geometry.turned(DriftBy.MODEL_TURNED)) != 0.0):
         what = 'drift_by = "model_turned": the force across is partly one along the struts\' line'
     if what is not None:
         raise DataError(f"force_x is missing, and with {what}; record force_x as well")

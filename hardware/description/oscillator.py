@@ -6,6 +6,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
+from hardware.description.arrangement import Arrangement
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 
@@ -27,9 +28,9 @@ class Range:
         return self.low <= value <= self.high
 
 
-@dataclass(frozen=True)
-class Oscillator:
-    """A two-strut oscillator.
+@dataclass(frozen=True, kw_only=True)
+class Oscillator(Arrangement):
+    """A two-strut oscillator, with how its struts, gauges and a drift angle are arranged.
 
     Attributes
     ----------
@@ -48,6 +49,11 @@ class Oscillator:
     eccentricity_m: Range
     force_per_strut_n: float
     rod_length_m: float | None = None
+
+    @property
+    def arrangement(self) -> Arrangement:
+        """How struts, gauges and a drift angle are arranged, by itself."""
+        return Arrangement(self.joint, self.pivot, self.gauges, self.drift_by)
 
 
 # The limits of the two rigs of 1963 (Delft). Their strut spacing is not published: 1 m is assumed.

@@ -228,7 +228,7 @@ def without_dry(cycle: Cycle, dry: Sequence[Cycle], campaign: Campaign) -> Cycle
             return cycle.without_dry(one)
         except ConfigurationError as error:
             refused.append(str(error))
-    amplitude = abs(cycle.run().motion.values)
+    amplitude = abs(cycle.motion)
     raise ConfigurationError(
         f"{cycle.name}: no dry run has its motion; run it in air at {cycle.frequency_hz:g} Hz with "
         f"{1e3 * amplitude[0]:.3g} mm and {amplitude[1]:.3g} rad, or give the inertia"

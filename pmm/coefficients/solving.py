@@ -12,15 +12,14 @@ import numpy as np
 
 from analysis.coefficients.campaign import assemble
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request, check_campaign, plan
-from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_solve import Block, solve_group
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.model import Problem
+from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.cycle_trials import block_sizes, columns, draw_cycles
+from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.repeats import repeatability, with_repeats
-from analysis.coefficients.solve import problem_of
-from analysis.coefficients.stated import Stated
-from analysis.coefficients.uncertainty import TRIALS_AT_ONCE, draw
 
 Progress = Callable[[int, int, str], None]
 """Takes how many are done, of how many, and what of."""
@@ -40,7 +39,7 @@ class GroupSolver:
 
 @dataclass(frozen=True, eq=False)
 class TrialBlock:
-    """One block of trials of one group.
+    """One block of trials of one linear group.
 
     Attributes
     ----------
@@ -48,8 +47,7 @@ class TrialBlock:
         Its number, from which its random numbers follow.
     """
 
-    problem: Problem
-    stated: Stated
+    fit: CycleFit
     count: int
     seed: int
     block: int
@@ -57,7 +55,7 @@ class TrialBlock:
 
 def draw_block(one: TrialBlock) -> FloatArray:
     """Return the coefficients of each trial, shape ``(count, n)``."""
-    return draw(one.problem, one.stated, one.count, (one.seed, one.block))
+    return draw_cycles(one.fit, one.count, (one.seed, one.block))
 
 
 def solve_campaign(
@@ -115,17 +113,8 @@ def _with_trials(
 
 
 def _trial_blocks(group: Group, request: Request) -> list[TrialBlock]:
-    problem = problem_of([cycle.run() for cycle in group.cycles], request.form)
-    starts = range(0, request.trials, TRIALS_AT_ONCE)
-    counts = [min(TRIALS_AT_ONCE, request.trials - start) for start in starts]
+    fit = linear_fit(group.cycles, request.form, request.stated).fit
     return [
-        TrialBlock(problem, request.stated, count, request.seed, k)
-        for k, count in enumerate(counts)
+        TrialBlock(fit, count, request.seed, k)
+        for k, count in enumerate(block_sizes(request.trials))
     ]
-
-
-def columns(values: FloatArray, level: float) -> TrialColumns:
-    """Return what a campaign's table holds of trials, shape ``(trials, n)``."""
-    tail = (1.0 - level) / 2.0
-    low, high = np.quantile(values, (tail, 1.0 - tail), axis=0)
-    return TrialColumns(len(values), values.std(axis=0, ddof=1), low, high)

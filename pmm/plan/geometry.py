@@ -10,12 +10,7 @@ from pmm.plan.run_plan import RunPlan
 
 def geometry_of(run: RunPlan, oscillator: Oscillator) -> Geometry:
     """Return the geometry that plan check and operator's prompt go by."""
-    return Geometry(
-        oscillator.plane,
-        oscillator.half_spacing_m,
-        speed_m_s=run.set_point.carriage_speed_m_s,
-        drift_rad=run.drift_rad,
-    )
+    return Geometry.of(oscillator, run.set_point.carriage_speed_m_s, run.drift_rad)
 
 
 def drift_prompt(geometry: Geometry) -> str:

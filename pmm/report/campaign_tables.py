@@ -248,7 +248,7 @@ def run_table(outcome: Outcome) -> Grid:
         cycle = cycles.get(one.name) or one.cycle
         way, turn = (0.0, 0.0)
         if cycle is not None and cycle.frequency_hz > 0.0:
-            way, turn = (float(abs(value)) for value in cycle.run().motion.values)
+            way, turn = (float(abs(value)) for value in cycle.motion)
         rows.append(
             (
                 one.name,

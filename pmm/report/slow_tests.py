@@ -9,7 +9,8 @@ import numpy as np
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.restoring import Restoring, Track
-from analysis.coefficients.terms import VELOCITY_LETTERS, term_of, waves_of
+from analysis.coefficients.term_waves import MOVES, waves_of
+from analysis.coefficients.terms import VELOCITY_LETTERS, term_of
 from analysis.coefficients.tows import Tow
 from pmm.plan.kinds import RunKind
 from pmm.report.rounding import rounded
@@ -101,9 +102,10 @@ def _draw_load(
     widths = np.array([tow.half_width(getattr(tow, u)) for tow in tows])
     colour = PALETTE[k % len(PALETTE)]
     grid = np.linspace(across.min(), across.max(), 100)
-    still = np.zeros((2, len(grid)))
+    moves = np.zeros((len(MOVES), len(grid)))
+    moves[MOVES.index("v")] = grid
     terms = [term_of(found.entries[row].name, found.plane) for row in rows]
-    curve = found.values[rows] @ waves_of(terms, np.stack((grid, still[0])), still)
+    curve = found.values[rows] @ waves_of(terms, moves)
     slope = next(row for row, term in zip(rows, terms, strict=True) if term.degree == 1)
     one = found.entries[slope]
     panel.plot(grid, curve, color=colour, lw=1.0,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,9 @@ from sim.hull_system import HullSystem
 from sim.linear import ComplexArray
 from sim.periodic import SteadyState, steady_run
 from sim.rig import SimulatedRig
+from sim.sampled import steady_of
 from sim.signals import FloatArray
+from sim.stage import Stage
 
 # The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.
 STRUT_FORCES = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
@@ -100,7 +103,7 @@ class Situation:
     def moved(
         self, changes: Mapping[int, ComplexArray], frequency_ratio: float = 1.0
     ) -> dict[tuple[str, int], complex]:
-        """Return the signature of a change of the struts' motion.
+        """Return the signature of a change of the struts' motion, by the nominal model.
 
         Parameters
         ----------
@@ -109,14 +112,29 @@ class Situation:
         frequency_ratio
             Real frequency over the one that was set.
         """
+        highest = max(1, *changes) if changes else 1
+        period = self.nominal.period
+        real = period.at(period.frequency_hz * frequency_ratio)
+        spectra = dict(self.nominal.spectra)
+        for strut, motions in enumerate(signals.STRUT_MOTIONS):
+            displacement = spectra[motions[0].name].copy()
+            for order, change in changes.items():
+                displacement[order] += (-1j if order else 1.0) * change[strut]
+            for power, one in enumerate(motions):
+                spectra[one.name] = displacement * real.s**power
+        _, forces = steady_of(self._hull, real, spectra)
         found: dict[tuple[str, int], complex] = {}
-        for order in sorted({*changes, 1}):
-            change = np.asarray(changes.get(order, np.zeros(2)), dtype=np.complex128)
-            before, after = self.impedance(order), self.impedance(order * frequency_ratio)
-            force = (after - before) @ self.displacement(order) + after @ change
-            found |= at_struts(force, order)
-            found |= at_struts(change, order, STRUT_DISPLACEMENTS)
+        for order in range(highest + 1):
+            after = np.array([_phasor(forces[name][order], order) for name in STRUT_FORCES])
+            found |= at_struts(after - self.force(order), order)
+        for order, change in changes.items():
+            found |= at_struts(np.asarray(change), order, STRUT_DISPLACEMENTS)
         return found
+
+    @property
+    def _hull(self) -> Stage[Any]:
+        still = replace(self.rig, drive=replace(self.rig.drive, motor=None, gear=None))
+        return still.chain(self.set_point).stage("hull")
 
     def force(self, order: int = 1) -> ComplexArray:
         """Return the nominal force at the struts, shape ``(2,)``; the mean for order 0."""
@@ -129,9 +147,12 @@ class Situation:
 
     def phasor(self, name: str, order: int) -> complex:
         """Return one signal's nominal harmonic ``S + i C``; the mean for order 0."""
-        harmonic = complex(self.nominal.spectra[name][order])
-        # Re(X exp(i n w t)) = S sin + C cos with S = -Im X, C = Re X.
-        return harmonic if order == 0 else complex(-harmonic.imag, harmonic.real)
+        return _phasor(self.nominal.spectra[name][order], order)
+
+
+def _phasor(harmonic: complex, order: int) -> complex:
+    """Return S + i C of Re(X exp(i n w t)) = S sin + C cos: S = -Im X, C = Re X; the mean as is."""
+    return complex(harmonic) if order == 0 else complex(-harmonic.imag, harmonic.real)
 
 
 def at_struts(

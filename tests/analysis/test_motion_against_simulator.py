@@ -21,6 +21,7 @@ from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plan
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_loads, to_motion, to_strut_forces, to_struts
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from tests.sim.effects.against_theory import STRETCH, small_angles
 
 RATE_HZ = 200.0
 values = st.floats(-1e3, 1e3)
@@ -49,7 +50,9 @@ def sampled(phasors: np.ndarray, theta: np.ndarray) -> np.ndarray:
 def test_forces_and_displacements_of_both_struts(
     rig: SimulatedRig, phase: float, medium: Medium
 ) -> None:
-    set_point = SetPoint(0.6, 0.04, phase, carriage_speed_m_s=1.3, medium=medium)
+    """With struts so far apart that angles, and what a pitching weight adds, are below 1e-8."""
+    rig = small_angles(rig)
+    set_point = SetPoint(0.6, 0.04, phase, carriage_speed_m_s=1.3 * STRETCH, medium=medium)
     ideal = ideal_run(rig.oscillator, set_point, rig.body, water(rig), orders=24)
     chain = rig.ideal().chain(set_point)
     run = chain.run(chain.start(RATE_HZ, seed=0), 700)[1]
@@ -58,7 +61,7 @@ def test_forces_and_displacements_of_both_struts(
         for signal, phasors in (("displacement", ideal.displacements), ("force", ideal.forces)):
             expected = sampled(phasors, theta)[:, column]
             size = np.abs(expected).max()
-            np.testing.assert_allclose(run[f"{signal}_{name}"], expected, atol=1e-11 * size)
+            np.testing.assert_allclose(run[f"{signal}_{name}"], expected, atol=1e-8 * size)
 
 
 @pytest.mark.parametrize("ratio", [0.01, 0.3, 0.6, 0.95])

@@ -33,6 +33,14 @@ CASES = [
         "[oscillator]\nplane = 'up'",
         "oscillator.plane = \"up\" should be 'vertical' or 'horizontal'",
     ),
+    (
+        "[oscillator]\npreset = 'vertical-1963'\njoint = 'slides'",
+        "oscillator.joint = \"slides\" should be 'slides_on_model', 'slides_on_rig' or 'yaw_table'",
+    ),
+    (
+        "[oscillator]\npreset = 'vertical-1963'\ndrift = 'rig_turned'",
+        "oscillator.drift is not a known key; did you mean drift_by?",
+    ),
     ("[oscillator]\nplane = 'vertical'", "oscillator.half_spacing_m is missing"),
     ("[columns]\ntim = 't'", "[columns] tim is not a known key; did you mean time?"),
     ("columns = 3", "columns should be a table"),

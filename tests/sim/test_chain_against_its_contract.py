@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
 from sim import signals
@@ -57,6 +58,24 @@ def test_a_stage_before_its_source_is_refused() -> None:
         Chain((mechanism, drive))
     with pytest.raises(ConfigurationError, match="'hull' reads 'carriage_speed'"):
         Chain((drive, mechanism, hull, carriage))
+
+
+def test_a_turntable_is_refused() -> None:
+    rig = horizontal_rig()
+    table = replace(rig, oscillator=replace(rig.oscillator, joint=Joint.YAW_TABLE))
+    with pytest.raises(ConfigurationError, match='simulate "slides_on_model" or "slides_on_rig"'):
+        table.chain(SET_POINT)
+
+
+def test_struts_further_apart_than_the_model_reaches_are_refused() -> None:
+    """0.3 m to either side of 0.4 m: less than 1 of the spacing but for the drift."""
+    rig = horizontal_rig()
+    given = {"joint": Joint.SLIDES_ON_RIG, "drift_by": DriftBy.STRUTS_OFFSET, "half_spacing_m": 0.4}
+    short = replace(rig, oscillator=replace(rig.oscillator, **given))
+    set_point = SetPoint(0.2, 0.3, math.pi)
+    short.chain(set_point, drift_rad=0.2)
+    with pytest.raises(ConfigurationError, match=r"differ by 1\.05 of their spacing \(limit 1"):
+        short.chain(set_point, drift_rad=0.3)
 
 
 def test_two_writers_or_two_namesakes_are_refused() -> None:

@@ -1,5 +1,7 @@
 """Oracle: sums over two hundred thousand points of a period, which need not know of any corner."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,8 @@ from sim.balance import LawBalance
 from sim.corners import nodes_between
 from sim.force_law import Motion
 from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces, law_harmonics
+from sim.hull_numbers import corners_only, geometry_only
+from sim.hull_system import HullSystem
 from sim.law_table import table_of
 from sim.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
 from sim.period import Period
@@ -19,7 +23,6 @@ from sim.rig import vertical_rig
 
 ORDERS, FINE, SPEED_M_S = 8, 200_000, 1.1
 PERIOD = Period(0.8, ORDERS, 64)
-SYSTEM = vertical_rig().chain(SetPoint(0.8, 0.03, 0.7, SPEED_M_S)).stage("hull").system  # type: ignore[attr-defined]
 CORNERED: list[ForceLaw] = [
     Coulomb(2.0, 0.3),
     Stribeck(2.0, 0.03),
@@ -29,6 +32,14 @@ CORNERED: list[ForceLaw] = [
     Quadratic(300.0, 0.05),
 ]
 COUPLED = CrossFlow(((30.0, 5.0, 7.0, 2.0), (4.0, 6.0, 3.0, 9.0)), ((80.0, 9.0, 8.0, 7.0),) * 2)
+SET_POINT = SetPoint(0.8, 0.03, 0.7, SPEED_M_S)
+WHOLE = (
+    replace(vertical_rig(), cross_flow=COUPLED).chain(SET_POINT).stage("hull").system  # type: ignore[attr-defined]
+)
+# Of laws alone, and of what bends in the hull's loads alone: each as large as its own harmonics.
+LAWS_ALONE = replace(WHOLE, numbers=geometry_only(WHOLE.numbers))
+BENDING_ALONE = replace(WHOLE, numbers=corners_only(WHOLE.numbers))
+SYSTEMS = [WHOLE, LAWS_ALONE, BENDING_ALONE]
 parts = st.lists(st.integers(-1000, 1000).map(lambda part: part / 1e3), min_size=16, max_size=16)
 
 
@@ -48,61 +59,62 @@ def waves_of(numbers: list[float]) -> NDArray[np.complex128]:
 
 
 def summed(
-    laws: tuple[Acting, ...], coupled: CrossFlow | None, waves: NDArray[np.complex128]
+    laws: tuple[Acting, ...], system: HullSystem, waves: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     """Sum the force over evenly spaced points, without a mean over a step."""
     phase = 2.0 * np.pi * (np.arange(FINE) + 0.5) / FINE
-    total = np.zeros((ORDERS + 1, 2), dtype=np.complex128)
     turned = np.exp(1j * np.outer(phase, np.arange(ORDERS + 1)))
     motion = ModelMotion(*np.split((turned @ waves).real, 4, axis=1))
     instants = Instants(phase / PERIOD.omega_rad_s, 0.0, np.full(FINE, SPEED_M_S))
-    total = 2.0 / FINE * turned.conj().T @ law_forces(laws, coupled, SYSTEM, motion, instants)
+    total = (
+        2.0 / FINE * turned.conj().T @ law_forces(laws, system.numbers, system, motion, instants)
+    )
     total[0] /= 2.0
     return total
 
 
 def compiled(
-    laws: tuple[Acting, ...], coupled: CrossFlow | None, waves: NDArray[np.complex128]
+    laws: tuple[Acting, ...], system: HullSystem, waves: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     """Integrate as a steady state does, for a rigid mounting whose linear load is given."""
-    table = table_of(laws, coupled, SYSTEM)
+    table = table_of(laws, system)
     h, load = waves[:, :2], waves[:, 6:]
     impedance = np.zeros((ORDERS + 1, 2, 2), dtype=np.complex128)
     for order in range(ORDERS + 1):
         with np.errstate(divide="ignore", invalid="ignore"):
             impedance[order] = np.diag(np.where(h[order] == 0.0, 0.0, load[order] / h[order]))
     balance = LawBalance(table, None, impedance, PERIOD, SPEED_M_S)
-    return balance.answer(h, np.zeros((ORDERS + 1, 2), dtype=np.complex128))
+    return balance.answer(h, np.zeros((ORDERS + 1, 3), dtype=np.complex128))
 
 
 @settings(deadline=None, max_examples=15)
-@given(st.sampled_from([*CORNERED, None]), st.sampled_from(Point), parts)
-def test_harmonics_of_what_jumps(law: ForceLaw | None, point: Point, numbers: list[float]) -> None:
+@given(st.sampled_from(CORNERED), st.sampled_from(Point), st.sampled_from(SYSTEMS), parts)
+def test_harmonics_of_what_jumps(
+    law: ForceLaw, point: Point, system: HullSystem, numbers: list[float]
+) -> None:
     """To 2e-5, what a jump leaves open over as many points."""
-    laws = () if law is None else (Acting(law, point),)
-    coupled = COUPLED if law is None else None
+    laws = () if system is BENDING_ALONE else (Acting(law, point),)
     waves = waves_of(numbers)
     waves[0, 6:] = 0.0  # a linear load at rest belongs to no motion
-    expected = summed(laws, coupled, waves)
+    expected = summed(laws, system, waves)
     largest = np.abs(expected).max()
     for found in (
-        compiled(laws, coupled, waves),
-        law_harmonics(laws, coupled, SYSTEM, waves, PERIOD, SPEED_M_S),
+        compiled(laws, system, waves),
+        law_harmonics(laws, system, waves, PERIOD, SPEED_M_S),
     ):
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-5 * largest)
 
 
 @settings(deadline=None, max_examples=30)
-@given(st.sampled_from([*CORNERED, None]), st.sampled_from(Point), parts)
+@given(st.sampled_from(CORNERED), st.sampled_from(Point), st.sampled_from(SYSTEMS), parts)
 def test_compiled_and_array_form_agree(
-    law: ForceLaw | None, point: Point, numbers: list[float]
+    law: ForceLaw, point: Point, system: HullSystem, numbers: list[float]
 ) -> None:
-    laws = () if law is None else (Acting(law, point),)
-    coupled = COUPLED if law is None else None
+    laws = () if system is BENDING_ALONE else (Acting(law, point),)
     waves = waves_of(numbers)
     waves[0, 6:] = 0.0
-    expected = law_harmonics(laws, coupled, SYSTEM, waves, PERIOD, SPEED_M_S)
-    found = compiled(laws, coupled, waves)
+    expected = law_harmonics(laws, system, waves, PERIOD, SPEED_M_S)
+    found = compiled(laws, system, waves)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
 
 

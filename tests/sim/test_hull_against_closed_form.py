@@ -1,4 +1,8 @@
-"""Oracle: the closed-form in-phase and quadrature forces of a linear model in forced motion."""
+"""Oracle: the closed-form in-phase and quadrature forces of a linear model in forced motion.
+
+Where the model turns these hold at small angles: there the struts move by micrometres, so that what
+is of second order in the angle lies below the tolerance.
+"""
 
 import math
 from dataclasses import replace
@@ -6,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hardware.description.arrangement import Gauges
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
@@ -14,8 +19,11 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FloatArray, Signals
+from tests.exact.forces import state
+from tests.exact.rig import ExactRig
 
 RATE = 200.0
+SMALL_M = 1e-6
 
 
 def run(rig: SimulatedRig, set_point: SetPoint, samples: int = 1600) -> Signals:
@@ -59,9 +67,9 @@ def test_pure_heave(frequency_hz: float) -> None:
 def test_both_motions_against_the_complex_impedance(plane: Plane, phase: float) -> None:
     """Strut phasors -> motion -> Z = C + G - w^2 (M + A) + i w B -> loads, at zero speed."""
     rig = vertical_rig() if plane is Plane.VERTICAL else horizontal_rig()
-    set_point = SetPoint(0.6, 0.03, strut_phase_rad=phase)
+    set_point = SetPoint(0.6, SMALL_M, strut_phase_rad=phase)
     signals, omega = run(rig, set_point), 2.0 * math.pi * 0.6
-    strut = -1j * 0.03 * np.array([1.0, np.exp(1j * phase)])  # values = Re(phasor exp(i th))
+    strut = -1j * SMALL_M * np.array([1.0, np.exp(1j * phase)])  # values = Re(phasor exp(i th))
     q = np.array(to_motion(strut[0], strut[1], rig.oscillator.half_spacing_m, plane))
     body, sign = rig.body, -1.0 if plane is Plane.VERTICAL else 1.0
     x = sign * body.mass_kg * body.cg_x_m
@@ -77,12 +85,15 @@ def test_both_motions_against_the_complex_impedance(plane: Plane, phase: float) 
     )
     for expected, found in zip(z @ q, loads(rig, signals), strict=True):
         sine, cosine = sine_cosine(signals["shaft_angle"], found)
-        assert cosine - 1j * sine == pytest.approx(expected, abs=1e-9)
+        assert cosine - 1j * sine == pytest.approx(expected, abs=1e-9 * np.abs(z @ q).max())
 
 
 @pytest.mark.parametrize(("plane", "fore"), [(Plane.VERTICAL, -1.0), (Plane.HORIZONTAL, 1.0)])
 def test_pure_rotation_loads_the_struts_in_opposition(plane: Plane, fore: float) -> None:
-    """A moment alone: bow up presses the aft strut down, bow to starboard pushes the fore one."""
+    """A moment alone: bow up presses the aft strut down, bow to starboard pushes the fore one.
+
+    At any angle: the attachment that slides on the model is 2 l / cos(angle) from the other.
+    """
     rig = vertical_rig() if plane is Plane.VERTICAL else horizontal_rig()
     rig = replace(
         rig,
@@ -92,7 +103,8 @@ def test_pure_rotation_loads_the_struts_in_opposition(plane: Plane, fore: float)
     signals = run(rig, SetPoint(0.5, 0.05, strut_phase_rad=math.pi))
     lever = rig.oscillator.half_spacing_m
     _, rotation = to_motion(signals["displacement_aft"], signals["displacement_fore"], lever, plane)
-    couple = 100.0 * rotation / (2.0 * lever)
+    angle = np.arctan(rotation)
+    couple = 100.0 * angle * np.cos(angle) / (2.0 * lever)
     np.testing.assert_allclose(signals["force_fore"], fore * couple, atol=1e-12)
     np.testing.assert_allclose(signals["force_aft"], -fore * couple, atol=1e-12)
 
@@ -102,12 +114,12 @@ def test_model_in_air_carried_by_its_centre_of_gravity() -> None:
     lever = vertical_rig().oscillator.half_spacing_m
     point = Body(mass_kg=10.0, inertia_kg_m2=10.0 * lever**2, cg_x_m=lever)
     for rig in (vertical_rig(), horizontal_rig()):
-        set_point = SetPoint(1.0, 0.02, strut_phase_rad=1.3, medium=Medium.AIR)
+        set_point = SetPoint(1.0, SMALL_M, strut_phase_rad=1.3, medium=Medium.AIR)
         signals = run(replace(rig, body=point), set_point)
-        np.testing.assert_allclose(
-            signals["force_fore"], 10.0 * signals["acceleration_fore"], atol=1e-12
-        )
-        np.testing.assert_allclose(signals["force_aft"], 0.0, atol=1e-12)
+        inertia = 10.0 * signals["acceleration_fore"]
+        least = 1e-6 * np.abs(inertia).max()
+        np.testing.assert_allclose(signals["force_fore"], inertia, atol=least)
+        np.testing.assert_allclose(signals["force_aft"], 0.0, atol=least)
 
 
 @pytest.mark.parametrize("plane", list(Plane))
@@ -123,29 +135,27 @@ def test_zero_angle_of_attack_leaves_no_force_from_it(plane: Plane) -> None:
     )
     omega, speed = 2.0 * math.pi * 0.4, 1.2
     phase = 2.0 * math.atan2(omega * rig.oscillator.half_spacing_m, speed)
-    still = run(rig, SetPoint(0.4, 0.05, phase, carriage_speed_m_s=speed))
-    off = run(rig, SetPoint(0.4, 0.05, phase + 0.1, carriage_speed_m_s=speed))
-    assert np.abs(loads(rig, still)[0]).max() < 1e-12
-    assert np.abs(loads(rig, off)[0]).max() > 0.5
+    still = run(rig, SetPoint(0.4, SMALL_M, phase, carriage_speed_m_s=speed))
+    off = run(rig, SetPoint(0.4, SMALL_M, phase + 0.1, carriage_speed_m_s=speed))
+    assert np.abs(loads(rig, still)[0]).max() < 1e-5 * np.abs(loads(rig, off)[0]).max()
+    assert np.abs(loads(rig, off)[0]).max() > 10.0 * SMALL_M
 
 
 @pytest.mark.parametrize("phase", [0.0, math.pi, 0.9])
 def test_work_per_cycle_is_what_the_damping_dissipates(phase: float) -> None:
-    """Work of both struts over whole periods against the integral of q' B q'."""
+    """Work of both struts, across the rig, against the integral of q' B q' in body axes."""
     rig = vertical_rig()
+    damping = HullCoefficients(damping=rig.water.damping)
+    rig = replace(rig, oscillator=replace(rig.oscillator, gauges=Gauges.RIG), water=damping)
     signals = run(rig, SetPoint(0.5, 0.04, strut_phase_rad=phase), samples=400)  # one period
     power = (
         signals["force_aft"] * signals["velocity_aft"]
         + signals["force_fore"] * signals["velocity_fore"]
     )
-    velocity = np.array(
-        to_motion(
-            signals["velocity_aft"],
-            signals["velocity_fore"],
-            rig.oscillator.half_spacing_m,
-            rig.oscillator.plane,
-        )
-    )
+    struts = np.array([[0.0, 0.0], [0.04, 0.04 * np.exp(1j * phase)]])
+    exact = ExactRig(struts, 0.5, plane=Plane.VERTICAL)
+    motion = state(exact, signals["shaft_angle"]).motion
+    velocity = np.array([motion["w"], motion["q"]])
     dissipated = np.einsum("it,ij,jt->", velocity, np.array(rig.water.damping), velocity) / RATE
     assert power.sum() / RATE == pytest.approx(dissipated, rel=1e-12)
     assert dissipated > 0.0

@@ -155,7 +155,10 @@ def test_friction_sampled_as_it_is_would_be_off() -> None:
 
 @pytest.mark.parametrize("point", list(Point))
 def test_point_decides_where_a_force_acts(point: Point) -> None:
-    """A damper at each point does the same as its matrix in the hull's coefficients."""
+    """A damper at each point does the same as its matrix in the hull's coefficients.
+
+    By micrometres: at the struts it pulls across the rig, in the water across the model.
+    """
     lever = RIG.oscillator.half_spacing_m
     matrix = {
         Point.AFT: [[10.0, 10.0 * lever], [10.0 * lever, 10.0 * lever**2]],
@@ -169,11 +172,12 @@ def test_point_decides_where_a_force_acts(point: Point) -> None:
     same = replace(
         RIG, water=replace(RIG.water, damping=tuple(tuple(row) for row in damping.tolist()))
     )
-    set_point = SetPoint(FREQUENCY, A, 0.9, speed)
+    set_point = SetPoint(FREQUENCY, 1e-6, 0.9, speed)
     law = steady_run(replace(RIG, forces=(Acting(Viscous(10.0), point),)), set_point)
     linear = steady_run(same, set_point)
     for name in ("force_aft", "force_fore"):
-        np.testing.assert_allclose(law.spectra[name], linear.spectra[name], atol=1e-10)
+        largest = np.abs(linear.spectra[name]).max()
+        np.testing.assert_allclose(law.spectra[name], linear.spectra[name], atol=1e-9 * largest)
 
 
 def test_cross_flow_is_the_coupled_form_of_the_laws() -> None:

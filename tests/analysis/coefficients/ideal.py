@@ -1,18 +1,26 @@
-"""Runs built from closed-form phasors, with a given scatter: quick, for coverage and budgets."""
+"""Runs built from closed-form phasors, with a given scatter: quick, for coverage and budgets.
+
+The closed form is that of small angles. Eccentricities and scatter are ten thousand times smaller
+than a rig's, where what is of the second order has gone below 1e-8.
+"""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.measured import StrutRun
+from analysis.coefficients.body_axes import labels
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.phasors import Phasors, Source, from_interleaved, interleaved
-from analysis.coefficients.run import Run, from_struts
+from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.motion import LinearHull, ideal_run
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
 
+SMALL = 1e-4
+ECCENTRICITY_M = 0.02 * SMALL
 BODY = Body(mass_kg=70.0, inertia_kg_m2=27.5, cg_x_m=-0.02, cg_z_m=0.02)
 RESTORING = np.array([[6900.0, 345.0], [345.0, 2400.0]])
 HULL = LinearHull(
@@ -20,6 +28,8 @@ HULL = LinearHull(
     damping=np.array([[190.0, 12.0], [12.0, 55.0]]),
     restoring=RESTORING,
 )
+READ = labels((*DISPLACEMENTS, *FORCES), 1)
+_FIRST = slice(8, 16)  # of the real numbers: after the means
 
 
 def oscillator(plane: Plane) -> Oscillator:
@@ -28,36 +38,43 @@ def oscillator(plane: Plane) -> Oscillator:
 
 def ideal_struts(
     set_point: SetPoint, plane: Plane = Plane.VERTICAL, *, name: str = "ideal"
-) -> StrutRun:
+) -> StrutCycle:
     found = ideal_run(oscillator(plane), set_point, BODY, HULL)
-    values = np.concatenate((found.displacements[1], found.forces[1]))
-    phasors = Phasors((*DISPLACEMENTS, *FORCES), ("m", "m", "N", "N"), values)
-    return StrutRun(name, oscillator(plane), set_point, set_point.frequency_hz, phasors)
+    values = np.concatenate((np.zeros(4), found.displacements[1], found.forces[1]))
+    phasors = Phasors(READ, ("m", "m", "N", "N") * 2, values)
+    return StrutCycle(name, oscillator(plane), set_point, set_point.frequency_hz, phasors, 1)
 
 
 def scattered(
-    run: StrutRun, covariance: np.ndarray, periods: int, generator: np.random.Generator
-) -> StrutRun:
+    run: StrutCycle, covariance: np.ndarray, periods: int, generator: np.random.Generator
+) -> StrutCycle:
     """The mean of so many noisy periods, with the covariance that their scatter gives."""
     root = np.linalg.cholesky(covariance)
     draws = generator.standard_normal((periods, len(root))) @ root.T
-    values = interleaved(run.phasors.values) + draws.mean(axis=0)
-    estimated = np.cov(draws, rowvar=False) / periods
+    values = interleaved(run.phasors.values)
+    values[_FIRST] += draws.mean(axis=0)
+    estimated = np.zeros((len(values), len(values)))
+    estimated[_FIRST, _FIRST] = np.cov(draws, rowvar=False) / periods
     source = Source(f"scatter of {run.name}", estimated, periods - 1.0)
-    phasors = Phasors(run.phasors.names, run.phasors.units, from_interleaved(values), (source,))
-    return StrutRun(run.name, run.oscillator, run.set_point, run.frequency_hz, phasors)
+    phasors = replace(run.phasors, values=from_interleaved(values), sources=(source,))
+    return replace(run, phasors=phasors)
 
 
-def net(run: StrutRun) -> Run:
-    loaded = from_struts(run)
-    if run.set_point.medium is Medium.AIR:
-        return loaded
-    return loaded.without(BODY, RESTORING)
+def with_factors(run: StrutCycle, aft: complex, fore: complex) -> StrutCycle:
+    """The run as gauges read it that respond so to the fundamental."""
+    factors = np.ones(len(READ), dtype=complex)
+    factors[READ.index("force_aft 1")], factors[READ.index("force_fore 1")] = aft, fore
+    return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
+
+
+def net(run: StrutCycle) -> Cycle:
+    loaded = run.model()
+    return loaded if loaded.medium is Medium.AIR else loaded.without(BODY, RESTORING)
 
 
 def covariance(correlation: float = 0.6) -> np.ndarray:
-    """Of one period: 20 um on the displacements, 0.3 N on the forces, both struts correlated."""
-    spread = np.repeat([2e-5, 2e-5, 0.3, 0.3], 2)
+    """Of one period: 2 nm on the displacements, 30 uN on the forces, both struts correlated."""
+    spread = SMALL * np.repeat([2e-5, 2e-5, 0.3, 0.3], 2)
     tied = np.eye(8)
     for one, other in ((0, 2), (1, 3), (4, 6), (5, 7)):
         tied[one, other] = tied[other, one] = correlation
@@ -66,6 +83,6 @@ def covariance(correlation: float = 0.6) -> np.ndarray:
 
 def pair(frequency_hz: float = 0.8, speed_m_s: float = 1.2) -> tuple[SetPoint, SetPoint]:
     return (
-        SetPoint(frequency_hz, 0.02, 0.0, speed_m_s),
-        SetPoint(frequency_hz, 0.02, math.pi, speed_m_s),
+        SetPoint(frequency_hz, ECCENTRICITY_M, 0.0, speed_m_s),
+        SetPoint(frequency_hz, ECCENTRICITY_M, math.pi, speed_m_s),
     )

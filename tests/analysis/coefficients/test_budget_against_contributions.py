@@ -15,7 +15,6 @@ from benchmarks.coefficients_campaigns import (
     Made,
     made_up,
     pure_pair,
-    scattered,
 )
 from hardware.description.oscillator import Plane
 
@@ -29,7 +28,7 @@ MADE = Made(VERTICAL, Plane.VERTICAL, restoring=RESTORING)
 def campaign(frequency_hz: float, stated: Stated = STATED) -> CampaignCoefficients:
     generator = np.random.default_rng(9)
     cycles = [
-        scattered(made_up(p, MADE, name), generator)
+        made_up(p, MADE, name, generator)
         for name, p in zip(("heave", "pitch"), pure_pair(frequency_hz, 0.02, 0.0), strict=True)
     ]
     return campaign_coefficients(cycles, Request(Form.SEAKEEPING, stated))

@@ -13,7 +13,7 @@ from analysis.coefficients.form_choice import (
     choose_form,
     forms_of,
 )
-from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up, scattered
+from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up
 from hardware.description.oscillator import Plane
 
 LINEAR = {name: HORIZONTAL[name] for name in ("Y_vdot", "Y_v", "N_vdot", "N_v")}
@@ -21,9 +21,8 @@ LINEAR = {name: HORIZONTAL[name] for name in ("Y_vdot", "Y_v", "N_vdot", "N_v")}
 
 def choice(extra: dict[str, float], sizes: slice = slice(0, 3), seed: int = 1):  # type: ignore[no-untyped-def]
     generator = np.random.default_rng(seed)
-    made = Made(LINEAR | extra, orders=5)
-    cycles = [made_up(p, made, n) for n, p in amplitudes()[sizes]]
-    return choose_form([scattered(one, generator) for one in cycles], 0)
+    made = Made(LINEAR | extra)
+    return choose_form([made_up(p, made, n, generator) for n, p in amplitudes()[sizes]], 0)
 
 
 @pytest.mark.parametrize(

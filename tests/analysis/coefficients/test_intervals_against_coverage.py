@@ -5,23 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.measured import measured_run
+from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.run import from_struts
-from analysis.coefficients.solve import solve
-from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import Settings, analyse
+from analysis.coefficients.stated import Stated
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
-from sim.run import simulate
-from tests.analysis.coefficients.campaign import CHANNELS, pure
-from tests.analysis.coefficients.ideal import HULL, covariance, ideal_struts, net, pair, scattered
+from tests.analysis.coefficients.campaign import loaded, pure
+from tests.analysis.coefficients.ideal import (
+    ECCENTRICITY_M,
+    HULL,
+    covariance,
+    ideal_struts,
+    net,
+    pair,
+    scattered,
+)
 
 TRUTH = {
     "Z_wdot": -75.0, "Z_qdot": -3.0, "M_wdot": -3.0, "M_qdot": -22.0,
     "Z_w": -190.0, "Z_q": -12.0, "M_w": -12.0, "M_q": -55.0,
 }  # fmt: skip
-MIXED = [SetPoint(0.8, 0.02, phase, 1.2) for phase in (0.0, 1.0, 2.2, 3.0)]
+MIXED = [SetPoint(0.8, ECCENTRICITY_M, phase, 1.2) for phase in (0.0, 1.0, 2.2, 3.0)]
 
 
 @pytest.mark.parametrize("points", [pair(), MIXED, pair(0.15)], ids=["two", "four", "slow"])
@@ -34,10 +38,10 @@ def test_coverage_of_closed_form_runs(points: list[SetPoint], periods: int) -> N
     clean = [ideal_struts(point, name=f"{k}") for k, point in enumerate(points)]
     for _ in range(count):
         runs = [net(scattered(run, covariance(), periods, generator)) for run in clean]
-        result = solve(runs, Form.MANOEUVRING)
-        order = [result.index(name) for name in names]
-        miss = np.abs(result.values[order] - truth)
-        hits += miss <= result.half_width()[order]
+        fit = linear_fit(runs, Form.MANOEUVRING, Stated()).fit
+        order = [fit.names.index(name) for name in names]
+        miss = np.abs(fit.values[order] - truth)
+        hits += miss <= fit.uncertain.half_width()[order]
     rate = hits / count
     assert rate.mean() == pytest.approx(0.95, abs=0.025)
     assert rate.min() > 0.91
@@ -51,18 +55,15 @@ def test_coverage_of_simulated_campaigns() -> None:
     truth = np.array([75.0, 190.0, 3.0, 12.0, 3.0, 12.0, 22.0, 55.0])
     hits, seeds = np.zeros(len(names)), 100
     for seed in range(seeds):
-        runs = []
-        for k, point in enumerate(pure(0.8, 0.02)):
-            record = simulate(
-                rig, point, periods=8, sample_rate_hz=50.0, seed=2 * seed + k, name=f"{k}"
-            )
-            settings = Settings(channels=CHANNELS, harmonics=1)
-            analysis = analyse(from_dataset(record), settings=settings)
-            run = from_struts(measured_run(analysis, rig.oscillator))
-            runs.append(run.without(rig.body, np.array(rig.water.restoring)))
-        result = solve(runs)
-        assert result.names == names
-        hits += np.abs(result.values - truth) <= result.half_width()
+        runs = [
+            loaded(rig, point, name=f"{k}", seed=2 * seed + k, rate_hz=50.0)
+            for k, point in enumerate(pure(0.8, 0.005))
+        ]
+        fit = linear_fit(runs, Form.SEAKEEPING, Stated()).fit
+        assert set(fit.names) == set(names)
+        order = [fit.names.index(name) for name in names]
+        miss = np.abs(fit.values[order] - truth)
+        hits += miss <= fit.uncertain.half_width()[order]
     rate = hits / seeds
     assert rate.mean() == pytest.approx(0.95, abs=0.03)
     assert rate.min() >= 0.88
@@ -72,7 +73,7 @@ def test_joint_covariance_matters() -> None:
     """Struts that scatter together: as if independent, moment and force would be wrong."""
     generator = np.random.default_rng(3)
     run = scattered(ideal_struts(pair()[0]), covariance(0.9), 5000, generator)
-    joint = net(run).loads.standard_uncertainty
+    joint = run.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
     alone = replace(
         run,
         phasors=replace(
@@ -83,7 +84,7 @@ def test_joint_covariance_matters() -> None:
             ),
         ),
     )
-    independent = net(alone).loads.standard_uncertainty
+    independent = alone.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
     # force: 1 + rho, moment: 1 - rho
     assert joint[0].real / independent[0].real == pytest.approx(1.9**0.5, rel=0.03)
     assert joint[1].real / independent[1].real == pytest.approx(0.1**0.5, rel=0.1)

@@ -3,16 +3,12 @@
 import numpy as np
 import pytest
 
-from analysis.coefficients.measured import (
-    from_harmonics,
-    joint_covariance,
-    measured_run,
-    reading_phasors,
-)
+from analysis.coefficients.measured import joint_covariance, reading_phasors
+from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.analyse import Analysis, Settings, analyse
 from hardware.description.channels import FORCES
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
 from sim.run import simulate
@@ -49,24 +45,21 @@ def test_blocks_are_the_resolvers_covariance(options: dict[str, object]) -> None
 
 def test_phasors_are_the_readings() -> None:
     analysis = resolved()
-    run = measured_run(analysis, RIG.oscillator)
+    cycle = measured_cycle(analysis, RIG.oscillator)
     reading = analysis.readings[0]
+    first = cycle.phasors.select([f"{name} 1" for name in CHANNELS])
     np.testing.assert_array_equal(
-        run.phasors.values, reading.in_phase[:, 0] + 1j * reading.quadrature[:, 0]
+        first.values, reading.in_phase[:, 0] + 1j * reading.quadrature[:, 0]
     )
-    mean = measured_run(analysis, RIG.oscillator, order=0)
-    np.testing.assert_array_equal(mean.phasors.values, reading.mean)
-    assert mean.forces.names == FORCES
+    mean = cycle.phasors.select([f"{name} 0" for name in CHANNELS])
+    np.testing.assert_array_equal(mean.values, reading.mean)
 
 
-def test_a_reading_alone_says_that_channels_count_as_independent() -> None:
-    analysis = resolved()
-    alone = from_harmonics(analysis.readings[0], RIG.oscillator, POINT)
-    assert [flag.code for flag in alone.flags][-1] == "channels_independent"
-    covariance = alone.phasors.covariance
-    assert np.abs(covariance[:2, 2:]).max() == 0.0
-    tapered = measured_run(resolved(hann=True), RIG.oscillator)
-    assert "channels_independent" in {flag.code for flag in tapered.flags}
+def test_a_tapered_reading_says_that_channels_count_as_independent() -> None:
+    tapered = measured_cycle(resolved(hann=True), RIG.oscillator)
+    assert [flag.code for flag in tapered.flags][-1] == "channels_independent"
+    first = tapered.phasors.select([f"{name} 1" for name in CHANNELS])
+    assert np.abs(first.covariance[:2, 2:]).max() == 0.0
 
 
 def test_what_is_missing_is_said() -> None:
@@ -75,5 +68,3 @@ def test_what_is_missing_is_said() -> None:
         reading_phasors(reading, ["force_x"])
     with pytest.raises(DataError, match="no harmonic 4"):
         reading_phasors(reading, FORCES, 4)
-    with pytest.raises(ConfigurationError, match=r"the set-point is 0\.9 Hz"):
-        from_harmonics(reading, RIG.oscillator, SetPoint(0.9, 0.02))

@@ -16,7 +16,6 @@ from benchmarks.coefficients_campaigns import (
     amplitudes,
     made_up,
     pure_pair,
-    scattered,
 )
 from hardware.description.oscillator import Plane
 
@@ -26,7 +25,7 @@ FREQUENCIES_HZ = (0.25, 0.35)
 def campaign(truth: dict[str, float], seed: int) -> CampaignCoefficients:
     generator = np.random.default_rng(seed)
     cycles = [
-        scattered(made_up(point, Made(truth), f"{name} {f}"), generator)
+        made_up(point, Made(truth), f"{name} {f}", generator)
         for f in FREQUENCIES_HZ
         for name, point in amplitudes(frequency_hz=f)
     ]
@@ -61,7 +60,7 @@ def test_a_form_is_taken_at_its_evidence_and_linear_below_it() -> None:
     for seed, put_in in enumerate((0.0, -8.0, -15.0, -30.0, -60.0, -900.0)):
         generator = np.random.default_rng(seed)
         made = Made({**HORIZONTAL, "Y_vvv": put_in})
-        cycles = [scattered(made_up(p, made, n), generator) for n, p in amplitudes()[:3]]
+        cycles = [made_up(p, made, n, generator) for n, p in amplitudes()[:3]]
         choice = choose_form(cycles, 0)
         linear = choice.aicc[choice.forms.index(LINEAR_FORM)]
         evidence = np.exp(min((linear - min(choice.aicc)) / 2.0, 700.0))
@@ -95,7 +94,7 @@ def test_a_coefficient_of_the_seakeeping_form_belongs_to_its_frequency() -> None
     made = Made(VERTICAL, Plane.VERTICAL, restoring=RESTORING)
     generator = np.random.default_rng(3)
     cycles = [
-        scattered(made_up(point, made, f"{kind} {f}"), generator)
+        made_up(point, made, f"{kind} {f}", generator)
         for f in (0.4, 0.8)
         for kind, point in zip(("heave", "pitch"), pure_pair(f, 0.02, 0.0), strict=True)
     ]

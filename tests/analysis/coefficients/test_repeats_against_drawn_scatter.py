@@ -6,23 +6,31 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.names import Form
 from analysis.coefficients.repeats import outliers, repeatability, with_repeats
-from analysis.coefficients.solve import solve
-from benchmarks.coefficients_campaigns import RESTORING, VERTICAL, Made, made_up, scattered
+from analysis.coefficients.stated import Stated
+from benchmarks.coefficients_campaigns import BODY, RESTORING, VERTICAL, Made, Scatter, made_up
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 
 HEAVE = Made(VERTICAL, Plane.VERTICAL, orders=1, restoring=RESTORING)
+QUIET = Scatter(motion_m=1e-6, force_n=0.035)
+
+
+def solved(cycles: list[Cycle]) -> CycleFit:
+    return linear_fit(cycles, Form.SEAKEEPING, Stated()).fit
 
 
 def repeats(
     count: int, between: float, generator: np.random.Generator, *, frequency_hz: float = 0.8
 ) -> list[Cycle]:
     """Heave runs whose loads are off by a common relative error each."""
-    clean = made_up(SetPoint(frequency_hz, 0.02), HEAVE, "heave")
+    point = SetPoint(frequency_hz, 0.02)
     found = []
     for k in range(count):
-        one = scattered(clean, generator, force_n=0.05, motion_m=1e-6)
+        one = made_up(point, HEAVE, "heave", generator, QUIET)
         factors = np.ones(len(one.phasors.names), dtype=complex)
         for place, name in enumerate(one.phasors.names):
             if name.split()[0] in ("force", "moment"):
@@ -37,8 +45,9 @@ def repeats(
 
 def test_scatter_between_runs_is_found() -> None:
     found = repeatability(repeats(200, 0.01, np.random.default_rng(0)))
-    run = repeats(1, 0.0, np.random.default_rng(0))[0].run()
-    part = abs(run.loads.values[0]) / abs(run.known() @ run.motion.values)[0]
+    (one,) = repeats(1, 0.0, np.random.default_rng(0))
+    omega = 2.0 * np.pi * 0.8
+    part = abs(one.loads[0]) / (max(omega**2 * BODY.mass_kg, RESTORING[0, 0]) * 0.02)
     assert found.relative[0] == pytest.approx(0.01 * part, rel=0.1)
     assert found.degrees_of_freedom == 199
 
@@ -54,11 +63,11 @@ def test_intervals_hold_where_runs_differ_between_each_other() -> None:
     for _ in range(60):
         cycles = repeats(5, 0.01, generator)
         known = repeatability(cycles)
-        result = solve([with_repeats(one, known).run() for one in cycles])
+        fit = solved([with_repeats(one, known) for one in cycles])
         truth = [-VERTICAL[n] for n in ("Z_wdot", "Z_w", "M_wdot", "M_w")]
-        hits += np.abs(result.values - truth) <= result.half_width()
-        bare = solve([one.run() for one in cycles])
-        without += np.abs(bare.values - truth) <= bare.half_width()
+        hits += np.abs(fit.values - truth) <= fit.uncertain.half_width()
+        bare = solved(cycles)
+        without += np.abs(bare.values - truth) <= bare.uncertain.half_width()
     assert np.all(hits / 60 >= 0.85)
     assert np.all(hits / 60 <= 1.0)
     assert without.mean() / 60 < 0.8

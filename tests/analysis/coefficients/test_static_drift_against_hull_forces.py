@@ -6,12 +6,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from analysis.coefficients.body_axes import labels
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.form_choice import BOTH, CUBIC, LINEAR_FORM, QUADRATIC
 from analysis.coefficients.phasors import Phasors, Source
+from analysis.kinematics.averaged import CHANNELS, UNITS
 from hardware.description.oscillator import Plane
 
 SPEED_M_S = 1.2
@@ -40,17 +42,20 @@ def towed(
     """
     generator = np.random.default_rng(seed)
     noise = np.array([0.0, 0.0, NOISE_N, NOISE_N / 3.0])
-    covariance = np.diag(np.column_stack((noise, np.zeros(4))).ravel() ** 2)
+    spread = np.zeros(12)
+    spread[8::2] = noise[2:]
     cycles = []
     for k, angle in enumerate(np.radians(angles_deg)):
         v = -SPEED_M_S * math.sin(angle)
-        struts = np.array([0.0, 0.0, -hull(v), -N_V * v]) + noise * generator.normal(size=4)
-        struts[2] += between_n * generator.normal()
+        u = SPEED_M_S * math.cos(angle)
+        held = np.array([0.0, 0.0, -hull(v), -N_V * v]) + noise * generator.normal(size=4)
+        held[2] += between_n * generator.normal()
+        struts = np.array([*held[:2], u, v, *held[2:]])
         phasors = Phasors(
-            ("translation 0", "rotation 0", "force 0", "moment 0"),
-            ("m", "rad", "N", "N m"),
+            labels(CHANNELS[:-1], 0),
+            UNITS[:-1],
             struts.astype(np.complex128),
-            (Source(f"run {k}", covariance, 50.0),),
+            (Source(f"run {k}", np.diag(spread**2), 50.0),),
         )
         drifting = {"drift_rad": float(angle), "mean_known": True}
         cycles.append(

@@ -1,6 +1,7 @@
-"""All harmonics at once against each harmonic alone: values, scatter and every correction."""
+"""All harmonics at once against each harmonic by itself: values, scatter and every correction."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import control
@@ -10,14 +11,12 @@ import pytest
 from analysis.coefficients.corrections import (
     Delay,
     LowPass,
-    calibrated,
-    without_response,
-    without_zero,
+    response_at,
     zero_reading,
 )
 from analysis.coefficients.in_place import in_place
-from analysis.coefficients.measured import measured_run
-from analysis.coefficients.run import from_struts
+from analysis.coefficients.measured import joint_of, reading_phasors
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
@@ -48,16 +47,24 @@ def analysis() -> Analysis:
     return read()
 
 
-def same(cycle: StrutCycle, analysis: Analysis, change=lambda run: run) -> None:  # type: ignore[no-untyped-def]
-    """Every order of the cycle is the run of that order alone, scatter included."""
-    whole = cycle.model()
+def alone(analysis: Analysis, order: int) -> Phasors:
+    """What the resolver says of one harmonic, with the covariance of its channels."""
+    return reading_phasors(analysis.readings[0], CHANNEL_NAMES, order, joint_of(analysis, 0)[0])
+
+
+def same(
+    cycle: StrutCycle,
+    analysis: Analysis,
+    gauges: Callable[[int], np.ndarray] = lambda order: np.eye(2),
+) -> None:
+    """Every order of the cycle is the reading's own, its gauges changed, scatter included."""
     for order in (1, 2, 3):
-        alone = from_struts(change(measured_run(analysis, RIG.oscillator, order=order)))
-        own = whole.run(order)
-        np.testing.assert_allclose(own.phasors.values, alone.phasors.values, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(
-            own.phasors.covariance, alone.phasors.covariance, rtol=1e-9, atol=1e-18
-        )
+        own = cycle.phasors.select([f"{name} {order}" for name in CHANNEL_NAMES])
+        change = np.eye(4, dtype=complex)
+        change[2:, 2:] = gauges(order)
+        expected = alone(analysis, order).mapped(change)
+        np.testing.assert_allclose(own.values, expected.values, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(own.covariance, expected.covariance, rtol=1e-9, atol=1e-18)
 
 
 def test_as_read(analysis: Analysis) -> None:
@@ -73,7 +80,7 @@ def test_orders_scatter_together(analysis: Analysis) -> None:
 
 def test_cross_talk(analysis: Analysis) -> None:
     cycle = measured_cycle(analysis, RIG.oscillator).calibrated(MATRIX)
-    same(cycle, analysis, lambda run: calibrated(run, MATRIX))
+    same(cycle, analysis, lambda _: MATRIX)
     with pytest.raises(ConfigurationError, match="not singular"):
         cycle.calibrated(np.ones((2, 2)))
 
@@ -87,7 +94,13 @@ def test_cross_talk(analysis: Analysis) -> None:
 def test_lag_by_transfer_function(analysis: Analysis, response) -> None:  # type: ignore[no-untyped-def]
     responses = {"force_aft": response, "force_fore": Delay(1e-3)}
     cycle = measured_cycle(analysis, RIG.oscillator).without_response(responses)
-    same(cycle, analysis, lambda run: without_response(run, responses))
+
+    def undone(order: int) -> np.ndarray:
+        omega = 2.0 * math.pi * 0.8 * order
+        return np.diag([1.0 / response_at(one, omega) for one in responses.values()])
+
+    assert cycle.frequency_hz == pytest.approx(0.8, rel=1e-4)
+    same(cycle, analysis, undone)
 
 
 def test_a_filter_that_lets_no_third_harmonic_through_is_refused(analysis: Analysis) -> None:
@@ -107,9 +120,8 @@ def test_zero_runs_come_off_the_means_alone(analysis: Analysis) -> None:
     after = before.without_zero(zero)
     assert after.mean_known
     assert not before.mean_known
-    alone = without_zero(measured_run(analysis, RIG.oscillator, order=0), zero)
     for name in ("force_aft", "force_fore"):
-        assert after.phasors[f"{name} 0"] == pytest.approx(alone.phasors[name])
+        assert after.phasors[f"{name} 0"] == pytest.approx(alone(analysis, 0)[name] - zero[name])
         assert after.phasors[f"{name} 1"] == before.phasors[f"{name} 1"]
     same(after, analysis)
 
@@ -120,8 +132,11 @@ def test_a_dry_run_leaves_the_waters_loads() -> None:
     left = wet.without_dry(air)
     taken = wet.without(RIG.body)
     assert [flag.code for flag in left.flags].count("dry_run_taken_off") == 1
-    np.testing.assert_allclose(left.run(1).loads.values, taken.run(1).net().values, rtol=2e-3)
-    np.testing.assert_allclose(left.run(3).loads.values, wet.run(3).loads.values, atol=0.1)
+    first, third = ((f"force {n}", f"moment {n}") for n in (1, 3))
+    own, expected = (one.hull.phasors.select(first).values for one in (left, taken))
+    np.testing.assert_allclose(own, expected, rtol=2e-3)
+    own, expected = (one.phasors.select(third).values for one in (left, wet))
+    np.testing.assert_allclose(own, expected, atol=0.1)
     with pytest.raises(ConfigurationError, match="a dry run was taken off"):
         left.without(RIG.body)
 
@@ -132,7 +147,7 @@ def test_a_known_mass_in_air_gives_gain_and_lag_for_all_orders() -> None:
     ideal = RIG.ideal()
     inverse = {name: Delay(-one.lag_s, 1.0 / one.gain) for name, one in gauges.items()}
     air = read(replace(POINT, medium=Medium.AIR, carriage_speed_m_s=0.0), ideal)
-    through = without_response(measured_run(air, RIG.oscillator), inverse)
+    through = measured_cycle(air, RIG.oscillator).without_response(inverse)
     found = in_place(through, RIG.body)
     wet = measured_cycle(read(replace(POINT, frequency_hz=0.5), ideal), RIG.oscillator)
     corrected = wet.without_response(inverse).without_response(found.responses)
@@ -146,7 +161,7 @@ def test_set_points_stand_in_for_displacements() -> None:
     measured = measured_cycle(read(rig=RIG.ideal()), RIG.oscillator)
     for name in ("displacement_aft 1", "displacement_fore 1"):
         assert cycle.phasors[name] == pytest.approx(measured.phasors[name], rel=1e-6)
-    assert cycle.model().run(1).motion_is_asked
+    assert cycle.model().motion_is_asked
 
 
 def test_a_run_that_stands_still() -> None:
@@ -155,7 +170,7 @@ def test_a_run_that_stands_still() -> None:
     cycle = static_cycle("drift", reading, HORIZONTAL_1963, 1.2, zero).model(drift_rad=0.1)
     assert cycle.frequency_hz == 0.0
     assert cycle.mean_known
-    assert cycle.run(0).loads.values[0].real == pytest.approx(15.0, abs=0.01)
-    assert cycle.run(0).loads.values[1].real == pytest.approx(5.0 * 0.5, abs=0.01)
+    assert cycle.phasors["force 0"].real == pytest.approx(15.0, abs=0.01)
+    assert cycle.phasors["moment 0"].real == pytest.approx(5.0 * 0.5, abs=0.01)
     assert math.isclose(cycle.drift_rad, 0.1)
     assert len(cycle.phasors.sources) == 2

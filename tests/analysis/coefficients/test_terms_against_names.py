@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
-from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of, waves_of
+from analysis.coefficients.term_waves import slopes_of, waves_of
+from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
@@ -44,11 +45,32 @@ def test_x_is_a_load_in_both_planes() -> None:
 
 
 def test_waves_are_products() -> None:
-    velocity = np.array([[1.0, -2.0], [3.0, 0.5]])
-    rate = np.array([[5.0, 7.0], [11.0, 13.0]])
-    terms = [term_of(n, Plane.HORIZONTAL) for n in ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0")]
-    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0]]
-    np.testing.assert_allclose(waves_of(terms, velocity, rate), expected)
+    moves = np.array([[2.0, 4.0], [1.0, -2.0], [3.0, 0.5], [5.0, 7.0], [11.0, 13.0]])
+    names = ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0", "Y_uv")
+    terms = [term_of(name, Plane.HORIZONTAL) for name in names]
+    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0], [2.0, -8.0]]
+    np.testing.assert_allclose(waves_of(terms, moves), expected)
+
+
+words = st.sampled_from(["u", "v", "r", "vdot", "rdot", "|v|", "|r|", "|u|"])
+away_from_zero = st.one_of(st.floats(0.1, 3.0), st.floats(-3.0, -0.1))  # corners have no slope
+
+
+@given(
+    st.lists(st.lists(words, max_size=4), min_size=1, max_size=3),
+    st.lists(away_from_zero, min_size=10, max_size=10),
+)
+def test_slopes_are_what_small_steps_show(factors: list[list[str]], at: list[float]) -> None:
+    terms = [Term(0, tuple(one)) for one in factors]
+    moves, step = np.array(at).reshape(5, 2), 1e-4
+    shown = np.empty((len(terms), 5, 2))
+    for k in range(5):
+        change = step * np.eye(5)[:, k, None]
+        shown[:, k] = (waves_of(terms, moves + change) - waves_of(terms, moves - change)) / 2 / step
+    found = slopes_of(terms, moves)
+    np.testing.assert_allclose(found, shown, rtol=1e-6, atol=1e-5)
+    whole = slopes_of(terms, np.stack((moves, 2.0 * moves)))
+    np.testing.assert_array_equal(whole[0], found)
 
 
 @given(st.floats(0.3, 400.0), st.floats(0.1, 30.0), st.floats(0.1, 20.0), st.floats(900.0, 1100.0))

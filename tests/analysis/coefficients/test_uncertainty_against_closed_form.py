@@ -6,16 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.measured import StrutRun, with_set_point_motion
-from analysis.coefficients.model import STATED, Stated
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.cycle_trials import draw_cycles
+from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.measured import MOTION_ASKED
 from analysis.coefficients.names import Form
-from analysis.coefficients.solve import problem_of, solve
-from analysis.coefficients.uncertainty import linear_shares, monte_carlo
+from analysis.coefficients.stated import STATED, Stated
 from analysis.motion import mass_matrix
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from tests.analysis.coefficients.ideal import (
     BODY,
+    ECCENTRICITY_M,
     RESTORING,
     covariance,
     ideal_struts,
@@ -26,12 +29,23 @@ from tests.analysis.coefficients.ideal import (
 
 FREQUENCY_HZ = 0.8
 OMEGA = 2.0 * math.pi * FREQUENCY_HZ
-HEAVE = SetPoint(FREQUENCY_HZ, 0.02)
+HEAVE = SetPoint(FREQUENCY_HZ, ECCENTRICITY_M)
+
+
+def solve(
+    cycles: list[Cycle],
+    form: Form = Form.SEAKEEPING,
+    stated: Stated = Stated(),  # noqa: B008
+) -> CycleFit:
+    return linear_fit(cycles, form, stated).fit
+
+
+def spread_of(fit: CycleFit, name: str) -> float:
+    return float(fit.uncertain.standard_uncertainty[fit.names.index(name)])
 
 
 def heave(stated: Stated, name: str) -> float:
-    result = solve([net(ideal_struts(HEAVE))], stated=stated)
-    return float(result.standard_uncertainty[result.index(name)])
+    return spread_of(solve([net(ideal_struts(HEAVE))], stated=stated), name)
 
 
 # F/x = c - w^2 (m + a) + i w b with c = 6900, m = 70, a = 75, b = 190
@@ -60,13 +74,12 @@ def test_stated_uncertainty_of_pure_heave(stated: Stated, name: str, expected: f
 
 def test_strut_phase_and_pitch() -> None:
     """Pitch: the moment's quadrature by an unnoticed lag, and inertia one to one."""
-    run = net(ideal_struts(SetPoint(FREQUENCY_HZ, 0.02, math.pi)))
+    run = net(ideal_struts(SetPoint(FREQUENCY_HZ, ECCENTRICITY_M, math.pi)))
     result = solve([run], stated=Stated(inertia_kg_m2=0.3))
-    spread = dict(zip(result.names, result.standard_uncertainty, strict=True))
-    assert spread["a55"] == pytest.approx(0.3, rel=1e-6)
+    assert spread_of(result, "a55") == pytest.approx(0.3, rel=1e-6)
     stiff = 2400.0 + BODY.mass_kg * 9.80665 * BODY.cg_z_m - OMEGA**2 * (27.5 + 22.0)
     lag = solve([run], stated=Stated(lag_s=1e-3))
-    assert lag.standard_uncertainty[lag.index("b55")] == pytest.approx(abs(stiff) * 1e-3, rel=1e-4)
+    assert spread_of(lag, "b55") == pytest.approx(abs(stiff) * 1e-3, rel=1e-4)
 
 
 def test_strut_phase_turns_the_mean_motion_by_half_of_it() -> None:
@@ -74,7 +87,7 @@ def test_strut_phase_turns_the_mean_motion_by_half_of_it() -> None:
     result = solve([net(ideal_struts(HEAVE))], stated=Stated(strut_phase_rad=0.01))
     coupling = RESTORING[0, 1] - OMEGA**2 * 1.4
     expected = abs(STIFF / 2.0 - coupling) * 0.01 / OMEGA
-    assert result.standard_uncertainty[result.index("b33")] == pytest.approx(expected, rel=1e-4)
+    assert spread_of(result, "b33") == pytest.approx(expected, rel=1e-4)
 
 
 def test_speed_acts_on_the_derivatives_of_rotation() -> None:
@@ -84,15 +97,15 @@ def test_speed_acts_on_the_derivatives_of_rotation() -> None:
         Form.MANOEUVRING,
         stated=Stated(speed_m_s=0.05),
     )
-    assert result.standard_uncertainty[result.index("Z_q")] == pytest.approx(75.0 * 0.05, rel=1e-6)
-    assert result.standard_uncertainty[result.index("Z_w")] == pytest.approx(0.0, abs=1e-6)
+    assert spread_of(result, "Z_q") == pytest.approx(75.0 * 0.05, rel=1e-6)
+    assert spread_of(result, "Z_w") == pytest.approx(0.0, abs=1e-6)
 
 
 def test_mass_is_common_to_all_runs_and_does_not_average_out() -> None:
     one = heave(Stated(mass_kg=0.2), "a33")
     runs = [net(ideal_struts(HEAVE, name=f"{k}")) for k in range(5)]
     many = solve(runs, stated=Stated(mass_kg=0.2))
-    assert many.standard_uncertainty[many.index("a33")] == pytest.approx(one, rel=1e-6)
+    assert spread_of(many, "a33") == pytest.approx(one, rel=1e-6)
 
 
 def test_shares_add_up_and_name_the_greatest() -> None:
@@ -100,12 +113,11 @@ def test_shares_add_up_and_name_the_greatest() -> None:
     run = net(scattered(ideal_struts(HEAVE, name="heave"), covariance(), 10, generator))
     stated = Stated(mass_kg=1.0, lag_s=1e-4, amplitude_relative=0.001)
     result = solve([run], stated=stated)
-    shares = result.share_of("a33")
-    assert sum(shares.values()) == pytest.approx(1.0)
-    assert next(iter(shares)) == "mass_kg"
-    assert set(shares) == {"scatter of heave", "mass_kg", "lag_s", "amplitude_relative"}
-    total = sum(share.variance for share in result.shares)
-    np.testing.assert_allclose(total, np.diagonal(result.covariance), rtol=1e-12)
+    row = result.names.index("a33")
+    parts = {one.label: (one.dense(4)[row] ** 2).sum() for one in result.uncertain.contributions}
+    assert max(parts, key=lambda label: parts[label]) == "mass_kg"
+    assert set(parts) == {"scatter of heave", "mass_kg", "lag_s", "amplitude_relative"}
+    assert sum(parts.values()) == pytest.approx(spread_of(result, "a33") ** 2, rel=1e-12)
 
 
 @pytest.mark.parametrize("form", list(Form))
@@ -116,55 +128,51 @@ def test_monte_carlo_beside_the_linear_budget(form: Form) -> None:
         for k, p in enumerate(pair())
     ]
     stated = Stated(mass_kg=0.1, lag_s=2e-4, amplitude_relative=0.002, frequency_relative=1e-4)
-    problem = problem_of(runs, form)
-    linear, _ = linear_shares(problem, stated)
-    trials = monte_carlo(problem, stated, trials=20_000, seed=5)
-    spread = np.sqrt(np.diagonal(linear))
-    np.testing.assert_allclose(trials.standard_uncertainty, spread, rtol=0.04)
-    np.testing.assert_allclose(trials.mean, problem.flat(problem.nominal()[None])[0],
-                               atol=0.05 * spread.max())  # fmt: skip
+    fit = solve(runs, form, stated)
+    drawn = np.concatenate([draw_cycles(fit, 5_000, (5, k)) for k in range(4)])
+    linear = fit.uncertain.covariance()
+    spread = fit.uncertain.standard_uncertainty
+    np.testing.assert_allclose(drawn.std(axis=0), spread, rtol=0.04)
+    np.testing.assert_allclose(drawn.mean(axis=0), fit.values, atol=0.05 * spread.max())
     correlation = linear / np.outer(spread, spread)
-    drawn = trials.covariance / np.outer(trials.standard_uncertainty, trials.standard_uncertainty)
-    np.testing.assert_allclose(drawn, correlation, atol=0.05)
-    again = monte_carlo(problem, stated, trials=20_000, seed=5)
-    np.testing.assert_array_equal(again.low, trials.low)
-
-
-def _forces_alone(point: SetPoint, name: str) -> StrutRun:
-    run = ideal_struts(point, name=name)
-    return replace(run, phasors=run.forces)
+    np.testing.assert_allclose(np.corrcoef(drawn.T), correlation, atol=0.05)
+    again = draw_cycles(fit, 5_000, (5, 0))
+    np.testing.assert_array_equal(again, drawn[:5_000])
 
 
 def test_every_stated_quantity_acts_on_something() -> None:
-    struts = [with_set_point_motion(_forces_alone(p, f"{k}")) for k, p in enumerate(pair())]
-    runs = [net(run) for run in struts]
+    struts = [ideal_struts(p, name=f"{k}") for k, p in enumerate(pair())]
+    asked = [replace(one, flags=(MOTION_ASKED,)) for one in struts]
+    runs = [net(run) for run in asked]
     for name in STATED:
         if name == "alignment_rad":
             continue  # acts on means, which linear coefficients do not see
-        result = solve(runs, Form.MANOEUVRING, stated=Stated(**{name: 1e-3}))
-        assert result.standard_uncertainty.max() > 1e-4, name
+        fit = solve(runs, Form.MANOEUVRING, stated=Stated(**{name: 1e-3}))
+        assert fit.uncertain.standard_uncertainty.max() > 1e-4, name
 
 
 def test_digits_lost_at_low_frequency_are_said() -> None:
     """At 0.1 Hz the inertia is a small part of the restoring."""
-    slow = SetPoint(0.1, 0.02)
-    result = solve([net(ideal_struts(slow))])
+    slow = SetPoint(0.1, ECCENTRICITY_M)
+    result = linear_fit([net(ideal_struts(slow))], Form.SEAKEEPING, Stated())
     omega = 2.0 * math.pi * 0.1
     part = omega**2 * 75.0 / 6900.0
-    k = result.index("a33")
+    k = result.fit.names.index("a33")
     assert result.retained[k] == pytest.approx(part, rel=1e-6)
     (flag,) = [f for f in result.flags if f.channel == "a33"]
     assert flag.code == "digits_lost"
     assert f"{100 * part:.2g} %" in flag.message
-    assert not [f for f in solve([net(ideal_struts(HEAVE))]).flags if f.channel == "a33"]
+    fast = linear_fit([net(ideal_struts(HEAVE))], Form.SEAKEEPING, Stated())
+    assert not [f for f in fast.flags if f.channel == "a33"]
 
 
 def test_net_load_covariance_is_the_linear_map() -> None:
-    """Run.net by mapping against the same by hand: cov = J cov J^T."""
+    """Loads on the hull by mapping against the same by hand: cov = J cov J^T."""
     run = net(scattered(ideal_struts(HEAVE), covariance(), 9, np.random.default_rng(0)))
     known = RESTORING + np.diag([0.0, BODY.mass_kg * 9.80665 * BODY.cg_z_m])
     known = known - OMEGA**2 * mass_matrix(BODY, Plane.VERTICAL)
-    slope = np.hstack((-np.kron(known, np.eye(2)), np.eye(4)))
-    np.testing.assert_allclose(
-        run.net().covariance, slope @ run.phasors.covariance @ slope.T, rtol=1e-10
-    )
+    slope = np.hstack((np.kron(known, np.eye(2)), -np.eye(4)))
+    gross = run.phasors.select(["translation 1", "rotation 1", "force 1", "moment 1"])
+    expected = slope @ gross.covariance @ slope.T
+    hull = run.hull.phasors.select(["force 1", "moment 1"]).covariance
+    np.testing.assert_allclose(hull, expected, atol=1e-8 * np.abs(expected).max())

@@ -1,17 +1,21 @@
 """Deliverables out and in again are the same, and hold what theory says of the motion."""
 
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from analysis.coefficients.cycle import SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.body_axes import labels
+from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.phasors import Phasors
 from analysis.exchange.simman import Deliverables, Description, cycle_of, deliverables_of, fourier
 from analysis.exchange.simman_files import read_simman, write_simman
+from analysis.kinematics.averaged import CHANNELS, UNITS
+from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
+from tests.analysis.coefficients.exact_campaigns import struts_of
+from tests.exact.rigs import exact_rig
 
 ORDERS, SPEED, FREQUENCY = 3, 1.2, 0.2
 ABOUT = Description(
@@ -21,17 +25,22 @@ ABOUT = Description(
 
 def cycle(plane: Plane = Plane.HORIZONTAL, *, drift_rad: float = 0.0, surge: bool = True) -> Cycle:
     generator = np.random.default_rng(4)
-    channels = ["translation", "rotation", "force", "moment", *([SURGE_FORCE] if surge else [])]
-    sizes = {"translation": 0.1, "rotation": 0.15, "force": 30.0, "moment": 12.0, SURGE_FORCE: 9.0}
-    names, values = [], []
-    for n in range(ORDERS + 1):
-        for name in channels:
-            value = complex(*generator.standard_normal(2)) * sizes[name] / (1 + n) ** 2
-            names.append(at_order(name, n))
-            values.append(value.real if n == 0 else value)
-    units = ("m", "rad", "N", "N m", "N")[: len(channels)] * (ORDERS + 1)
-    phasors = Phasors(tuple(names), units, np.array(values, dtype=complex))
+    channels = CHANNELS if surge else CHANNELS[:-1]
+    sizes = np.array([0.1, 0.15, 0.02, 0.3, 30.0, 12.0, 9.0])[: len(channels)]
+    draws = generator.standard_normal((2, ORDERS + 1, len(channels)))
+    draws[1, 0] = 0.0  # means are real
+    values = (draws[0] + 1j * draws[1]) * sizes / (1 + np.arange(ORDERS + 1)[:, None]) ** 2
+    values[0, 2] += SPEED
+    units = UNITS[: len(channels)] * (ORDERS + 1)
+    phasors = Phasors(labels(channels, ORDERS), units, values.ravel())
     return Cycle("yaw-1", plane, 0.5, FREQUENCY, SPEED, phasors, ORDERS, drift_rad=drift_rad)
+
+
+def turned(drift_rad: float) -> Cycle:
+    """A turntable that sways across the tank, exact to rounding."""
+    table = Arrangement(Joint.YAW_TABLE, drift_by=DriftBy.STRUTS_OFFSET)
+    rig = exact_rig(Plane.HORIZONTAL, table, rotation_rad=0.3, drift_rad=drift_rad, speed_m_s=SPEED)
+    return struts_of(rig, "yaw-1", 25).model(drift_rad=drift_rad)
 
 
 @pytest.mark.parametrize("plane", list(Plane))
@@ -57,7 +66,7 @@ def test_deliverables_give_the_cycle_back(plane: Plane) -> None:
     found = cycle_of(deliverables_of(own, ABOUT))
     for name in own.phasors.names:
         expected = own.phasors.values[own.phasors.index(name)]
-        assert found.phasors.values[found.phasors.index(name)] == expected, name
+        assert found.phasors[name] == pytest.approx(expected, rel=1e-12, abs=1e-12), name
 
 
 def test_the_loads_are_the_opposite_of_what_struts_exert() -> None:
@@ -89,19 +98,14 @@ def test_rates_are_the_slopes(plane: Plane, pairs: list[tuple[str, str]]) -> Non
         np.testing.assert_allclose(one.columns[rate], differences(one, name), atol=1e-9 * size)
 
 
-def test_sway_velocity_is_that_through_the_water() -> None:
-    drift = 0.12
-    one = deliverables_of(cycle(drift_rad=drift), ABOUT)
-    own = differences(one, "y") - SPEED * (math.sin(drift) + math.cos(drift) * one.columns["psi"])
-    np.testing.assert_allclose(one.columns["v"], own, atol=1e-12)
-
-
-def test_speed_ahead_is_the_carriage_turned_into_the_model() -> None:
-    drift = 0.12
-    one = deliverables_of(cycle(drift_rad=drift), ABOUT)
-    heading = drift + one.columns["psi"]
-    along = SPEED * np.cos(heading) + differences(one, "y") * np.sin(one.columns["psi"])
+def test_velocities_are_those_through_the_water() -> None:
+    """u = U cos psi + y' sin psi, v = -U sin psi + y' cos psi, psi with the drift."""
+    one = deliverables_of(turned(0.12), ABOUT)
+    heading, pace = 0.12 + one.columns["psi"], differences(one, "y")
+    along = SPEED * np.cos(heading) + pace * np.sin(heading)
+    across = pace * np.cos(heading) - SPEED * np.sin(heading)
     np.testing.assert_allclose(one.columns["u"], along, atol=1e-12)
+    np.testing.assert_allclose(one.columns["v"], across, atol=1e-12)
 
 
 def test_another_tanks_cycle_without_fourier_file(tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.coefficients.phasors import interleaved
-from analysis.kinematics.cycle import INSTANTS, driven
+from analysis.kinematics.averaged import in_body_axes
+from analysis.kinematics.cycle import INSTANTS, driven, waves
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Motion, motion
 from hardware.description.body import Body
@@ -39,6 +40,13 @@ def motion_of(rig: ExactRig) -> Motion:
 def body_of(body: ExactBody) -> Body:
     """Return the product's word for the body (nothing to the side in the horizontal plane)."""
     return Body(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_across_m)
+
+
+def in_axes(geometry: Geometry, parts: NDArray[np.float64], omega: float) -> NDArray[np.float64]:
+    """Return the product's channels over the instants, of :func:`measured` parts."""
+    shaped = parts.reshape(-1, 5, 2)
+    moved, read = shaped[:, :2].ravel(), shaped[:, 2:].ravel()
+    return np.asarray(in_body_axes(geometry, driven(moved, omega), waves(read, 3)))
 
 
 def stacked(rig: ExactRig, exact: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -96,8 +96,8 @@ def put_in(row: dict[str, Any]) -> float:
 
 
 def holds_resistance(row: dict[str, Any]) -> bool:
-    """Oscillation under drift: what the drift takes off the resistance goes to X_0 and X_rr."""
-    return row["name"] in ("X_0", "X_rr") and row["frequency_hz"] > 0.0
+    """Oscillation at speed: the resistance follows u as the model turns, in all even terms of X."""
+    return row["name"] in ("X_0", "X_vv", "X_rr") and row["frequency_hz"] > 0.0
 
 
 @pytest.mark.slow
@@ -116,7 +116,7 @@ def test_drift_tow_and_yaw_with_drift_give_what_was_put_in(tmp_path: Path) -> No
         / row["half_width"]
         for row in rows
     }
-    assert max(off.values()) < 2.0, off
+    assert max(off.values()) < 2.5, off  # Student's t of few periods, the largest of some sixty
     assert np.mean([ratio <= 1.0 for ratio in off.values()]) >= RATE, off
     checks = [one for one in found["coefficients"]["checks"] if one["kind"] == "static drift"]
     assert {one["name"] for one in checks} >= {"Y_v", "N_v"}

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.readers import from_dataset, write_recording
+from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.errors import ConfigurationError
 from hardware.roles import Reading
 from pmm.campaign import Campaign
@@ -74,6 +75,15 @@ def test_a_whole_example_is_a_campaign(name: str, tmp_path: Path) -> None:
     loads = [one.load for one in campaign.at_rest if one.kind is RunKind.CHECK_WEIGHT]
     assert loads == [one.load for one in plan.runs if one.kind is RunKind.CHECK_WEIGHT]
     assert not list(tmp_path.glob(".*"))
+
+
+def test_the_arrangement_is_handed_on(tmp_path: Path) -> None:
+    plan, rig = read_plan_and_rig(EXAMPLES / "horizontal" / "plan.toml")
+    other = Arrangement(Joint.SLIDES_ON_RIG, Pivot.FORE, Gauges.RIG, DriftBy.STRUTS_OFFSET)
+    oscillator = replace(rig.oscillator, **vars(other))
+    assert oscillator.arrangement == other
+    file = write_campaign(tmp_path, plan, replace(rig, oscillator=oscillator), _done(plan))
+    assert read_campaign(file).oscillator == oscillator
 
 
 def test_the_file_is_right_after_every_run(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from sim.effects.k6b_free_play import FreePlay
 from sim.gear import Gear
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig, vertical_rig
-from tests.sim.effects.against_theory import mismatch
+from tests.sim.effects.against_theory import at_small_angles
 
 RIG = vertical_rig().ideal()
 HEAVE = SetPoint(1.0, 0.02)
@@ -38,7 +38,7 @@ SET_POINTS = [
     ],
 )
 def test_signature(effect: Effect, tolerance: float) -> None:
-    assert mismatch(effect, RIG, SET_POINTS) < tolerance
+    assert at_small_angles(effect, RIG, SET_POINTS) < tolerance
 
 
 def change(effect: Effect, rig: SimulatedRig, set_point: SetPoint, name: str) -> np.ndarray:
@@ -88,7 +88,7 @@ def test_backlash_moves_the_struts_at_first_and_third_order(set_point: SetPoint)
 def test_a_load_that_does_not_reverse_keeps_the_teeth_together() -> None:
     """At a strut phase of 60 degrees the mean torque is larger than what varies."""
     held = SetPoint(1.0, 0.02, np.pi / 3.0)
-    assert mismatch(GearBacklash(), RIG, [held]) < 1e-3
+    assert at_small_angles(GearBacklash(), RIG, [held]) < 1e-3
     wide = change(GearBacklash(0.01), RIG, held, "force_aft")
     narrow = change(GearBacklash(1e-4), RIG, held, "force_aft")
     assert np.abs(wide - narrow).max() < 1e-6

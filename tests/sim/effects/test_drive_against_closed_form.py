@@ -19,7 +19,7 @@ from sim.effects.effect import Effect
 from sim.motor import Cogging, Guides
 from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from tests.sim.effects.against_theory import mismatch
+from tests.sim.effects.against_theory import at_small_angles
 
 FloatArray = NDArray[np.float64]
 
@@ -46,14 +46,14 @@ CASES = [
 @pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
 @pytest.mark.parametrize(("effect", "tolerance"), CASES)
 def test_signature(effect: Effect, tolerance: float, rig: SimulatedRig) -> None:
-    assert mismatch(effect, rig.ideal(), SET_POINTS) < tolerance
+    assert at_small_angles(effect, rig.ideal(), SET_POINTS) < tolerance
 
 
 @pytest.mark.parametrize("effect", [SpeedDroop(2e-4), LoadRipple(200.0)])
 def test_friction_of_the_guides_loads_the_shaft(effect: Effect) -> None:
     rig = vertical_rig().ideal()
     rubbing = replace(rig, drive=replace(rig.drive, guides=Guides(5.0, 10.0)))
-    assert mismatch(effect, rubbing, SET_POINTS) < 1e-3
+    assert at_small_angles(effect, rubbing, SET_POINTS) < 1e-3
 
 
 def test_guide_friction_shows_in_no_force_but_in_the_torque() -> None:
@@ -131,4 +131,6 @@ def test_droop_and_ripple_make_one_motor_in_either_order() -> None:
 
 
 def test_belt_ripple_has_no_part_in_the_harmonics() -> None:
-    assert np.isnan(mismatch(SpeedRippleEffect(0.005, 2.5), vertical_rig().ideal(), SET_POINTS[:2]))
+    assert np.isnan(
+        at_small_angles(SpeedRippleEffect(0.005, 2.5), vertical_rig().ideal(), SET_POINTS[:2])
+    )

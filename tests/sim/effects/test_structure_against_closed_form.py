@@ -17,7 +17,7 @@ from sim.effects.s9_inertia_error import InertiaError
 from sim.effects.s10_entrained_water import EntrainedWater
 from sim.effects.s11_strut_tare import StrutTare
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from tests.sim.effects.against_theory import mismatch
+from tests.sim.effects.against_theory import at_small_angles
 
 PHASES = (0.0, np.pi / 2.0, np.pi)
 IN_WATER = [SetPoint(f, a, p) for f in (0.4, 0.9) for a in (0.01, 0.03) for p in PHASES]
@@ -34,10 +34,11 @@ CASES = [
     (Cable(at_struts=0.6), 1e-3),
     (Cable(sliding_n=0.3), 2e-2),
     (Cable(preload_n=-3.0, stiffness_n_m2=200.0, stiffness_n_m3=4e3, rubbing_n_m=0.0), 1e-9),
-    (MassError(), 1e-9),
+    (MassError(), 1e-8),  # in air the weight's part along a pitching model, and so g theta^2
     (InertiaError(), 1e-9),
-    (EntrainedWater(), 1e-9),
-    (EntrainedWater(5.0, 0.6, 0.1), 1e-9),
+    # Where the model only turns no water sloshes: rounding over the least that counts.
+    (EntrainedWater(), 1e-7),
+    (EntrainedWater(5.0, 0.6, 0.1), 1e-7),
     (StrutTare(), 1e-3),
 ]
 
@@ -55,9 +56,9 @@ SHARP = [
 @pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
 @pytest.mark.parametrize(("effect", "tolerance"), CASES)
 def test_signature(effect: Effect, tolerance: float, rig: SimulatedRig) -> None:
-    assert mismatch(effect, rig.ideal(), SET_POINTS) < tolerance
+    assert at_small_angles(effect, rig.ideal(), SET_POINTS) < tolerance
 
 
 @pytest.mark.parametrize(("effect", "tolerance"), SHARP)
 def test_signature_of_sharp_friction(effect: Effect, tolerance: float) -> None:
-    assert mismatch(effect, vertical_rig().ideal(), SET_POINTS, points=512) < tolerance
+    assert at_small_angles(effect, vertical_rig().ideal(), SET_POINTS, points=512) < tolerance

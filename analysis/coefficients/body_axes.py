@@ -1,0 +1,175 @@
+"""From the struts' harmonics to the model's in body axes, exactly, with all that is uncertain.
+
+What is stated of the struts and of the geometry (:mod:`analysis.coefficients.stated`) acts here, as
+a slope beside the scatter: an amplitude, a lag, the spacing, the speed move the model's motion and
+loads, and with these all coefficients.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analysis.coefficients.phasors import (
+    ComplexArray,
+    FloatArray,
+    Phasors,
+    interleaved,
+)
+from analysis.coefficients.stated import STATED
+from analysis.kinematics.averaged import CHANNELS, UNITS, in_body_axes
+from analysis.kinematics.cycle import harmonics, per_part
+from analysis.kinematics.geometry import Geometry, Waves
+from analysis.kinematics.linearised import by_parts, pointwise
+from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.projection import loads, readings
+
+_AFT, _FORE = 0, 1
+_DRIVEN = ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2))  # channel, times differentiated
+_GEOMETRY = ("half_spacing_m", "speed_m_s", "alignment_rad")
+
+
+def at_order(name: str, order: int) -> str:
+    """Return what a phasor of a cycle is called."""
+    return f"{name} {order}"
+
+
+def labels(channels: Sequence[str], orders: int) -> tuple[str, ...]:
+    """Return the names of all phasors, order by order."""
+    return tuple(at_order(name, n) for n in range(orders + 1) for name in channels)
+
+
+@dataclass(frozen=True, eq=False)
+class InBodyAxes:
+    """The model's phasors, and how they follow what is stated.
+
+    Attributes
+    ----------
+    phasors
+        Of :data:`analysis.kinematics.averaged.CHANNELS`, order by order; the rotation from where
+        the drift sets the model.
+    sensitivity
+        Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
+    of_tare
+        Loads in body axes of what the gauges read of 1 N m at rest, where the drift sets the model:
+        a zero run takes that off all readings. Shape ``(2 or 3, instants)``.
+    """
+
+    phasors: Phasors
+    sensitivity: FloatArray
+    of_tare: FloatArray
+
+
+def of_struts(
+    struts: Phasors, geometry: Geometry, frequency_hz: float, orders: int, *, asked: bool
+) -> InBodyAxes:
+    """Return the model's phasors about the midpoint.
+
+    Parameters
+    ----------
+    struts
+        Displacements and gauges of the aft and the fore strut, with or without ``force_x``, order
+        by order.
+    geometry
+        Numbers, not arrays.
+    asked
+        Whether the displacements are the set-point's: the photocell's latency acts on them.
+
+    Raises
+    ------
+    DataError
+        As :func:`analysis.kinematics.averaged.in_body_axes`.
+    """
+    channels = len(struts.names) // (orders + 1)
+    omega = 2.0 * math.pi * frequency_hz
+    wanted = (*_DRIVEN, *((k, 0) for k in range(2, channels)))
+    maps = per_part(orders + 1, channels, wanted, omega)
+    parts = interleaved(struts.values)
+    given = np.array([[value] for value in _given(geometry)])
+    inputs = np.concatenate((parts @ maps, given * np.ones(maps.shape[-1])))
+    values, slope = pointwise(lambda waves: _model(geometry, waves), inputs)
+    gauged = len(wanted)
+    by_struts = by_parts(slope[:, :gauged], maps, orders)
+    found = harmonics(values, orders)
+    found[2] -= geometry.drift_rad
+    names = CHANNELS[: len(values)]
+    phasors = struts.carried(
+        found[0::2] + 1j * found[1::2],
+        by_struts,
+        labels(names, orders),
+        UNITS[: len(names)] * (orders + 1),
+    )
+    sensitivity = by_struts @ _by_stated(struts.values, channels, omega, asked=asked)
+    for k, name in enumerate(_GEOMETRY):
+        sensitivity[:, STATED.index(name)] += harmonics(slope[:, gauged + k], orders)
+    sensitivity[2, STATED.index("alignment_rad")] -= 1.0  # the rotation is from the drift
+    faster = slope[:, 2:4] * inputs[2:4] + 2.0 * slope[:, 4:6] * inputs[4:6]
+    sensitivity[:, STATED.index("frequency_relative")] += harmonics(faster.sum(axis=1), orders)
+    moved = _moved(found.reshape(orders + 1, len(names), 2), geometry, omega)
+    sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
+    return InBodyAxes(phasors, sensitivity, _of_tare(geometry, inputs[:6], channels - 2))
+
+
+def _given(geometry: Geometry) -> tuple[float, ...]:
+    return (
+        float(geometry.half_spacing_m),
+        float(geometry.speed_m_s),
+        float(geometry.drift_rad),
+    )
+
+
+def _model(geometry: Geometry, waves: Waves) -> Waves:
+    half, speed, drift = (waves[..., -3 + k, :] for k in range(3))
+    exact = replace(geometry, half_spacing_m=half, speed_m_s=speed, drift_rad=drift)
+    driven = Driven(waves[..., 0:2, :], waves[..., 2:4, :], waves[..., 4:6, :])
+    return in_body_axes(exact, driven, waves[..., 6:-3, :])
+
+
+def _of_tare(geometry: Geometry, moved: FloatArray, gauges: int) -> FloatArray:
+    still = np.zeros((2, 1))
+    at_rest = motion(geometry, Driven(still, still, still)).line_rad
+    read = readings(geometry, at_rest, np.array([[0.0], [1.0], [0.0]]))[:gauges]
+    line = motion(geometry, Driven(moved[0:2], moved[2:4], moved[4:6])).line_rad
+    return loads(geometry, line, read * np.ones_like(line))
+
+
+def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool) -> FloatArray:
+    """How the struts' phasors follow what is stated of displacements and gauges."""
+    shaped = values.reshape(-1, channels)
+    order = np.arange(len(shaped))
+    aft, fore = 2 + _AFT, 2 + _FORE
+    later = 1j * omega * order
+    moves: dict[str, dict[int, ComplexArray]] = {
+        "amplitude_relative": {_AFT: shaped[:, _AFT], _FORE: shaped[:, _FORE]},
+        "strut_phase_rad": {_FORE: 1j * order * shaped[:, _FORE]},
+        "lag_s": {aft: later * shaped[:, aft], fore: later * shaped[:, fore]},
+        "skew_s": {fore: later * shaped[:, fore]},
+        "force_gain_relative": {aft: shaped[:, aft], fore: shaped[:, fore]},
+        "gauge_aft_relative": {aft: shaped[:, aft]},
+        "gauge_fore_relative": {fore: shaped[:, fore]},
+        "cross_talk_aft": {aft: shaped[:, fore]},
+        "cross_talk_fore": {fore: shaped[:, aft]},
+    }
+    if asked:
+        moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
+    found = np.zeros((len(shaped), channels, 2, len(STATED)))
+    for name, columns in moves.items():
+        for channel, change in columns.items():
+            found[:, channel, 0, STATED.index(name)] = change.real
+            found[:, channel, 1, STATED.index(name)] = change.imag
+    return found.reshape(2 * len(values), len(STATED))
+
+
+def _moved(parts: FloatArray, geometry: Geometry, omega: float) -> FloatArray:
+    """How motion and loads follow the place of the midpoint on the model, ahead."""
+    rotation = parts[:, 1, 0] + 1j * parts[:, 1, 1]
+    turning = 1j * omega * np.arange(len(parts)) * rotation
+    found = np.zeros_like(parts)
+    for channel, change in (
+        (0, -geometry.side * rotation),
+        (3, -geometry.side * turning),
+        (5, geometry.side * (parts[:, 4, 0] + 1j * parts[:, 4, 1])),
+    ):
+        found[:, channel, 0], found[:, channel, 1] = change.real, change.imag
+    return found

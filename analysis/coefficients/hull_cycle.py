@@ -1,0 +1,187 @@
+"""What the water does to the hull over a cycle: gross loads less those of inertia and weight.
+
+Inertia is taken off exactly, in body axes. A model in water is borne by it: of weight and buoyancy
+``m g z_G sin(pitch)`` is left besides the restoring that is stated, less what a zero run took off
+the readings at rest.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.coefficients.body_axes import labels
+from analysis.coefficients.phasors import (
+    FloatArray,
+    Phasors,
+    from_interleaved,
+    interleaved,
+    real_form,
+)
+from analysis.coefficients.stated import STATED
+from analysis.kinematics.averaged import CHANNELS, UNITS
+from analysis.kinematics.cycle import harmonics, per_part
+from analysis.kinematics.geometry import Waves
+from analysis.kinematics.linearised import by_parts, pointwise
+from analysis.kinematics.motion import Motion
+from analysis.kinematics.rigid_body import inertia_terms
+from hardware.description.body import Body
+from hardware.description.oscillator import Plane
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+_MOVING = 4
+"""Channels of motion; those of the loads follow."""
+_INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
+_OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
+_TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad")
+_TIMES = np.array([times for _, times in _INPUTS])
+
+
+@dataclass(frozen=True, eq=False)
+class HullCycle:
+    """Motion of the wanted point through the water, and the water's loads about it on the hull.
+
+    Attributes
+    ----------
+    phasors
+        Of :data:`analysis.kinematics.averaged.CHANNELS`, order by order.
+    sensitivity
+        Slope of their real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
+    """
+
+    phasors: Phasors
+    sensitivity: FloatArray
+
+
+def on_hull(
+    gross: Phasors,
+    sensitivity: FloatArray,
+    channels: tuple[str, ...],
+    *,
+    plane: Plane,
+    frequency_hz: float,
+    speed_m_s: float,
+    drift_rad: float,
+    of_tare: FloatArray,
+    body: Body | None,
+    restoring: FloatArray,
+    point_ahead_m: float,
+) -> HullCycle:
+    """Return motion through the water and the water's loads.
+
+    Parameters
+    ----------
+    gross, sensitivity, channels
+        Of :class:`analysis.coefficients.cycle.Cycle`.
+    """
+    count = len(gross.names) // len(channels)
+    omega = 2.0 * math.pi * frequency_hz
+    maps = per_part(count, len(channels), _INPUTS, omega)
+    parts = interleaved(gross.values)
+    moved = parts @ maps
+    known = (
+        (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
+    )
+    stated = np.array([[*known, 1.0, drift_rad]]).T * np.ones(maps.shape[-1])
+    loads = len(channels) - _MOVING
+    values, slope = pointwise(
+        lambda waves: _asked(waves, plane, of_tare, restoring)[..., :loads, :],
+        np.concatenate((moved, stated)),
+    )
+    orders = count - 1
+    net = _Net(count, len(channels))
+    whole = net.with_loads(by_parts(slope[:, : len(_INPUTS)], maps, orders))
+    own = np.zeros((len(parts), len(STATED)))
+    for name, column in zip(_TAKEN, np.moveaxis(slope[:, len(_INPUTS) :], 1, 0), strict=True):
+        if body is not None or name not in _OF_BODY:
+            own[net.loads, STATED.index(name)] += harmonics(column, orders)
+    own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
+    faster = (slope[:, : len(_INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
+    own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
+    sensitivity = own + whole @ sensitivity
+    asked = harmonics(values, orders)
+    found = np.where(net.is_load, -parts, parts)
+    found[net.loads] += asked
+    shift, by_pace, by_speed = _to_point(
+        count, len(channels), point_ahead_m, plane, omega, speed_m_s
+    )
+    sensitivity = shift @ sensitivity
+    sensitivity[:, STATED.index("frequency_relative")] += by_pace @ found
+    sensitivity[:, STATED.index("speed_m_s")] += by_speed @ found
+    found = shift @ found
+    return HullCycle(
+        gross.carried(
+            from_interleaved(found),
+            shift @ whole,
+            labels(channels, orders),
+            UNITS[: len(channels)] * count,
+        ),
+        sensitivity,
+    )
+
+
+class _Net:
+    """Where the loads stand among the parts."""
+
+    def __init__(self, count: int, channels: int) -> None:
+        place = np.arange(2 * count * channels).reshape(count, channels, 2)
+        self.loads = place[:, _MOVING:].ravel()
+        self.is_load = np.zeros(2 * count * channels, dtype=bool)
+        self.is_load[self.loads] = True
+
+    def with_loads(self, asked: FloatArray) -> FloatArray:
+        """Return the slope of the hull's parts by the gross ones."""
+        found = np.diag(np.where(self.is_load, -1.0, 1.0))
+        found[self.loads] += asked
+        return found
+
+
+def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArray) -> Waves:
+    """What inertia, weight and restoring ask of the struts: force, moment, surge force."""
+    translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
+    mass, ahead, below, turned, factor, drift = np.moveaxis(waves[..., 8:, :], -2, 0)
+    state = Motion(
+        rotation,
+        rotation,
+        translation,
+        np.stack((u, v, r), axis=-2),
+        np.stack((u_rate, v_rate, r_rate), axis=-2),
+    )
+    moments = np.stack((mass, mass * ahead, mass * below, turned), axis=-2)
+    found = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
+    if plane is Plane.VERTICAL:
+        hanging = STANDARD_GRAVITY_M_S2 * mass * below
+        found[..., 1, :] += hanging * np.sin(rotation + drift)
+        tared = (hanging * np.sin(drift))[..., None, :] * of_tare
+        found[..., : len(of_tare), :] -= tared
+    place = np.stack((translation, rotation), axis=-2)
+    found[..., :2, :] += factor[..., None, :] * np.einsum("rc,...ct->...rt", restoring, place)
+    return np.asarray(found)
+
+
+def _to_point(
+    count: int, channels: int, ahead_m: float, plane: Plane, omega: float, speed_m_s: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what takes the parts to a point ahead, and its slopes by ln(omega) and the speed.
+
+    The translation becomes that whose rate is the velocity through the water less the incidence,
+    ``q' = v - U E q``: what the seakeeping form writes its loads with, at any angle.
+    """
+    side = -1.0 if plane is Plane.VERTICAL else 1.0
+    arm, names = side * ahead_m, CHANNELS[:channels]
+    whole = np.eye(count * channels, dtype=np.complex128)
+    by_pace, by_speed = np.zeros_like(whole), np.zeros_like(whole)
+    for n in range(count):
+        place = {name: n * channels + k for k, name in enumerate(names)}
+        rate = 1j * n * omega
+        way, across, turn = place["translation"], place["across"], place["rotation"]
+        whole[across, turn] = by_pace[across, turn] = rate * arm
+        whole[place["moment"], place["force"]] = -arm
+        whole[way, turn] = arm
+        if n:
+            whole[way, way], whole[way, across] = 0.0, 1.0 / rate
+            by_speed[way, turn] = side / rate
+            whole[way, turn] += speed_m_s * by_speed[way, turn]
+            by_pace[way, across] = -1.0 / rate
+            by_pace[way, turn] = -speed_m_s * by_speed[way, turn]
+    return real_form(whole), real_form(by_pace), real_form(by_speed)

@@ -1,0 +1,58 @@
+"""Terms over a cycle: products of factors, and how they follow each motion.
+
+The factors are the velocities through the water along (u), across (v) and turning (r), and the
+rates of the latter two, at each instant of the averaged cycle.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from analysis.coefficients.phasors import FloatArray
+from analysis.coefficients.terms import Term
+
+MOVES = ("u", "v", "r", "vdot", "rdot")
+
+
+def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
+    """Return each term's product of factors over a cycle.
+
+    Parameters
+    ----------
+    moves
+        :data:`MOVES`, shape ``(..., 5, instants)``.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(..., terms, instants)``.
+    """
+    found = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
+    for k, term in enumerate(terms):
+        found[..., k, :] = _product([_factor(one, moves) for one in term.factors], moves)
+    return found
+
+
+def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
+    """Return how each term follows each motion, shape ``(..., terms, 5, instants)``."""
+    found = np.zeros((*moves.shape[:-2], len(terms), len(MOVES), moves.shape[-1]))
+    for k, term in enumerate(terms):
+        factors = [_factor(one, moves) for one in term.factors]
+        for n, name in enumerate(term.factors):
+            others = _product(factors[:n] + factors[n + 1 :], moves)
+            place = MOVES.index(name.strip("|"))
+            own = np.sign(moves[..., place, :]) if "|" in name else 1.0
+            found[..., k, place, :] += own * others
+    return found
+
+
+def _factor(name: str, moves: FloatArray) -> FloatArray:
+    wave = moves[..., MOVES.index(name.strip("|")), :]
+    return np.abs(wave) if "|" in name else wave
+
+
+def _product(factors: Sequence[FloatArray], moves: FloatArray) -> FloatArray:
+    found = np.ones_like(moves[..., 0, :])
+    for one in factors:
+        found = found * one
+    return found
