@@ -18,6 +18,7 @@ from hardware.errors import BusOffError, BusOpenError, DeadReceiveThreadError
 
 # Part of the bit rate that process data may take: the rest is for SDO, EMCY and repeated frames.
 LARGEST_LOAD: Final = 0.7
+FASTEST_HZ: Final = 10_000.0  # cycles: ten times what any loop here keeps
 _ANSWER_SHARE: Final = 0.8  # of the period, for all nodes to answer a SYNC
 _POLL_S: Final = 0.05
 # An adapter that takes no frame for so long, or a thread that does not end, is given up.
@@ -74,6 +75,12 @@ class BusConfiguration:
     options: Mapping[str, int | float | str | bool] = field(
         default_factory=lambda: MappingProxyType({})
     )
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.sync_rate_hz <= FASTEST_HZ:
+            raise ConfigurationError(
+                f"sync_rate_hz = {self.sync_rate_hz:g} has to be above 0, at most {FASTEST_HZ:g}"
+            )
 
     @property
     def period_s(self) -> float:

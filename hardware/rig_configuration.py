@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib.metadata import EntryPoint
 from typing import Final
 
-from hardware.bus import BusConfiguration, bus_load, check_load
+from hardware.bus import FASTEST_HZ, BusConfiguration, bus_load, check_load
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Driver, NodePlan, find_driver, read_settings
 from hardware.roles import Role
@@ -20,7 +20,6 @@ ROLES: Final = {
     "forces": Role.FORCES,
 }
 TABLES: Final = (*ROLES, "bus", "cycle_rate_hz")  # of rig.toml; others are not the devices'
-FASTEST_HZ: Final = 10_000.0  # cycles: ten times what any loop here keeps
 _SYNC_BYTES, _BEAT_BYTES = 1, 1
 
 

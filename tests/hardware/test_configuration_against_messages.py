@@ -122,6 +122,12 @@ def test_the_bus_load_is_checked_against_the_bit_rate(rate: float, fits: bool) -
         assert "of its 1000000 bit/s; the limit is 70%. Up to" in message
 
 
+@pytest.mark.parametrize("rate", [0.0, -5.0, -1e308, 1e308, 10_001.0])
+def test_a_rate_that_no_bus_has_is_refused(rate: float) -> None:
+    message = refused({"bus": {**BUS, "sync_rate_hz": rate}, "shaft": SHAFT})
+    assert f"sync_rate_hz = {rate:g} has to be above 0, at most 10000" in message
+
+
 def test_a_channel_name_twice_is_refused() -> None:
     second = {**FORCES, "node": 5}
     assert "'force_aft' is there 2 times" in refused({"bus": BUS, "forces": [FORCES, second]})
