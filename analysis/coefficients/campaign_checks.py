@@ -180,16 +180,22 @@ def _restoring(cycles: Sequence[Cycle], row: int, column: int) -> Pair:
 
 
 def _stiffness(cycle: Cycle, row: int, column: int) -> UncertainValues:
-    """Load in phase with the motion, over it, less the model's inertia and weight."""
-    chosen = cycle.phasors.select((at_order(MOTIONS[column], 1), at_order(LOADS[row], 1)))
-    own, load = chosen.values
-    ratio = load / own
+    """Load in phase with the motion, over it, less the model's inertia and weight.
+
+    What the other motion asks for by hydrostatics is taken off: pitch by struts that slide heaves
+    the midpoint a little.
+    """
+    names = (MOTIONS[column], MOTIONS[1 - column], LOADS[row])
+    chosen = cycle.phasors.select([at_order(name, 1) for name in names])
+    own, other, load = chosen.values
+    beside = cycle.restoring[row, 1 - column]
+    ratio = (load - beside * other) / own
     body = cycle.body
     assert body is not None  # noqa: S101 - _serves saw to it
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     taken = weight_matrix(body, cycle.plane) - square * mass_matrix(body, cycle.plane)
     value = np.array([ratio.real - taken[row, column]])
-    slope = np.array([-ratio / own, 1.0 / own])
+    slope = np.array([-ratio / own, -beside / own, 1.0 / own])
     real = np.array([part for z in slope for part in (z.real, -z.imag)])
     parts = []
     for source in chosen.sources:

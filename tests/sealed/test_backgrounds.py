@@ -22,5 +22,5 @@ def test_a_light_drive_would_be_seen() -> None:
     case = make(11, 1, null=True)
     background = Background(case.situation, case.projection)
     light = case.situation.parameters.copy()
-    heavier(light, 20.0 / light[P.MOTOR_INERTIA])
+    heavier(light, 5.0 / light[P.MOTOR_INERTIA])
     assert background.of(light) > 3.0

@@ -116,7 +116,9 @@ def test_several_processes_and_trials_give_the_same_numbers(campaign: Path) -> N
     assert one == two
     for row in linear(one):
         width = (row["trials_high"] - row["trials_low"]) / 2.0
-        assert width == pytest.approx(row["half_width"], rel=0.15)
+        # Drawn Student's t of five degrees beside stated normal ones is wider than the budget's
+        # effective degrees of freedom say, by 16 % at most where both are as large.
+        assert width == pytest.approx(row["half_width"], rel=0.2)
         assert row["trials_low"] < row["value"] < row["trials_high"]
 
 
@@ -227,7 +229,7 @@ def test_offsets_and_their_drift_are_taken_off_the_means(tmp_path: Path) -> None
     # A third of the way from 1 + 4 to 5 + 8 N.
     assert off == pytest.approx([5.0 + 8.0 / 3.0], abs=0.01)
     assert found.cycles[0].mean_known
-    np.testing.assert_array_equal(found.cycles[0].loads, plain.cycles[0].loads)
+    np.testing.assert_allclose(found.cycles[0].loads, plain.cycles[0].loads, rtol=1e-12)
 
 
 def test_known_lag_and_gain_are_taken_out(tmp_path: Path) -> None:
