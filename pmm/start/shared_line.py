@@ -222,6 +222,8 @@ def _part(chosen: Recording, reference: PhaseReference, beside: float) -> Part:
     except PmmError:
         return NO_PART
     first = complex(*found.coefficients[0, 1:3])
-    scatter = float(np.hypot(*found.standard_uncertainty[0, 1:3]))
+    # A wave maker that starts and stops inside the stretch has memory, and its line all the same.
+    alone = found.standard_uncertainty / found.widening
+    scatter = float(np.hypot(*alone[0, 1:3]))
     rounding = _ROUNDING**0.5 * abs(float(found.mean[0]))
     return Part(first, abs(first) > max(CARRIED * scatter, rounding), beside)
