@@ -21,11 +21,11 @@ from benchmarks.machine import ROOT
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.hull import HullCoefficients
+from sim.model.hull import HullCoefficients
+from sim.model.water.table_files import read_heave_csv, read_hull_csv
+from sim.model.water.tables import RadiationTable
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
-from sim.water.table_files import read_heave_csv, read_hull_csv
-from sim.water.tables import RadiationTable
 
 _TABLES = ROOT.parent / "shared" / "reference" / "hydrodynamics"
 _HULLS = ("wigley_L3.0_B0.3_T0.1875", "box_L2.0_B0.4_T0.15")

@@ -12,18 +12,18 @@ from benchmarks.timing import Contender, interleave
 from hardware.description.body import Body
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Digitiser
-from sim.acting import Acting, Point
-from sim.amplifier import LowPass
-from sim.drive import DriveSettings, SpeedRipple
-from sim.hull_coefficients import HullCoefficients
-from sim.laws import Coulomb, Quadratic
-from sim.motor import Servo
-from sim.mounting import Mounting
-from sim.periodic import steady_run
+from sim.acquisition.amplifier import LowPass
+from sim.acquisition.channels import Digitiser
+from sim.drive.motor import Servo
+from sim.drive.prescribed import DriveSettings, SpeedRipple
+from sim.model.acting import Acting, Point
+from sim.model.coefficients import HullCoefficients
+from sim.model.laws import Coulomb, Quadratic
+from sim.model.mounting import Mounting
+from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, vertical_rig
 from sim.signals import FloatArray
-from sim.water.radiation import Radiation
+from sim.solve.periodic import steady_run
 
 RATE_HZ = 200.0
 _SET_POINT = SetPoint(1.0, 0.02, 0.7)

@@ -18,21 +18,21 @@ from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
 from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.run_plan import KnownMass, LoadStep
-from sim.acquisition import Acquisition
-from sim.acting import Acting
-from sim.carriage import CarriageSettings
-from sim.drive import DriveSettings
-from sim.dynamometer import Dynamometers
+from sim.acquisition.channels import Acquisition
+from sim.acquisition.photocell import Photocell
+from sim.drive.carriage import CarriageSettings
+from sim.drive.prescribed import DriveSettings
 from sim.effects.catalogue import build_from
 from sim.effects.effect import Effect
-from sim.hull import HullCoefficients
-from sim.hull_forces import CrossFlow
-from sim.mechanism import Setting
-from sim.mounting import Mounting
-from sim.photocell import Photocell
+from sim.gauges.dynamometer import Dynamometers
+from sim.mechanism.linkage import Setting
+from sim.model.acting import Acting
+from sim.model.forces import CrossFlow
+from sim.model.hull import HullCoefficients
+from sim.model.mounting import Mounting
+from sim.model.surge import SurgeForces
+from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
-from sim.surge import SurgeForces
-from sim.water.radiation_file import RadiationFile
 
 CAMPAIGN_FILE = "campaign.toml"
 RUN_FILE = "run.nc"  # a recording in its run's own folder

@@ -9,22 +9,22 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
-from sim.acquisition import Acquisition, Digitiser
-from sim.acting import Acting
-from sim.carriage import Carriage, CarriageSettings
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
 from sim.chain import Chain
-from sim.coupled import Coupled, reflected_inertia
-from sim.drive import ConstantSpeedDrive, DriveSettings
-from sim.dynamometer import Dynamometers, Gauge
-from sim.hull import Hull, HullCoefficients
-from sim.hull_forces import CrossFlow
-from sim.loaded_drive import LoadedDrive
-from sim.mechanism import Mechanism, Setting
-from sim.mounting import Mounting
-from sim.photocell import Photocell
+from sim.drive.carriage import Carriage, CarriageSettings
+from sim.drive.loaded import LoadedDrive
+from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
+from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.mechanism.linkage import Mechanism, Setting
+from sim.model.acting import Acting
+from sim.model.forces import CrossFlow
+from sim.model.hull import Hull, HullCoefficients
+from sim.model.mounting import Mounting
+from sim.model.surge import SurgeForces
+from sim.model.water.radiation import Radiation
+from sim.solve.coupled import Coupled, reflected_inertia
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
-from sim.surge import SurgeForces
-from sim.water.radiation import Radiation
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class SimulatedRig:
         Forces that depend on the motion at once; those of the water are ignored in air.
     flow_factor
         Mean flow past the model over the carriage's speed: more than 1 where the tank is narrow
-        (:func:`sim.water.tank.blockage_speed_factor`).
+        (:func:`sim.model.water.tank.blockage_speed_factor`).
     photocell
         ``None`` for a rig without one.
     surge

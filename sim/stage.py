@@ -5,8 +5,8 @@ from typing import Any, Final, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from sim.period import Period, Spectra
 from sim.signals import FloatArray, Signal, Signals
+from sim.solve.period import Period, Spectra
 
 StateT = TypeVar("StateT")
 
@@ -96,8 +96,8 @@ class Periodic(Protocol):
         Parameters
         ----------
         inputs
-            Harmonics of the signals of ``reads``, as :data:`sim.period.Spectra`; of the stage's own
-            signals, those that are substituted.
+            Harmonics of the signals of ``reads``, as :data:`sim.solve.period.Spectra`; of the
+            stage's own signals, those that are substituted.
         """
         ...
 

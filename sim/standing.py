@@ -15,11 +15,11 @@ import numpy as np
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.drive import DriveSettings
-from sim.linear import ComplexArray
-from sim.period import Period
-from sim.periodic import SteadyState, steady_state
+from sim.drive.prescribed import DriveSettings
 from sim.rig import SimulatedRig
+from sim.solve.linear import ComplexArray
+from sim.solve.period import Period
+from sim.solve.periodic import SteadyState, steady_state
 
 _ORDERS = 2
 _POINTS = 64

@@ -24,14 +24,14 @@ from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.chain import Chain
-from sim.drive import shaft_over
+from sim.drive.prescribed import shaft_over
 from sim.effects.applied import switch_on
-from sim.period import Period
-from sim.periodic import steady_state
 from sim.rig import SimulatedRig
+from sim.solve.period import Period
+from sim.solve.periodic import steady_state
 
 if TYPE_CHECKING:
-    from sim.acquisition import Digitiser
+    from sim.acquisition.channels import Digitiser
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -23,13 +23,13 @@ from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.acting import Acting
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
-from sim.laws import Spring
-from sim.period import Period
-from sim.periodic import SteadyState
+from sim.model.acting import Acting
+from sim.model.laws import Spring
 from sim.rig import SimulatedRig
+from sim.solve.period import Period
+from sim.solve.periodic import SteadyState
 
 FloatArray = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from analysis.gap.forward import DRAWS
 from analysis.gap.spectrum import Loudness, levels, loudness
 from analysis.gap.wander import wander, wandered
 from hardware.description.channels import SHAFT_ANGLE
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.rig import SimulatedRig
 
 FloatArray = NDArray[np.float64]

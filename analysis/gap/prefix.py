@@ -7,12 +7,12 @@ before it need not be solved again.
 from typing import TYPE_CHECKING, Any, Final
 
 from sim.chain import Chain
-from sim.period import Period, Spectra
-from sim.periodic import SteadyState
-from sim.sampled import steady_of
+from sim.solve.period import Period, Spectra
+from sim.solve.periodic import SteadyState
+from sim.solve.sampled import steady_of
 
 if TYPE_CHECKING:
-    from sim.linear import ComplexArray
+    from sim.solve.linear import ComplexArray
 
 _MOST: Final = 4096  # results that are kept: some 10 kB each
 
@@ -31,7 +31,7 @@ class Solved:
         return Solved, ()
 
     def steady_state(self, chain: Chain, period: Period) -> SteadyState:
-        """Return the steady state of a chain without inputs; see :mod:`sim.periodic`."""
+        """Return the steady state of a chain without inputs; see :mod:`sim.solve.periodic`."""
         spectra: dict[str, ComplexArray] = {}
         for stage in chain.stages:
             fed = {one.name: spectra[one.name] for one in stage.reads}

@@ -8,8 +8,8 @@ import numpy as np
 
 from analysis.gap.components import GapRun, Observation
 from analysis.gap.spectrum import loudness
-from sim.acquisition import Acquisition, Digitiser
-from sim.photocell import Photocell
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
 from sim.rig import SimulatedRig
 
 

@@ -3,7 +3,7 @@
 A CSV has a column ``frequency_hz`` or ``omega_rad_s`` and one for each coefficient, or a row for
 each value (``coefficient``, ``value``); ``speed_m_s`` may stand beside them, and comments such as
 ``# system = prime`` before them. Capytaine's NetCDF, the CSV of hulls and that of heave alone are
-known too (:mod:`sim.water.table_files`).
+known too (:mod:`sim.model.water.table_files`).
 """
 
 import csv
@@ -98,7 +98,7 @@ def _read(one: ReferenceFile, plane: Plane, form: Form) -> Iterator[Reference]:
 
 def _radiation(one: ReferenceFile, plane: Plane, form: Form) -> Reference:
     """Return a table of added mass and damping over frequency as a reference."""
-    from sim.water.table_files import read_capytaine, read_heave_csv, read_hull_csv
+    from sim.model.water.table_files import read_capytaine, read_heave_csv, read_hull_csv
 
     path = Path(one.file)
     if path.suffix.lower() == ".nc":

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from hardware.bus import LARGEST_LOAD
-from sim.water.tank import interference_limit
+from sim.model.water.tank import interference_limit
 
 _RIG = "the rig's file"
 _OURS = "this project"

@@ -23,7 +23,7 @@ from pmm.plan.geometry import geometry_of
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from sim.water.tank import interference_limit
+from sim.model.water.tank import interference_limit
 
 _INSTANTS = 720
 _NOTHING = 1e-9

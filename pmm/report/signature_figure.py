@@ -15,10 +15,10 @@ from sim.effects.agreement import phasor
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
-from sim.linear import ComplexArray
-from sim.periodic import steady_run
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray, recorded
+from sim.solve.linear import ComplexArray
+from sim.solve.periodic import steady_run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

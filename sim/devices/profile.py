@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from sim.drive import DriveSettings, Shaft
+from sim.drive.prescribed import DriveSettings, Shaft
 from sim.signals import FloatArray
 
 

@@ -20,9 +20,9 @@ from hardware.description.simulation_tables import (
     with_preset,
 )
 from hardware.driver import read_settings
-from sim.hull_coefficients import HullCoefficients
+from sim.model.coefficients import HullCoefficients
+from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.water.radiation_file import RadiationFile
 
 _RENAMED: Final[Mapping[str, tuple[str, type]]] = {
     "model": ("body", Body),

@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Digitiser
-from sim.amplifier import FilterKind, LowPass
+from sim.acquisition.amplifier import FilterKind, LowPass
+from sim.acquisition.channels import Digitiser
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_force_channels
 from sim.effects.situation import Situation

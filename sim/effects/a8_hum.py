@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.effects.effect import (
     Effect,
     Lines,

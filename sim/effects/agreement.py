@@ -9,8 +9,8 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect, Signature
 from sim.effects.situation import Situation
-from sim.periodic import SteadyState, steady_run
 from sim.rig import SimulatedRig
+from sim.solve.periodic import SteadyState, steady_run
 
 # Of the nominal signal: a smaller change is none.
 SMALLEST: Final = 1e-6

@@ -11,7 +11,7 @@ from typing import Any
 import sim.effects
 from hardware.description.errors import ConfigurationError
 from sim.effects.effect import Effect
-from sim.own_file import import_file, refuse_taken
+from sim.effects.own_file import import_file, refuse_taken
 
 
 @cache

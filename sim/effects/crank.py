@@ -8,7 +8,7 @@ from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 
 if TYPE_CHECKING:
-    from sim.linear import ComplexArray
+    from sim.solve.linear import ComplexArray
 
 
 def crank_harmonics(

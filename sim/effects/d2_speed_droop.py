@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
+from sim.drive.motor import droop
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
-from sim.motor import droop
 from sim.rig import SimulatedRig
 
 

@@ -6,10 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
+from sim.drive.motor import droop
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
-from sim.motor import droop
 from sim.rig import SimulatedRig
 
 

@@ -6,11 +6,11 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
+from sim.drive.gear import Gear
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
-from sim.gear import Gear
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray
 

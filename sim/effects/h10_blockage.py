@@ -7,8 +7,8 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.hydrodynamic import faster
 from sim.effects.situation import Situation
+from sim.model.water.tank import blockage_speed_factor
 from sim.rig import SimulatedRig
-from sim.water.tank import blockage_speed_factor
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.carriage import Fluctuation
+from sim.drive.carriage import Fluctuation
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.hydrodynamic import per_speed
 from sim.effects.situation import STRUT_FORCES, Situation

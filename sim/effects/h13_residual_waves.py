@@ -7,7 +7,6 @@ from typing import ClassVar, Self
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import (
     Effect,
@@ -21,7 +20,8 @@ from sim.effects.effect import (
 )
 from sim.effects.hydrodynamic import with_laws
 from sim.effects.situation import STRUT_FORCES, Situation
-from sim.laws import Tone
+from sim.model.acting import Point
+from sim.model.laws import Tone
 from sim.rig import SimulatedRig
 
 LONGEST_WAIT_S = 7200.0

@@ -10,12 +10,12 @@ from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
-from sim.laws import Coulomb, ForceLaw, Tone
+from sim.model.laws import Coulomb, ForceLaw, Tone
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray
 
 if TYPE_CHECKING:
-    from sim.acting import Point
+    from sim.model.acting import Point
 
 TONES: Final = 24
 _LAST_RUN: Final = 1e6

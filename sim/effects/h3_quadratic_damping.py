@@ -6,11 +6,11 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import of_law, with_laws
 from sim.effects.situation import Situation
-from sim.laws import Quadratic
+from sim.model.acting import Point
+from sim.model.laws import Quadratic
 from sim.rig import SimulatedRig
 
 HIGHEST = 5

@@ -6,13 +6,13 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import of_law, with_laws
 from sim.effects.situation import Situation
-from sim.laws import Quadratic
+from sim.model.acting import Point
+from sim.model.laws import Quadratic
+from sim.model.water.force_laws import quadratic_describing_function
 from sim.rig import SimulatedRig
-from sim.water.force_laws import quadratic_describing_function
 
 HIGHEST = 4
 SLOWEST_M_S = 1e-9  # below it there is the drift only

@@ -9,7 +9,7 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import AT_STRUTS, along_hull, of_hull_law
 from sim.effects.situation import Situation
-from sim.laws import Spring
+from sim.model.laws import Spring
 from sim.rig import SimulatedRig
 
 

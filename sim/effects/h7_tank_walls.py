@@ -11,9 +11,9 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import damping_at, load, radiation_of
 from sim.effects.situation import Situation
-from sim.linear import ComplexArray
+from sim.model.water.tank import Tank, echo_delay_s, with_walls
 from sim.rig import SimulatedRig
-from sim.water.tank import Tank, echo_delay_s, with_walls
+from sim.solve.linear import ComplexArray
 
 MODES = 4
 
@@ -24,7 +24,7 @@ class TankWalls(Effect):
 
     ``w_m^2 = g k tanh(k h)``, with whole waves between the walls for heave and pitch, odd half
     waves for sway and yaw. The model is undisturbed until the first echo is back, after W/c_g
-    with the group velocity c_g at the set frequency. See :mod:`sim.water.tank`.
+    with the group velocity c_g at the set frequency. See :mod:`sim.model.water.tank`.
     """
 
     code: ClassVar[str] = "H7"

@@ -1,7 +1,7 @@
 """What effects of the water share: loads of changed coefficients, and motions at a point.
 
 No effect itself. Matrices are (force, moment) per (translation, rotation), as in
-:class:`sim.hull_coefficients.HullCoefficients`.
+:class:`sim.model.coefficients.HullCoefficients`.
 """
 
 from collections.abc import Callable
@@ -9,16 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim.acting import Acting, Point
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 from sim.effects.situation import at_struts as at_struts_of
-from sim.hull_coefficients import HullCoefficients, Matrix
-from sim.laws import ForceLaw
-from sim.linear import ComplexArray
+from sim.model.acting import Acting, Point
+from sim.model.coefficients import HullCoefficients, Matrix
+from sim.model.laws import ForceLaw
+from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray
-from sim.water.radiation import Radiation, constant
+from sim.solve.linear import ComplexArray
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)

@@ -9,9 +9,9 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
-from sim.linear import ComplexArray
-from sim.mounting import Joint, Mounting
+from sim.model.mounting import Joint, Mounting
 from sim.rig import SimulatedRig
+from sim.solve.linear import ComplexArray
 
 HIGHEST = 3
 

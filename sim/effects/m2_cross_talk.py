@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import Medium, SetPoint
-from sim.dynamometer import Gauge
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
-from sim.linear import ComplexArray
+from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
+from sim.solve.linear import ComplexArray
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,14 @@ from typing import ClassVar, Self
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.dynamometer import Gauge
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import radiation_of, scaled, through_water
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
-from sim.linear import ComplexArray
+from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
+from sim.solve.linear import ComplexArray
 
 SECONDS_AN_HOUR = 3600.0
 

@@ -8,8 +8,8 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
+from sim.model.water.radiation import constant
 from sim.rig import SimulatedRig
-from sim.water.radiation import constant
 
 
 @dataclass(frozen=True)

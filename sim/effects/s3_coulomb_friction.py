@@ -6,10 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import Coulomb
+from sim.model.acting import Acting, Point
+from sim.model.laws import Coulomb
 from sim.rig import SimulatedRig
 
 HIGHEST = 5

@@ -6,10 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import Stribeck
+from sim.model.acting import Acting, Point
+from sim.model.laws import Stribeck
 from sim.rig import SimulatedRig
 from sim.signals import FloatArray
 

@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import LoadFriction
+from sim.model.acting import Acting, Point
+from sim.model.laws import LoadFriction
 from sim.rig import SimulatedRig
 
 HIGHEST = 5

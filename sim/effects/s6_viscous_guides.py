@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import Viscous
+from sim.model.acting import Acting, Point
+from sim.model.laws import Viscous
 from sim.rig import SimulatedRig
 
 

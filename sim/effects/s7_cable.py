@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.laws import Coulomb, ForceLaw, RubbingSpring, Spring
+from sim.model.acting import Acting, Point
+from sim.model.laws import Coulomb, ForceLaw, RubbingSpring, Spring
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
-    from sim.linear import ComplexArray
+    from sim.solve.linear import ComplexArray
 
 STANDS_M: Final = 1e-12
 

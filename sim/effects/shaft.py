@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sim.drive.motor import ShuntMotor, SpeedLoop
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
-from sim.motor import ShuntMotor, SpeedLoop
 
 if TYPE_CHECKING:
-    from sim.linear import ComplexArray
+    from sim.solve.linear import ComplexArray
 
 HIGHEST = 12  # order that is carried on
 _NOMINAL = 4  # orders of the nominal motion that count

@@ -9,12 +9,12 @@ import numpy as np
 from hardware.description import channels
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
-from sim.hull_system import HullSystem
-from sim.linear import ComplexArray
-from sim.periodic import SteadyState, steady_run
+from sim.model.system import HullSystem
 from sim.rig import SimulatedRig
-from sim.sampled import steady_of
 from sim.signals import FloatArray
+from sim.solve.linear import ComplexArray
+from sim.solve.periodic import SteadyState, steady_run
+from sim.solve.sampled import steady_of
 from sim.stage import Stage
 
 # The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.

@@ -6,7 +6,7 @@ import numpy as np
 
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation, at_struts
-from sim.linear import ComplexArray
+from sim.solve.linear import ComplexArray
 
 HIGHEST = 4  # order up to which the nominal force is carried on
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sim.acquisition import Digitiser
-from sim.noise import NoiseState, draw_normal, start_stream
+from sim.acquisition.channels import Digitiser
+from sim.acquisition.noise import NoiseState, draw_normal, start_stream
 from sim.pendulum.sensors import Sensor
 from sim.signals import FloatArray, Signal, Signals, recorded
 from sim.stage import Block

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from hardware.description.errors import ConfigurationError
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.chain import Chain
 from sim.pendulum.acquisition import SampledSensors
 from sim.pendulum.body import FreeBody, SwingingBody

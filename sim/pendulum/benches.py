@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
 from sim.pendulum.coordinates import ANGLE, PITCH, SURGE, SWAY, YAW

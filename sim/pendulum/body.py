@@ -6,11 +6,11 @@ from typing import ClassVar, Final, Protocol
 
 import numpy as np
 
-from sim.linear import as_rows
 from sim.pendulum.coordinates import RELEASE_HOLD, Coordinate
 from sim.pendulum.propagators import propagators
 from sim.pendulum.resistance import Resistance
 from sim.signals import FloatArray, Signal, Signals
+from sim.solve.linear import as_rows
 from sim.stage import Block
 
 # Numbers by which the compiled loop knows the kinds of restoring.

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from sim.compiled import compile_loop
 from sim.pendulum.vectors import cross, times
 from sim.signals import FloatArray
+from sim.solve.compiled import compile_loop
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
 COULOMB = 5  # column of ``loads``

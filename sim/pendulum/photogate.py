@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.errors import ConfigurationError
-from sim.crossings import quintic, root
-from sim.noise import NoiseState, draw_normal, start_stream
+from sim.acquisition.crossings import quintic, root
+from sim.acquisition.noise import NoiseState, draw_normal, start_stream
 from sim.pendulum.coordinates import Coordinate
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block

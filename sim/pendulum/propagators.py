@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.linear import Rows
 from sim.signals import FloatArray
+from sim.solve.linear import Rows
 
 # A reversal is found to 2^-32 of a step, about a picosecond.
 LEVELS = 32

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.errors import ConfigurationError
-from sim.noise import draw_normal, start_stream
+from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.coordinates import RELEASE_HOLD, Coordinate
 from sim.signals import FloatArray, Signal, Signals
 from sim.stage import Block

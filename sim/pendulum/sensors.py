@@ -9,10 +9,10 @@ import numpy as np
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.linear import LinearSystem, causal_hold
-from sim.noise import draw_normal, start_stream
+from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.coordinates import ANGLE, PITCH, SWAY, YAW, Coordinate
 from sim.signals import FloatArray, Signal, Signals
+from sim.solve.linear import LinearSystem, causal_hold
 from sim.stage import Block
 
 INCLINOMETER_RANGE_RAD = math.radians(3.0)

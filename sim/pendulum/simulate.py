@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hardware.description.errors import ConfigurationError, DataError
-from sim.noise import draw_normal, start_stream
+from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import (
     bifilar_bench,

@@ -6,8 +6,8 @@ changes one of these removes ``__pycache__``.
 
 import numpy as np
 
-from sim.compiled import available, compile_loop
 from sim.signals import FloatArray
+from sim.solve.compiled import available, compile_loop
 
 
 def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:

@@ -20,11 +20,11 @@ from analysis.readers.dataset import from_dataset
 from analysis.resolver.analyse import Settings, analyse
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.hull import HullCoefficients
+from sim.model.hull import HullCoefficients
+from sim.model.water.table_files import read_heave_csv, read_hull_csv
+from sim.model.water.tables import RadiationTable
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
-from sim.water.table_files import read_heave_csv, read_hull_csv
-from sim.water.tables import RadiationTable
 
 TABLES = Path(__file__).parents[3] / "shared" / "reference" / "hydrodynamics"
 CHANNELS = ("displacement_aft", "displacement_fore", "force_aft", "force_fore")

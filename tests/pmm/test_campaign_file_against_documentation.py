@@ -19,18 +19,18 @@ from pmm.campaign import AtRest, Campaign, Run, Simulation, SwitchedOn
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
 from pmm.plan.run_plan import KnownMass, LoadStep
-from sim.acquisition import Acquisition, Digitiser
-from sim.acting import Acting, AnyLaw
-from sim.carriage import CarriageSettings, Fluctuation
-from sim.drive import DriveSettings
-from sim.dynamometer import Dynamometers, Gauge
-from sim.hull import HullCoefficients
-from sim.hull_forces import CrossFlow
-from sim.mechanism import Setting
-from sim.mounting import Mounting
-from sim.photocell import Photocell
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
+from sim.drive.carriage import CarriageSettings, Fluctuation
+from sim.drive.prescribed import DriveSettings
+from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.mechanism.linkage import Setting
+from sim.model.acting import Acting, AnyLaw
+from sim.model.forces import CrossFlow
+from sim.model.hull import HullCoefficients
+from sim.model.mounting import Mounting
+from sim.model.water.radiation_file import RadiationFile
 from sim.rig import vertical_rig
-from sim.water.radiation_file import RadiationFile
 
 HOUSE = Path(__file__).parents[2]
 PAGE = (HOUSE / "docs" / "campaigns.md").read_text(encoding="utf-8")

@@ -10,14 +10,14 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
-from sim.acting import Acting, Point
-from sim.carriage import CarriageSettings, Fluctuation
-from sim.hull_forces import CrossFlow
-from sim.laws import Coulomb, Quadratic
-from sim.mechanism import Setting
-from sim.motor import Servo, ShuntMotor
-from sim.mounting import Mounting
-from sim.periodic import steady_run
+from sim.drive.carriage import CarriageSettings, Fluctuation
+from sim.drive.motor import Servo, ShuntMotor
+from sim.mechanism.linkage import Setting
+from sim.model.acting import Acting, Point
+from sim.model.forces import CrossFlow
+from sim.model.laws import Coulomb, Quadratic
+from sim.model.mounting import Mounting
+from sim.solve.periodic import steady_run
 
 BASE = """
 [oscillator]

@@ -9,11 +9,11 @@ from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane, Range
 from hardware.description.setpoint import Medium, SetPoint
-from sim.acquisition import Acquisition
-from sim.hull_coefficients import HullCoefficients
-from sim.hull_forces import CrossFlow
+from sim.acquisition.channels import Acquisition
+from sim.model.coefficients import HullCoefficients
+from sim.model.forces import CrossFlow
+from sim.model.surge import SurgeForces
 from sim.rig import SimulatedRig
-from sim.surge import SurgeForces
 from tests.exact.hull import polynomial
 from tests.exact.rig import ExactBody, ExactRig
 

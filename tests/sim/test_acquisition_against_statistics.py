@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from sim.acquisition import Acquisition, Digitiser
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.noise import draw_normal, start_stream
 from sim.chain import Chain
-from sim.dynamometer import Dynamometers, Gauge
-from sim.noise import draw_normal, start_stream
+from sim.gauges.dynamometer import Dynamometers, Gauge
 from sim.signals import (
     DYNAMOMETER_FORCE_AFT,
     DYNAMOMETER_FORCE_FORE,

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Acquisition, Digitiser
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
 from sim.chain import Chain, join
-from sim.drive import DriveSettings
-from sim.mechanism import Mechanism
-from sim.photocell import Photocell
+from sim.drive.prescribed import DriveSettings
+from sim.mechanism.linkage import Mechanism
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FORCE_AFT, SHAFT_ANGLE, Signal, Signals
 from sim.stage import Block

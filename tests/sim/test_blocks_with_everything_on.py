@@ -9,20 +9,20 @@ from hypothesis import strategies as st
 
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Acquisition, Digitiser
-from sim.acting import Acting, Point
-from sim.amplifier import Carrier, FilterKind, LowPass
-from sim.carriage import CarriageSettings, Fluctuation
+from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
 from sim.chain import join
-from sim.drive import DriveSettings, SpeedRipple
-from sim.dynamometer import Dynamometers, Gauge
-from sim.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
-from sim.motor import Cogging, Guides, ShuntMotor
-from sim.mounting import Mounting
-from sim.photocell import Photocell
+from sim.drive.carriage import CarriageSettings, Fluctuation
+from sim.drive.motor import Cogging, Guides, ShuntMotor
+from sim.drive.prescribed import DriveSettings, SpeedRipple
+from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.model.acting import Acting, Point
+from sim.model.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
+from sim.model.mounting import Mounting
+from sim.model.water.radiation import Radiation
+from sim.model.water.tank import Tank, with_walls
 from sim.rig import SimulatedRig, vertical_rig
-from sim.water.radiation import Radiation
-from sim.water.tank import Tank, with_walls
 
 MEMORY = Radiation(
     np.array([[40.0, 3.0], [3.0, 12.0]]),

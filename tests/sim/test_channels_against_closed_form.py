@@ -7,16 +7,14 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import ConfigurationError, DataError
-from sim.acquisition import Acquisition, Digitiser
-from sim.amplifier import Carrier, FilterKind, LowPass
-from sim.carriage import Carriage, CarriageSettings, Fluctuation
+from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
+from sim.acquisition.channels import Acquisition, Digitiser
+from sim.acquisition.photocell import Photocell
 from sim.chain import Chain
-from sim.drive import ConstantSpeedDrive, DriveSettings
-from sim.dynamometer import Dynamometers, Gauge
-from sim.mechanism import Mechanism, Setting
-from sim.period import Period
-from sim.periodic import steady_state
-from sim.photocell import Photocell
+from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
+from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
+from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.mechanism.linkage import Mechanism, Setting
 from sim.signals import (
     DYNAMOMETER_FORCE_AFT,
     DYNAMOMETER_FORCE_FORE,
@@ -24,7 +22,9 @@ from sim.signals import (
     FORCE_FORE,
     FloatArray,
 )
-from sim.smoother import Smoother, from_harmonics
+from sim.solve.period import Period
+from sim.solve.periodic import steady_state
+from sim.solve.smoother import Smoother, from_harmonics
 from sim.stage import Block
 
 RATE = 200.0

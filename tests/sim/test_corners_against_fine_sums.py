@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
-from sim.balance import LawBalance
-from sim.corners import nodes_between
-from sim.force_law import Motion
-from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces, law_harmonics
-from sim.hull_numbers import corners_only, geometry_only
-from sim.hull_system import HullSystem
-from sim.law_table import table_of
-from sim.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
-from sim.period import Period
+from sim.model.acting import Acting, Point
+from sim.model.force_law import Motion
+from sim.model.forces import CrossFlow, Instants, ModelMotion, law_forces, law_harmonics
+from sim.model.law_table import table_of
+from sim.model.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
+from sim.model.numbers import corners_only, geometry_only
+from sim.model.system import HullSystem
 from sim.rig import vertical_rig
+from sim.solve.balance import LawBalance
+from sim.solve.corners import nodes_between
+from sim.solve.period import Period
 
 ORDERS, FINE, SPEED_M_S = 8, 200_000, 1.1
 PERIOD = Period(0.8, ORDERS, 64)

@@ -11,16 +11,16 @@ from scipy.integrate import solve_ivp
 from hardware.description.arrangement import Gauges
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
-from sim.compiled import follow_interpreted, follow_loop
-from sim.drive import DriveSettings
-from sim.hull_coefficients import HullCoefficients
-from sim.laws import Coulomb, Cubic, Quadratic
-from sim.motor import Servo, ShuntMotor, SpeedLoop, droop
-from sim.mounting import Mounting
-from sim.periodic import steady_run
+from sim.drive.motor import Servo, ShuntMotor, SpeedLoop, droop
+from sim.drive.prescribed import DriveSettings
+from sim.model.acting import Acting, Point
+from sim.model.coefficients import HullCoefficients
+from sim.model.laws import Coulomb, Cubic, Quadratic
+from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, vertical_rig
 from sim.signals import FloatArray, Signals
+from sim.solve.compiled import follow_interpreted, follow_loop
+from sim.solve.periodic import steady_run
 from tests.exact.forces import state
 from tests.exact.rig import ExactRig
 

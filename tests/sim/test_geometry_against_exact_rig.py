@@ -12,11 +12,11 @@ from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from sim import signals
-from sim.drive import DriveSettings
-from sim.motor import Servo
-from sim.mounting import Mounting
-from sim.period import Period
-from sim.periodic import steady_state
+from sim.drive.motor import Servo
+from sim.drive.prescribed import DriveSettings
+from sim.model.mounting import Mounting
+from sim.solve.period import Period
+from sim.solve.periodic import steady_state
 from tests.exact.forces import at_rest
 from tests.exact.rig import ExactRig
 from tests.exact.run import cycle, readings

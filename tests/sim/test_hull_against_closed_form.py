@@ -16,7 +16,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_motion
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.hull import HullCoefficients
+from sim.model.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FloatArray, Signals
 from tests.exact.forces import state

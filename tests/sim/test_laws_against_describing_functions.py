@@ -8,9 +8,9 @@ import pytest
 from scipy.special import dawsn, iv
 
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
-from sim.hull_forces import CrossFlow
-from sim.laws import (
+from sim.model.acting import Acting, Point
+from sim.model.forces import CrossFlow
+from sim.model.laws import (
     Coulomb,
     Cubic,
     Exponential,
@@ -23,9 +23,9 @@ from sim.laws import (
     Stribeck,
     Viscous,
 )
-from sim.linear import ComplexArray
-from sim.periodic import steady_run
 from sim.rig import vertical_rig
+from sim.solve.linear import ComplexArray
+from sim.solve.periodic import steady_run
 
 RIG = vertical_rig().ideal()
 A, FREQUENCY = 0.03, 0.8

@@ -9,12 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
-from sim import compiled, coupled, coupled_steady, hull, hull_steady
-from sim.acting import Acting, Point
-from sim.compiled_laws import law_force
-from sim.hull_forces import CrossFlow, Instants, ModelMotion, law_forces
-from sim.law_table import LAWS, has_number, table_of
-from sim.laws import (
+from sim.drive.motor import Cogging, Guides, Servo
+from sim.model import hull
+from sim.model import steady as hull_steady
+from sim.model.acting import Acting, Point
+from sim.model.compiled_laws import law_force
+from sim.model.forces import CrossFlow, Instants, ModelMotion, law_forces
+from sim.model.law_table import LAWS, has_number, table_of
+from sim.model.laws import (
     Coulomb,
     Cubic,
     Exponential,
@@ -28,11 +30,11 @@ from sim.laws import (
     Tone,
     Viscous,
 )
-from sim.motor import Cogging, Guides, Servo
-from sim.mounting import Mounting
-from sim.periodic import steady_run
+from sim.model.mounting import Mounting
+from sim.model.surge import SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.surge import SurgeForces
+from sim.solve import compiled, coupled, coupled_steady
+from sim.solve.periodic import steady_run
 
 EXAMPLES: list[ForceLaw] = [
     Viscous(3.0),

@@ -10,7 +10,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.struts import to_motion
-from sim.mechanism import Mechanism, Setting
+from sim.mechanism.linkage import Mechanism, Setting
 from sim.rig import horizontal_rig, vertical_rig
 from sim.signals import FloatArray, Signals
 from sim.stage import Block

@@ -9,21 +9,21 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.acting import Acting, Point
-from sim.amplifier import Carrier, FilterKind, LowPass
-from sim.carriage import CarriageSettings
-from sim.drive import DriveSettings, SpeedRipple
-from sim.laws import Coulomb, Cubic, Quadratic, Spring, Tone
-from sim.linear import ComplexArray
-from sim.mechanism import Setting
-from sim.motor import Cogging, Guides, Servo, ShuntMotor
-from sim.mounting import Mounting
-from sim.period import Period
-from sim.periodic import steady_run, steady_state
-from sim.photocell import Photocell
+from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
+from sim.acquisition.photocell import Photocell
+from sim.drive.carriage import CarriageSettings
+from sim.drive.motor import Cogging, Guides, Servo, ShuntMotor
+from sim.drive.prescribed import DriveSettings, SpeedRipple
+from sim.mechanism.linkage import Setting
+from sim.model.acting import Acting, Point
+from sim.model.laws import Coulomb, Cubic, Quadratic, Spring, Tone
+from sim.model.mounting import Mounting
+from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import Signals
-from sim.water.radiation import Radiation
+from sim.solve.linear import ComplexArray
+from sim.solve.period import Period
+from sim.solve.periodic import steady_run, steady_state
 
 SET_POINT = SetPoint(0.5, 0.03, 0.5, 1.0)
 RATE = 200.0

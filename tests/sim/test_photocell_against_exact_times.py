@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.description.errors import ConfigurationError
+from sim.acquisition.photocell import Photocell
 from sim.chain import Chain, join
-from sim.drive import ConstantSpeedDrive, DriveSettings
-from sim.photocell import Photocell
+from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
 from sim.signals import SHAFT_ACCELERATION, SHAFT_ANGLE, SHAFT_SPEED, FloatArray
 
 TURN = 2.0 * math.pi

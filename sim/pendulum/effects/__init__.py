@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
-from sim.own_file import import_file, refuse_taken
+from sim.effects.own_file import import_file, refuse_taken
 from sim.pendulum.effects import body, instruments, lines, setup
 from sim.pendulum.effects.base import PendulumEffect, check_plausible, plausible
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.errors import ConfigurationError
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import parameter
 from sim.pendulum.photogate import Photogate

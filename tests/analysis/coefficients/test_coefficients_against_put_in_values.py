@@ -18,7 +18,7 @@ from analysis.coefficients.stated import Stated
 from analysis.coefficients.terms import term_of
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
-from sim.hull import HullCoefficients
+from sim.model.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.analysis.coefficients.campaign import loaded, matrix, pure
 

@@ -14,11 +14,11 @@ from analysis.readers.dataset import from_dataset
 from analysis.resolver.analyse import Settings, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCE_X
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Digitiser
-from sim.hull_forces import CrossFlow
+from sim.acquisition.channels import Digitiser
+from sim.model.forces import CrossFlow
+from sim.model.surge import SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
-from sim.surge import SurgeForces
 
 SPEED = 1.2
 ALONG = SurgeForces(x_u=-1.5, x_uu=-8.0, x_vv=-60.0, x_vr=45.0, x_rr=-8.0)

@@ -7,8 +7,8 @@ from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.of_hull import as_reported
 from analysis.coefficients.stated import Stated
+from sim.model.water.manoeuvring import from_added_mass_and_damping
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.water.manoeuvring import from_added_mass_and_damping
 from tests.analysis.coefficients.campaign import loaded, pure
 
 RIGS = [vertical_rig().ideal(), horizontal_rig().ideal()]

@@ -24,8 +24,8 @@ from benchmarks.coefficients_campaigns import (
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.hull import HullCoefficients
-from sim.hull_forces import CrossFlow
+from sim.model.forces import CrossFlow
+from sim.model.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig
 from tests.analysis.coefficients.cycles import simulated, zeroed
 

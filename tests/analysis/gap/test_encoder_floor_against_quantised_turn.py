@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from analysis.gap.noise import ENCODER_RAD, encoder_floor_rad
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 
 STEP = 1e-4
 SAMPLES = 20_000

@@ -13,7 +13,7 @@ from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import DISPLACEMENT_AFT, FORCE_AFT, SHAFT_ANGLE, Channel
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Acquisition, Digitiser
+from sim.acquisition.channels import Acquisition, Digitiser
 from sim.rig import SimulatedRig
 from sim.run import simulate
 

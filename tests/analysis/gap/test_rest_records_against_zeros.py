@@ -18,7 +18,6 @@ from analysis.gap.regimes import regimes
 from analysis.readers.dataset import from_dataset
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
-from sim.acting import Acting, Point
 from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import catalogue
@@ -29,7 +28,8 @@ from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.s3_coulomb_friction import CoulombFriction
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
-from sim.force_law import ForceLaw, Motion
+from sim.model.acting import Acting, Point
+from sim.model.force_law import ForceLaw, Motion
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from sim.signals import FloatArray

@@ -30,9 +30,9 @@ from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, find
 from sim.effects.d2_speed_droop import SpeedDroop
 from sim.effects.effect import Effect, Trace
-from sim.period import Period
-from sim.periodic import steady_run
 from sim.rig import SimulatedRig
+from sim.solve.period import Period
+from sim.solve.periodic import steady_run
 from tests.analysis.gap.small import POINTS, problem_of, record
 
 NOTHING = Deviation({}, np.zeros(0), 0.0)

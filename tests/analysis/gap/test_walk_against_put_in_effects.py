@@ -20,12 +20,12 @@ from analysis.gap.where import (
     walk,
 )
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
-from sim.acquisition import Digitiser
-from sim.amplifier import LowPass
-from sim.drive import DriveSettings
+from sim.acquisition.amplifier import LowPass
+from sim.acquisition.channels import Digitiser
+from sim.drive.motor import ShuntMotor
+from sim.drive.prescribed import DriveSettings
 from sim.effects.catalogue import build
 from sim.effects.effect import StageName
-from sim.motor import ShuntMotor
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, problem_of, record
 

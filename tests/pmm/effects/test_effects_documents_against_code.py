@@ -14,8 +14,8 @@ from pmm.report.effects_page import PAGE, POINTS, SET_POINTS, effects_page
 from sim.effects.agreement import mismatch
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, catalogue, load_file, user_effects
-from sim.periodic import steady_run
 from sim.rig import vertical_rig
+from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
 ADDING = (PAGE.parent / "adding-an-effect.md").read_text(encoding="utf-8")

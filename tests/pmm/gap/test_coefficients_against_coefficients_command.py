@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.water.manoeuvring import Derivatives, PrimeSystem, from_added_mass_and_damping
+from sim.model.water.manoeuvring import Derivatives, PrimeSystem, from_added_mass_and_damping
 from tests.pmm.gap.rigs import run
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

@@ -16,7 +16,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.inertia import bifilar, pendulum, swing
 from pmm.inertia.outcome import Outcome
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import KEELBOAT_2014, SWING_2021, compound_bench, swing_bench
 from sim.pendulum.coordinates import ANGLE

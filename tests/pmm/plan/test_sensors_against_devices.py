@@ -20,7 +20,7 @@ from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.sensors import acquisition_table, resolutions
 from pmm.recorder.noise import white_noise_rms
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
 from tests.pmm.plan.plans import EXAMPLES, HEAVE, RIG_TEXT, write_plan
 
 FORCE = Channel("force_aft", "N", 500.0)

@@ -13,9 +13,9 @@ from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.agreement import mismatch, phasor
 from sim.effects.effect import Effect
-from sim.hull_coefficients import HullCoefficients
-from sim.linear import as_rows
+from sim.model.coefficients import HullCoefficients
 from sim.rig import SimulatedRig
+from sim.solve.linear import as_rows
 
 __all__ = ["STRETCH", "at_small_angles", "mismatch", "phasor", "small_angles"]
 

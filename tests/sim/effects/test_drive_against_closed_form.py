@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
+from sim.drive.motor import Cogging, Guides
 from sim.effects.d1_speed_ripple import SpeedRippleEffect
 from sim.effects.d1b_torque_cogging import TorqueCogging
 from sim.effects.d2_speed_droop import SpeedDroop
@@ -16,9 +17,8 @@ from sim.effects.d3_load_ripple import LoadRipple
 from sim.effects.d5_guide_friction import GuideFriction
 from sim.effects.d6_frequency_error import FrequencyError
 from sim.effects.effect import Effect
-from sim.motor import Cogging, Guides
-from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
 FloatArray = NDArray[np.float64]

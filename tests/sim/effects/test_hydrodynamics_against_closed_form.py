@@ -8,8 +8,9 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.acting import Acting, Point
-from sim.drive import DriveSettings
+from sim.drive.gear import Gear
+from sim.drive.motor import ShuntMotor
+from sim.drive.prescribed import DriveSettings
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
 from sim.effects.h1_added_mass_error import AddedMassError
@@ -29,12 +30,11 @@ from sim.effects.h13_residual_waves import ResidualWaves
 from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.h15_dynamic_trim import DynamicTrim
 from sim.effects.situation import STRUT_FORCES, Situation
-from sim.gear import Gear
-from sim.laws import Motion, Quadratic
-from sim.motor import ShuntMotor
-from sim.mounting import Mounting
-from sim.periodic import steady_run
+from sim.model.acting import Acting, Point
+from sim.model.laws import Motion, Quadratic
+from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles, mismatch
 from tests.sim.effects.in_time import between, in_time, lines
 

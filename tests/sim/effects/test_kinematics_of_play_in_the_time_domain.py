@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hardware.description.setpoint import SetPoint
 from sim.effects.k6_joint_play import JointPlay
 from sim.effects.situation import Situation
-from sim.play import Motion, follow_with_play
+from sim.mechanism.play import Motion, follow_with_play
 from sim.rig import vertical_rig
 from tests.sim.effects.against_theory import small_angles
 

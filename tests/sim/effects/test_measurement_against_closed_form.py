@@ -7,7 +7,6 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
-from sim.acting import Acting, Point
 from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
@@ -22,12 +21,13 @@ from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
-from sim.hull_forces import CrossFlow
-from sim.law_table import LAWS
-from sim.laws import Coulomb, ForceLaw, Motion
-from sim.periodic import steady_run
+from sim.model.acting import Acting, Point
+from sim.model.forces import CrossFlow
+from sim.model.law_table import LAWS
+from sim.model.laws import Coulomb, ForceLaw, Motion
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FloatArray
+from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 from tests.sim.effects.in_time import by_cycles, in_time
 

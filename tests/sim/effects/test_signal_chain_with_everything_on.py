@@ -15,9 +15,9 @@ from sim.effects.effect import Effect
 from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.m7_saturation import Saturation
 from sim.effects.situation import Situation
-from sim.periodic import steady_run
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
+from sim.solve.periodic import steady_run
 from tests.sim.effects.in_time import between, in_time
 
 KINDS = [kind for kind in catalogue().values() if kind.code[0] in "MAH"]

@@ -12,9 +12,9 @@ from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect, Parameter
 from sim.effects.k1_connecting_rod import ConnectingRod
 from sim.effects.k6b_free_play import FreePlay
-from sim.mechanism import Mechanism
-from sim.periodic import steady_run
+from sim.mechanism.linkage import Mechanism
 from sim.rig import vertical_rig
+from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import small_angles
 from tests.sim.effects.in_time import between, in_time
 

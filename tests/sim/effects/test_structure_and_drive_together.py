@@ -10,8 +10,8 @@ from sim.effects.applied import switch_on
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
-from sim.periodic import steady_run
 from sim.rig import vertical_rig
+from sim.solve.periodic import steady_run
 
 SET_POINT = SetPoint(0.7, 0.03, 1.0)
 KEYS = [(name, order) for name in ("force_aft", "force_fore") for order in range(6)]

@@ -1,0 +1,1 @@
+"""The acquisition: from sensors to samples and pulses."""

@@ -1,0 +1,131 @@
+"""The acquisition: filter, sampling, noise and conversion of each channel that the rig records."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+import numpy as np
+
+from hardware.description import channels
+from hardware.description.channels import Channel
+from sim import signals
+from sim.acquisition.digitiser import Digitiser as Digitiser
+from sim.acquisition.digitiser import LineState, digitise
+from sim.acquisition.noise import start_stream
+from sim.signals import FloatArray, Signal, Signals
+from sim.solve.period import Period, Spectra
+from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+if TYPE_CHECKING:
+    from sim.solve.linear import ComplexArray
+
+
+class Line(NamedTuple):
+    """One recorded channel: what it is called, what it measures, and how."""
+
+    channel: Channel
+    source: Signal
+    digitiser: Digitiser
+
+
+# Field of Acquisition (and name of the channel) -> the signal behind it.
+_SOURCES = {
+    channels.SHAFT_ANGLE: signals.SHAFT_ANGLE,
+    channels.DISPLACEMENT_AFT: signals.DISPLACEMENT_AFT,
+    channels.DISPLACEMENT_FORE: signals.DISPLACEMENT_FORE,
+    channels.FORCE_AFT: signals.DYNAMOMETER_FORCE_AFT,
+    channels.FORCE_FORE: signals.DYNAMOMETER_FORCE_FORE,
+    channels.FORCE_X: signals.FORCE_X,
+    channels.CARRIAGE_SPEED: signals.CARRIAGE_SPEED,
+}
+
+
+_PERFECT = Digitiser()
+
+
+@dataclass(frozen=True)
+class Acquisition:
+    """The recorded channels, under their standard names; ``None`` where the rig has no such sensor.
+
+    The samples are those of the chain: all channels at the same instants, but for their delays.
+    """
+
+    shaft_angle: Digitiser | None = None
+    displacement_aft: Digitiser | None = None
+    displacement_fore: Digitiser | None = None
+    force_aft: Digitiser | None = _PERFECT
+    force_fore: Digitiser | None = _PERFECT
+    carriage_speed: Digitiser | None = None
+    force_x: Digitiser | None = None
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    name: ClassVar[str] = "acquisition"
+
+    @cached_property
+    def lines(self) -> tuple[Line, ...]:
+        """The channels that are recorded, in their order."""
+        found = ((channel, getattr(self, channel.name)) for channel in _SOURCES)
+        return tuple(Line(channel, _SOURCES[channel], how) for channel, how in found if how)
+
+    @cached_property
+    def reads(self) -> tuple[Signal, ...]:
+        """The quantities behind the recorded channels."""
+        return tuple(line.source for line in self.lines)
+
+    @cached_property
+    def writes(self) -> tuple[Signal, ...]:
+        """The recorded channels."""
+        return tuple(signals.recorded(line.channel) for line in self.lines)
+
+    def drifting_from(self, time_s: float) -> "Acquisition":
+        """Return the acquisition with drifts that are zero at this time."""
+        ways = {line.channel.name: line.digitiser for line in self.lines}
+        drifting = {name: how for name, how in ways.items() if how.drift_per_s}
+        return replace(
+            self,
+            **{
+                name: replace(how, drifted=how.drifted - how.drift_per_s * time_s)
+                for name, how in drifting.items()
+            },
+        )
+
+    def start(self, sample_rate_hz: float, seed: int) -> tuple[LineState, ...]:
+        """Return the beginning of each channel's own noise."""
+        return tuple(
+            LineState(
+                start_stream(seed, self.name, line.channel.name),
+                start_stream(seed, self.name, line.channel.name, "walk"),
+            )
+            for line in self.lines
+        )
+
+    def run(
+        self, state: tuple[LineState, ...], block: Block, inputs: Signals
+    ) -> tuple[tuple[LineState, ...], Signals]:
+        """Return the recorded samples of each channel over the block."""
+        after: list[LineState] = []
+        written: dict[str, FloatArray] = {}
+        for line, before, out in zip(self.lines, state, self.writes, strict=True):
+            kept, samples = digitise(line.digitiser, before, block, inputs[line.source.name])
+            after.append(kept)
+            written[out.name] = samples
+        return tuple(after), written
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics that the channels record.
+
+        Noise, drift, rounding and hum, which are not periodic, are left out.
+        """
+        written: dict[str, ComplexArray] = {}
+        for line, out in zip(self.lines, self.writes, strict=True):
+            how = line.digitiser
+            values = inputs[line.source.name]
+            factor = how.response(period.s)
+            recorded = values * factor + period.constant(how.offset * factor[0].real)
+            if line.source is signals.SHAFT_ANGLE:
+                recorded[0] -= period.omega_rad_s * how.delay_s
+            elif how.full_scale is not None and np.abs(recorded).sum() > how.full_scale:
+                limited = np.clip(period.values(recorded), -how.full_scale, how.full_scale)
+                recorded = period.harmonics(limited)
+            written[out.name] = recorded
+        return period, written

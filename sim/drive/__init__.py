@@ -1,0 +1,1 @@
+"""The drive: how shaft and carriage move, told or under load."""

@@ -1,0 +1,73 @@
+"""The carriage: how fast the rig moves along the tank."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sim import signals
+from sim.signals import Signal, Signals
+from sim.solve.period import Period, Spectra
+from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+
+@dataclass(frozen=True)
+class Fluctuation:
+    """A speed that varies with a frequency of its own: rail joints, wheels."""
+
+    relative: float
+    frequency_hz: float
+    phase_rad: float = 0.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+
+@dataclass(frozen=True)
+class CarriageSettings:
+    """How the carriage differs from one that runs at the speed that was set.
+
+    Attributes
+    ----------
+    speed_error
+        Relative to the speed.
+    fluctuations
+        Each relative to the mean speed.
+    """
+
+    speed_error: float = 0.0
+    fluctuations: tuple[Fluctuation, ...] = ()
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+
+@dataclass(frozen=True)
+class Carriage:
+    """A carriage, told to run at ``speed_m_s``."""
+
+    speed_m_s: float
+    settings: CarriageSettings = CarriageSettings()
+
+    name: ClassVar[str] = "carriage"
+    reads: ClassVar[tuple[Signal, ...]] = ()
+    writes: ClassVar[tuple[Signal, ...]] = (signals.CARRIAGE_SPEED,)
+
+    @property
+    def mean_m_s(self) -> float:
+        """The mean speed that it really has."""
+        return self.speed_m_s * (1.0 + self.settings.speed_error)
+
+    def start(self, sample_rate_hz: float, seed: int) -> None:
+        """Return no state: the speed follows from the time alone."""
+
+    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
+        """Return the carriage speed over the block."""
+        speed = np.full(block.count, self.mean_m_s)
+        for one in self.settings.fluctuations:
+            turned = 2.0 * math.pi * one.frequency_hz * block.time_s + one.phase_rad
+            speed += self.mean_m_s * one.relative * np.sin(turned)
+        return state, {signals.CARRIAGE_SPEED.name: speed}
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the mean speed; what fluctuates does so beside the period."""
+        return period, {signals.CARRIAGE_SPEED.name: period.constant(self.mean_m_s)}

@@ -1,0 +1,170 @@
+"""A drive that gives way to its load: a motor, or cranks behind a gear with backlash."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from sim import signals
+from sim.drive.gear import geared
+from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
+from sim.drive.prescribed import SHAFT, DriveSettings, Shaft, shaft_over
+from sim.signals import FloatArray, Signal, Signals
+from sim.solve.coupled_march import TORQUE_DEGREE, ShaftSystem
+from sim.solve.linear import Hold, LinearSystem, causal_hold
+from sim.solve.period import Period, Spectra
+from sim.solve.relaxation import Tail
+from sim.stage import Block
+
+
+class LoadedState(NamedTuple):
+    """Deviation of angle, speed and current; ``None`` before the first sample; last torques."""
+
+    states: tuple[float, ...] | None = None
+    torques: Tail = ()
+
+
+@dataclass(frozen=True)
+class LoadedDrive:
+    """A motor that gives way to the load torque, or cranks that do behind a gear with backlash.
+
+    Attributes
+    ----------
+    reflected_inertia_kg_m2
+        Mean inertia that the model adds at the shaft. It is solved as part of the motor; its torque
+        is then no part of the load that is handed in. Any value gives the same motion; the true one
+        gives it with the fewest sweeps.
+    """
+
+    frequency_hz: float
+    settings: DriveSettings
+    motor: Motor | None
+    reflected_inertia_kg_m2: float = 0.0
+
+    name: ClassVar[str] = "drive"
+    reads: ClassVar[tuple[Signal, ...]] = (signals.LOAD_TORQUE,)
+    writes: ClassVar[tuple[Signal, ...]] = SHAFT
+
+    def start(self, sample_rate_hz: float, seed: int) -> LoadedState:
+        """Return the state before the first sample: no deviation yet."""
+        return LoadedState()
+
+    def run(self, state: LoadedState, block: Block, inputs: Signals) -> tuple[LoadedState, Signals]:
+        """Return the shaft's motion under a load torque (less the reflected inertia's).
+
+        Raises
+        ------
+        ConfigurationError
+            If a gear has backlash: where its teeth meet is solved with the load only.
+        """
+        if self.settings.gear is not None:
+            raise ConfigurationError(
+                "drive: a gear with backlash is solved sample by sample with what loads it; leave "
+                "out play that friction holds, laws without a compiled form and substituted "
+                "signals, or the gear"
+            )
+        told = self.settings.commanded(self.frequency_hz, block.time_s)
+        torque = inputs[signals.LOAD_TORQUE.name] + self._inertia * told.acceleration
+        system = self.system
+        hold = self._hold(block.sample_rate_hz)
+        known = 0 if state.states is not None else 1
+        if known:
+            zero = (0.0,) * len(system.A)
+            state = LoadedState(zero, ((float(torque[0]),),) * TORQUE_DEGREE)
+        joined = np.concatenate([np.array(state.torques)[:, 0], torque[known:]])[:, np.newaxis]
+        states = np.empty((block.count, len(system.A)))
+        states[:known] = state.states
+        states[known:] = hold.run(np.array(state.states), joined)
+        deviation = states @ system.C.T + torque[:, np.newaxis] @ system.D.T
+        shaft = Shaft(*(given + more for given, more in zip(told, deviation.T, strict=True)))
+        tail = tuple((value,) for value in joined[-TORQUE_DEGREE:, 0].tolist())
+        return LoadedState(tuple(states[-1].tolist()), tail), shaft.signals
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the period that the shaft really has under the load, and its harmonics."""
+        torque = inputs[signals.LOAD_TORQUE.name]
+        free_hz = self.settings.frequency_hz(self.frequency_hz)
+        lost = 0.0 if self.motor is None else droop(self.motor)
+        real = period.at(free_hz + lost * float(torque[0].real) / (2.0 * math.pi))
+        told = self.settings.ripple_over(real)
+        whole = torque + self._inertia * told[signals.SHAFT_ACCELERATION.name]
+        beyond = told[signals.SHAFT_ANGLE.name].copy()
+        beyond[1:] += self.system.response(real.s[1:])[:, 0, 0] * whole[1:]
+        return real, shaft_over(real, beyond)
+
+    def load(self, run: Signals, turned: FloatArray | float = 0.0) -> FloatArray:
+        """Return the load at the shaft: struts, their guides, and what varies with the angle.
+
+        Parameters
+        ----------
+        run
+            Angle and speed of the shaft, levers and forces of both struts.
+        turned
+            What the angle has besides.
+        """
+        angle = run[signals.SHAFT_ANGLE.name] + turned
+        speed = run[signals.SHAFT_SPEED.name]
+        total = np.zeros_like(angle)
+        for strut in ("aft", "fore"):
+            lever = run[f"lever_{strut}"]
+            total += run[f"force_{strut}"] * lever
+            for guides in self.guides:
+                if guides.coulomb_n or guides.viscous_n_s_m:
+                    velocity = lever * speed
+                    total += guides.viscous_n_s_m * velocity * lever
+                    total += guides.coulomb_n * np.sign(velocity) * lever
+        for cogging in self.cogging:
+            total += cogging.torque_n_m * np.sin(cogging.order * angle + cogging.phase_rad)
+        return total
+
+    @cached_property
+    def system(self) -> LinearSystem:
+        """From the load torque to the shaft's deviation, a gear's teeth always in contact."""
+        if self.settings.gear is not None:
+            return geared(self.motor, self.settings.gear, self.reflected_inertia_kg_m2)
+        if self.motor is None:
+            raise ConfigurationError("drive: neither a motor nor a gear gives way to the load")
+        return closed_loop(self.motor, self.reflected_inertia_kg_m2)
+
+    @cached_property
+    def guides(self) -> tuple[Guides, ...]:
+        """Friction of the struts' guides: the drive's, and the motor's own."""
+        own = () if self.motor is None else (self.motor.guides,)
+        return (*own, self.settings.guides)
+
+    @property
+    def cogging(self) -> tuple[Cogging, ...]:
+        """Torques that vary with the angle."""
+        return () if self.motor is None else self.motor.cogging
+
+    @property
+    def shaft(self) -> ShaftSystem:
+        """What the march of drive and model needs of this drive."""
+        gear = self.settings.gear
+        return ShaftSystem(
+            self.settings,
+            self.frequency_hz,
+            self.system,
+            self._inertia - self.reflected_inertia_kg_m2,
+            self.reflected_inertia_kg_m2,
+            (
+                sum(one.coulomb_n for one in self.guides),
+                sum(one.viscous_n_s_m for one in self.guides),
+            ),
+            tuple((float(one.order), one.torque_n_m, one.phase_rad) for one in self.cogging),
+            (0.0, 0.0) if gear is None else (gear.stiffness_n_m_rad, gear.backlash_rad / 2.0),
+        )
+
+    @cached_property
+    def _inertia(self) -> float:
+        """What the drive's own acceleration has to turn."""
+        gear, motor = self.settings.gear, self.motor
+        own = 0.0 if motor is None else motor.shaft_inertia_kg_m2
+        own = own if gear is None else gear.crank_inertia_kg_m2
+        return own + self.reflected_inertia_kg_m2
+
+    def _hold(self, sample_rate_hz: float) -> Hold:
+        return causal_hold(self.system, 1.0 / sample_rate_hz, TORQUE_DEGREE)

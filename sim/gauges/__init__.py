@@ -1,0 +1,1 @@
+"""The gauges: what the dynamometers make of the forces in the struts."""

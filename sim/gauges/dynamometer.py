@@ -1,0 +1,136 @@
+"""The dynamometers: what the gauges make of the forces in the struts."""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+
+from sim import signals
+from sim.model.hysteresis import LoopState, loop
+from sim.signals import FloatArray, Signal, Signals
+from sim.solve.period import Period, Spectra
+from sim.solve.sampled import steady_by_samples
+from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+
+DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """One dynamometer: reading = gain * (force + curvature * force^2 + hysteresis) + offset.
+
+    Attributes
+    ----------
+    full_scale_n
+        Largest force that it is made for; ``None`` if unknown. Beyond it a run is flagged.
+    curvature_1_n
+        Quadratic part of the characteristic.
+    hysteresis_1_n
+        beta of a Rayleigh loop: between the extremes F1 and F2 the reading lags by
+        (beta/2) (F2 - F)(F - F1), which is (beta/2) (F_m^2 - F^2) between -F_m and F_m.
+    zero_drift_n_s
+        Slope of the zero.
+    zero_drifted_n
+        What it has drifted by before time 0; 0 where the zero is taken then.
+    lowest_n, highest_n
+        Where the reading stops: a mechanical stop, or an amplifier that saturates.
+    """
+
+    gain: float = 1.0
+    offset_n: float = 0.0
+    full_scale_n: float | None = None
+    curvature_1_n: float = 0.0
+    hysteresis_1_n: float = 0.0
+    zero_drift_n_s: float = 0.0
+    zero_drifted_n: float = 0.0
+    lowest_n: float | None = None
+    highest_n: float | None = None
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def read(
+        self, state: LoopState | None, block: Block, force: FloatArray
+    ) -> tuple[LoopState | None, FloatArray]:
+        """Return the reading over the block, and what the hysteresis remembers."""
+        true = force
+        if self.curvature_1_n:
+            force = force + self.curvature_1_n * true**2
+        if self.hysteresis_1_n and block.count:
+            state, lag = loop(state, true)
+            force = force - (self.hysteresis_1_n / 2.0) * lag
+        reading = self.gain * force + self.offset_n
+        if self._drifts:
+            reading = reading + (self.zero_drifted_n + self.zero_drift_n_s * block.time_s)
+        if self.lowest_n is not None or self.highest_n is not None:
+            reading = np.clip(reading, self.lowest_n, self.highest_n)
+        return state, reading
+
+    @property
+    def _drifts(self) -> bool:
+        return bool(self.zero_drift_n_s or self.zero_drifted_n)
+
+    def without_drift(self) -> "Gauge":
+        """Return the gauge with a zero that stays where it was taken."""
+        return replace(self, zero_drift_n_s=0.0, zero_drifted_n=0.0) if self._drifts else self
+
+    def drifting_from(self, time_s: float) -> "Gauge":
+        """Return the gauge with a zero that drifts by as much at this time as before at time 0."""
+        if not self.zero_drift_n_s:
+            return self
+        return replace(self, zero_drifted_n=self.zero_drifted_n - self.zero_drift_n_s * time_s)
+
+
+@dataclass(frozen=True)
+class Dynamometers:
+    """The dynamometer at each strut; its stiffness is that of :class:`sim.model.mounting.Mounting`.
+
+    Attributes
+    ----------
+    cross_talk_aft, cross_talk_fore
+        What the gauge at that strut feels of the other strut's force.
+    """
+
+    aft: Gauge = Gauge()
+    fore: Gauge = Gauge()
+    cross_talk_aft: float = 0.0
+    cross_talk_fore: float = 0.0
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    name: ClassVar[str] = "dynamometers"
+    reads: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
+    writes: ClassVar[tuple[Signal, ...]] = (
+        signals.DYNAMOMETER_FORCE_AFT,
+        signals.DYNAMOMETER_FORCE_FORE,
+    )
+
+    def drifting_from(self, time_s: float) -> "Dynamometers":
+        """Return the dynamometers with both zeros' clocks begun at this time."""
+        aft, fore = self.aft.drifting_from(time_s), self.fore.drifting_from(time_s)
+        return replace(self, aft=aft, fore=fore)
+
+    def start(self, sample_rate_hz: float, seed: int) -> DynamometerState:
+        """Return the state before the first sample."""
+        return (None, None)
+
+    def run(
+        self, state: DynamometerState, block: Block, inputs: Signals
+    ) -> tuple[DynamometerState, Signals]:
+        """Return the readings of both dynamometers over the block."""
+        aft, fore = (inputs[signal.name] for signal in self.reads)
+        if self.cross_talk_aft or self.cross_talk_fore:
+            aft, fore = aft + self.cross_talk_aft * fore, fore + self.cross_talk_fore * aft
+        aft_state, aft_reading = self.aft.read(state[0], block, aft)
+        fore_state, fore_reading = self.fore.read(state[1], block, fore)
+        names = (signal.name for signal in self.writes)
+        return (aft_state, fore_state), dict(zip(names, (aft_reading, fore_reading), strict=True))
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics of the readings; the drift of the zero is left out."""
+        steady = Dynamometers(
+            self.aft.without_drift(),
+            self.fore.without_drift(),
+            self.cross_talk_aft,
+            self.cross_talk_fore,
+        )
+        remembers = bool(self.aft.hysteresis_1_n or self.fore.hysteresis_1_n)
+        return steady_by_samples(steady, period, inputs, settling=1 if remembers else 0)

@@ -1,0 +1,1 @@
+"""The mechanism: from the shaft to struts and model, in exact geometry."""

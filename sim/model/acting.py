@@ -1,0 +1,65 @@
+"""Where a force law acts on the model."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar
+
+from sim.model.laws import (
+    Coulomb,
+    Cubic,
+    Exponential,
+    ForceLaw,
+    LoadFriction,
+    Proximity,
+    Quadratic,
+    RubbingSpring,
+    Spring,
+    Stribeck,
+    Tone,
+    Viscous,
+)
+
+
+class Point(StrEnum):
+    """Where a law acts, and so which motion it depends on."""
+
+    AFT = "aft"
+    FORE = "fore"
+    TRANSLATION = "translation"
+    ROTATION = "rotation"
+    THROUGH_WATER = "through_water"  # translation; its velocity includes U times the rotation
+
+
+# The laws that a configuration file can name, told apart by their keys.
+AnyLaw = (
+    Viscous
+    | Quadratic
+    | Cubic
+    | Coulomb
+    | Stribeck
+    | LoadFriction
+    | Spring
+    | RubbingSpring
+    | Proximity
+    | Exponential
+    | Tone
+)
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A law and the point of the model at which it acts.
+
+    Attributes
+    ----------
+    law
+        One of the laws of this file where it comes from a configuration file, else any.
+    in_water
+        True for a law of the water, which a run in air does not have.
+    """
+
+    law: AnyLaw | ForceLaw
+    point: Point = Point.TRANSLATION
+    in_water: bool = False
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}

@@ -1,0 +1,239 @@
+"""Model, water and mounting: from the motion of the struts to the forces that they exert."""
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import ClassVar, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.description.arrangement import Arrangement
+from hardware.description.body import Body
+from hardware.description.oscillator import Plane
+from hardware.description.struts import to_motion
+from sim import signals
+from sim.model.acting import Acting
+from sim.model.blocks import BlockForces, HullState
+from sim.model.coefficients import HullCoefficients, mass_matrix, weight_matrix
+from sim.model.forces import CrossFlow, Instants
+from sim.model.mounting import Mounting
+from sim.model.numbers import numbers_of, turns_with
+from sim.model.steady import HullSteady
+from sim.model.surge import SurgeForces
+from sim.model.system import HullSystem
+from sim.model.water.radiation import Radiation, constant
+from sim.signals import FloatArray, Signal, Signals
+from sim.solve.linear import Hold
+from sim.solve.model_march import Marching, marching_of
+from sim.solve.period import Period, Spectra
+from sim.solve.relaxation import LONGEST_SWEEP
+from sim.solve.settled import fine_enough, last_period
+from sim.stage import Block
+
+__all__ = ["Hull", "HullCoefficients"]
+
+ValueT = TypeVar("ValueT", np.float64, np.complex128)
+
+
+@dataclass(frozen=True)
+class Hull:
+    """A rigid model in water, or in air where the water has no coefficients, on its mounting.
+
+    The struts' motion moves the model exactly (:mod:`sim.mechanism.geometry`), whatever its angle:
+    with its velocities u, v and r through the water in body axes, what the gauges read balances
+
+        inertia + A (v', r') + B (v, r) + C (place, angle) + cross-flow - X + weight + mu + laws
+
+    with the memory mu of the water, which is linear in the struts' motion, about the mean speed.
+    What gauges read at rest where the drift is set, weight among it, is left out: they are tared
+    with the model in place. The carriage's speed is taken as steady within v'.
+
+    For the mounting and between samples the slopes of all this at small angles are a linear system
+    (:mod:`sim.model.system`), solved exactly; what there is beyond them, and the laws, are solved
+    sample by sample, or by sweeps over the block until nothing changes any more. On a rigid
+    mounting the model moves as the struts do. Else gauges and frame give way, and model, water and
+    mounting are solved together.
+
+    Attributes
+    ----------
+    radiation
+        The water's memory, and its added mass at infinite frequency, besides ``water``; ``None``
+        where constant coefficients say all.
+    laws, cross_flow
+        Forces that depend on the motion at once.
+    carriage_speed_m_s
+        Mean speed of the flow past the model, about which the memory is linear. The carriage's
+        speed itself is a signal.
+    flow_factor
+        Speed of the flow past the model over the carriage's.
+    drift_rad
+        Steady heading of the model against the carriage's way, bow to starboard or up, set as the
+        arrangement says.
+    arrangement
+        Of struts, gauges and drift; not a turntable.
+    surge
+        The water's force along the model.
+    afloat
+        Whether buoyancy carries the model: it then displaces its own mass, centred between the
+        struts' attachments in height and below the centre of gravity along the model. Else, in the
+        vertical plane, the weight hangs on the struts whole.
+    """
+
+    plane: Plane
+    half_spacing_m: float
+    body: Body
+    water: HullCoefficients = field(default_factory=HullCoefficients)
+    radiation: Radiation | None = None
+    mounting: Mounting = field(default_factory=Mounting)
+    laws: tuple[Acting, ...] = ()
+    cross_flow: CrossFlow | None = None
+    carriage_speed_m_s: float = 0.0
+    flow_factor: float = 1.0
+    drift_rad: float = 0.0
+    arrangement: Arrangement = field(default_factory=Arrangement)
+    surge: SurgeForces | None = None
+    afloat: bool = True
+
+    name: ClassVar[str] = "hull"
+    reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
+    writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
+
+    @property
+    def system(self) -> HullSystem:
+        """The linear part at the mean carriage speed."""
+        return _system(self)
+
+    def start(self, sample_rate_hz: float, seed: int) -> HullState:
+        """Return the state before the first sample: calm water, a mounting that is at rest."""
+        return HullState()
+
+    def run(self, state: HullState, block: Block, inputs: Signals) -> tuple[HullState, Signals]:
+        """Return the force of each strut on the model over the block."""
+        if not block.count:
+            return state, {signal.name: np.empty(0) for signal in self.writes}
+        columns = [inputs[signal.name] for signal in self.reads[:6]]
+        struts = np.column_stack(columns)
+        flow = self.flow_factor * inputs[signals.CARRIAGE_SPEED.name]
+        instants = Instants(block.time_s, 1.0 / block.sample_rate_hz, flow)
+        if not self.system.states:
+            force = self._over(instants).on_rigid_mounting(struts)
+        else:
+            state, force = self._with_memory(state, struts, instants)
+        return state, self._written(np.ascontiguousarray(force.T))
+
+    def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
+        return {one.name: row for one, row in zip(self.writes, rows, strict=True)}
+
+    def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
+        """Return the model in the water as it is at the first of some samples, and for how many.
+
+        What the water has no input for yet (:attr:`Radiation.onset_s`) has one from the first step
+        that begins after the onset.
+        """
+        if self.radiation is None or not self.radiation.onset_s.any():
+            return self, len(time_s)
+        begun = time_s - step_s
+        later = self.radiation.onset_s[self.radiation.onset_s > begun[0]]
+        radiation = self.radiation.at(float(begun[0]))
+        hull = self if radiation is self.radiation else replace(self, radiation=radiation)
+        return hull, int(np.searchsorted(begun, later.min(initial=np.inf)))
+
+    @property
+    def repeating(self) -> "Hull":
+        """The model as it is long after the start, with the laws that repeat."""
+        laws = tuple(one for one in self.laws if one.law.periodic)
+        radiation = self.radiation
+        if radiation is not None:
+            radiation = replace(radiation, onset_s=np.zeros(radiation.states))
+        return replace(self, laws=laws, radiation=radiation)
+
+    def forces_over(self, block: Block, flow_m_s: FloatArray) -> BlockForces:
+        """Return the forces over a block, at the flow's speed at each sample."""
+        return self._over(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
+
+    def _over(self, instants: Instants, marching: Marching | None = None) -> BlockForces:
+        return BlockForces(self.laws, self.system, instants, marching)
+
+    def _with_memory(
+        self, state: HullState, struts: FloatArray, instants: Instants
+    ) -> tuple[HullState, FloatArray]:
+        """Go on in stretches that fit the fastest memory, and one thread of the matrix products."""
+        step_s = instants.step_s
+        forces: list[FloatArray] = []
+        first = 0
+        while first < len(struts):
+            hull, count = self.as_of(instants.time_s[first : first + LONGEST_SWEEP], step_s)
+            part = slice(first, first + count)
+            here = instants._replace(
+                time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
+            )
+            forces_here = hull._over(here, marching_of(hull, step_s))
+            state, force = forces_here.with_memory(state, struts[part], _holds(hull, step_s))
+            forces.append(force)
+            first += count
+        return state, np.concatenate(forces)
+
+    def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        """Return the harmonics of the forces: exact, the laws by harmonic balance.
+
+        Where the gauges have a clearance the forces are run on until they repeat.
+        """
+        hull = self.at_speed(inputs)
+        if self.mounting.joint is not None:
+            return period, hull._settled(period, inputs)
+        y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
+        model = HullSteady(hull, period)
+        return period, self._written(model.force(y, model.balanced(y)).T)
+
+    def at_speed(self, inputs: Spectra) -> "Hull":
+        """Return the model at the carriage's mean speed."""
+        speed = self.flow_factor * float(inputs[signals.CARRIAGE_SPEED.name][0].real)
+        return self if speed == self.carriage_speed_m_s else replace(self, carriage_speed_m_s=speed)
+
+    def _settled(self, period: Period, inputs: Spectra) -> Spectra:
+        """Return the harmonics of the forces after as many periods as it takes."""
+        hull, fine = self.repeating, fine_enough(period, self.system.state_matrix)
+        given = {one.name: fine.values(inputs[one.name]) for one in self.reads}
+
+        def run(state: HullState, turn: int) -> tuple[HullState, Signals]:
+            rate_hz = fine.points * fine.frequency_hz
+            return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
+
+        names = tuple(one.name for one in self.writes)
+        found = last_period(run, HullState(), names)
+        return {name: fine.harmonics(found[name]) for name in names}
+
+
+@lru_cache(maxsize=256)
+def _system(hull: Hull) -> HullSystem:
+    to = np.array(
+        [to_motion(a, f, hull.half_spacing_m, hull.plane) for a, f in ((1.0, 0.0), (0.0, 1.0))]
+    ).T
+    radiation = constant(np.zeros((2, 2))) if hull.radiation is None else hull.radiation
+    added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
+    water_damping = np.array(hull.water.damping)
+    restoring = np.array(hull.water.restoring) + np.array(weight_matrix(hull.body, hull.plane))
+    turn = np.zeros((2, 2))
+    turn[0] = -turns_with(hull.plane) * math.cos(hull.drift_rad) * to[1]
+    incidence = hull.carriage_speed_m_s * turn
+    mass = to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to
+    damping = to.T @ (water_damping @ to + added @ incidence)
+    stiffness = to.T @ (restoring @ to + water_damping @ incidence)
+    return HullSystem(
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        speed_m_s=hull.carriage_speed_m_s,
+        turn=turn,
+        numbers=numbers_of(hull, added, np.hstack([stiffness, damping, mass])),
+        to_motion=to,
+        radiation=radiation,
+        elastic=hull.mounting.elastic,
+        joint=hull.mounting.joint,
+    )
+
+
+@lru_cache(maxsize=64)
+def _holds(hull: Hull, step_s: float) -> tuple[Hold, Hold]:
+    return hull.system.holds(step_s)

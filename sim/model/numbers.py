@@ -1,0 +1,143 @@
+"""The numbers of a hull that :mod:`sim.mechanism.geometry` reckons with, and their consequences."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hardware.description.arrangement import DriftBy, Gauges, Joint, Pivot
+from hardware.description.oscillator import Plane
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.mechanism import geometry
+from sim.mechanism.geometry import BodyMotion, body_loads, body_motion, gauge_readings
+from sim.signals import FloatArray
+
+if TYPE_CHECKING:
+    from sim.model.hull import Hull
+
+_BENDING = slice(geometry.QUADRATIC, geometry.QUADRATIC + 2)
+
+
+def numbers_of(hull: "Hull", added_mass: FloatArray, linear: FloatArray) -> FloatArray:
+    """Return the numbers of a hull, shape ``(ROWS, COLUMNS)`` of :mod:`sim.mechanism.geometry`.
+
+    Parameters
+    ----------
+    added_mass
+        With what the radiation adds at infinite frequency, ``(2, 2)``.
+    linear
+        What the linear system has for the struts' forces already, per (h, h', h''): ``(2, 6)``.
+    """
+    found = np.zeros((geometry.ROWS, geometry.COLUMNS))
+    found[geometry.GEOMETRY] = _geometry(hull)
+    _fill_body(found, hull)
+    _fill_water(found, hull, added_mass)
+    still = moving(found, np.zeros((1, 6)), np.zeros(1))
+    found[geometry.AT_REST, :3] = readings(found, still)[0]
+    found[geometry.LINEAR : geometry.LINEAR + 2, :6] = linear
+    return found
+
+
+def moving(numbers: FloatArray, motion: FloatArray, speed_m_s: FloatArray) -> BodyMotion:
+    """Return how the model moves where the struts' h, h' and h'' are ``motion``, six columns."""
+    y, v, a = np.ascontiguousarray(motion.T).reshape(3, 2, -1)
+    return body_motion(numbers, y[0], y[1], v[0], v[1], a[0], a[1], speed_m_s)
+
+
+def readings(
+    numbers: FloatArray, at: BodyMotion, more_across: FloatArray | float = 0.0
+) -> FloatArray:
+    """Return what the gauges read, aft, fore and along, shape ``(samples, 3)``.
+
+    Parameters
+    ----------
+    more_across
+        Force that the struts have to exert besides, across the model at its reference point.
+    """
+    ahead, across, about = body_loads(numbers, at)
+    found = gauge_readings(numbers, at.cosine, at.sine, ahead, across + more_across, about)
+    return np.stack(found, axis=1)
+
+
+def without_corners(numbers: FloatArray) -> FloatArray:
+    """Return the numbers of the same hull without the loads that bend where a velocity turns."""
+    found = numbers.copy()
+    found[_BENDING] = 0.0
+    return found
+
+
+def corners_only(numbers: FloatArray) -> FloatArray:
+    """Return the numbers of a hull that has these loads alone."""
+    found = geometry_only(numbers)
+    found[_BENDING] = numbers[_BENDING]
+    return found
+
+
+def geometry_only(numbers: FloatArray) -> FloatArray:
+    """Return the numbers of a hull that asks for nothing."""
+    found = np.zeros_like(numbers)
+    found[geometry.GEOMETRY] = numbers[geometry.GEOMETRY]
+    return found
+
+
+def has_corners(numbers: FloatArray) -> bool:
+    """Tell whether any load bends where a velocity turns."""
+    return bool(numbers[_BENDING].any())
+
+
+def turns_with(plane: Plane) -> float:
+    """Return +1 where the rotation turns ahead into across; pitch, bow up, turns the other way."""
+    return -1.0 if plane is Plane.VERTICAL else 1.0
+
+
+def _geometry(hull: "Hull") -> tuple[float, ...]:
+    given, angle = hull.arrangement, turns_with(hull.plane) * hull.drift_rad
+    rig, offset, struts = (angle if given.drift_by is by else 0.0 for by in DriftBy)
+    on_model = given.joint is Joint.SLIDES_ON_MODEL
+    return (
+        hull.half_spacing_m,
+        1.0 if given.pivot is Pivot.AFT else -1.0,
+        float(on_model),
+        float(given.gauges is Gauges.MODEL),
+        math.tan(offset) if on_model else math.sin(offset),
+        math.cos(rig),
+        math.sin(rig),
+        math.cos(struts),
+        math.sin(struts),
+    )
+
+
+def _fill_body(found: FloatArray, hull: "Hull") -> None:
+    body, vertical = hull.body, hull.plane is Plane.VERTICAL
+    below = body.cg_z_m if vertical else 0.0
+    found[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
+    if vertical:
+        # Buoyancy carries the model in water, at the height of the struts' attachments.
+        hanging = 0.0 if hull.afloat else body.mass_kg
+        weights = np.array([hanging, hanging * body.cg_x_m, body.mass_kg * below])
+        found[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * weights
+
+
+def _fill_water(found: FloatArray, hull: "Hull", added_mass: FloatArray) -> None:
+    side = turns_with(hull.plane)
+    turned = np.array([[1.0, side], [side, 1.0]])
+    matrices = (added_mass, hull.water.damping, hull.water.restoring)
+    for row, matrix in enumerate(matrices, geometry.ADDED):
+        found[row, :4] = (turned * np.array(matrix)).ravel()
+    if hull.surge is not None:
+        one = hull.surge
+        found[geometry.SURGE, :5] = one.x_u, one.x_uu, one.x_vv, side * one.x_vr, one.x_rr
+    if hull.cross_flow is not None:
+        _fill_cross_flow(found, hull, side)
+
+
+def _fill_cross_flow(found: FloatArray, hull: "Hull", side: float) -> None:
+    given = hull.cross_flow
+    kinds = (
+        (geometry.CUBIC, None if given is None else given.cubic, (1.0, side, 1.0, side)),
+        (geometry.QUADRATIC, None if given is None else given.quadratic, (1.0, 1.0, side, side)),
+    )
+    for row, rows, signs in kinds:
+        if rows is not None:
+            moment = np.array([[1.0], [side]])
+            found[row : row + 2, :4] = moment * np.array(signs) * np.array(rows)

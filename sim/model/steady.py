@@ -1,0 +1,115 @@
+"""The periodic steady state of the model on its mounting: exact, the laws by harmonic balance."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim.model.forces import law_harmonics
+from sim.model.system import HullSystem
+from sim.solve.linear import ComplexArray
+from sim.solve.model_march import periodic_laws
+from sim.solve.period import Period
+from sim.solve.relaxation import relax
+
+if TYPE_CHECKING:
+    from sim.model.hull import Hull
+    from sim.solve.balance import LawBalance
+
+
+@dataclass(frozen=True, eq=False)
+class HullSteady:
+    """A model over one period, at its mean speed.
+
+    Harmonics of the struts have shape ``(orders + 1, 2)``, of forces ``(orders + 1, 3)``: aft, fore
+    and along the model. ``laws`` are what :func:`sim.model.forces.law_forces` asks for.
+    """
+
+    hull: "Hull"
+    period: Period
+
+    @cached_property
+    def impedance(self) -> ComplexArray:
+        """Force per displacement of the model, ``(orders + 1, 2, 2)``."""
+        return self.hull.system.impedance(self.period.s)[0]
+
+    @cached_property
+    def give(self) -> ComplexArray | None:
+        """What the model gives way per rigid load, as large; ``None`` for a rigid mounting."""
+        return _mounting_gain(self.hull.system, self.impedance, self.period)
+
+    def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return the forces where the laws ask for ``laws``."""
+        h = self._model(y, laws)
+        found = laws.copy()
+        found[:, :2] += _apply(self.impedance, h)
+        return found
+
+    def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return what the laws ask for where the model gives way to ``laws``."""
+        if self._compiled is not None:
+            return self._compiled.answer(y, laws)
+        h = self._model(y, laws)
+        column = self.period.s[:, np.newaxis]
+        waves = np.hstack([h, h * column, h * column**2, _apply(self.impedance, h)])
+        hull = self.hull
+        return law_harmonics(
+            hull.laws,
+            hull.system,
+            waves,
+            self.period,
+            hull.carriage_speed_m_s,
+        )
+
+    def balanced(self, y: ComplexArray) -> ComplexArray:
+        """Return what the laws ask for, in balance with what the mounting gives way."""
+        found = None if self._compiled is None else self._compiled.balanced(y)
+        if found is not None:
+            return found
+        start = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
+        if self.give is None:
+            return start
+        return relax(lambda at: self.laws(y, at), start, "hull", self.scale(y, start))
+
+    def scale(self, y: ComplexArray, laws: ComplexArray) -> float:
+        """Return what a change of the laws counts relative to: them, or the linear force.
+
+        By the rounding of the linear force all of what is beyond it is off.
+        """
+        linear = _apply(self.impedance, y)
+        return float(max(np.abs(laws).max(), np.abs(linear).max()))
+
+    def _model(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
+        """Return the motion of the model at the struts."""
+        if self.give is None:
+            return y
+        return y + _apply(self.give, _apply(self.impedance, y) + laws[:, :2])
+
+    @cached_property
+    def _compiled(self) -> "LawBalance | None":
+        table = periodic_laws(self.hull)
+        if table is None:
+            return None
+        from sim.solve.balance import LawBalance
+
+        speed_m_s = self.hull.carriage_speed_m_s
+        return LawBalance(table, self.give, self.impedance, self.period, speed_m_s)
+
+
+def _mounting_gain(
+    system: HullSystem, impedance: ComplexArray, period: Period
+) -> ComplexArray | None:
+    """Return E p per rigid load, ``(orders + 1, 2, 2)``; ``None`` for a rigid mounting."""
+    if not system.elastic_count:
+        return None
+    shape = system.elastic.shape
+    whole = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
+    pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
+    gain: ComplexArray = -shape @ np.linalg.solve(whole, pull)
+    return gain
+
+
+def _apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
+    return product

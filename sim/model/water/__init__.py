@@ -1,0 +1,9 @@
+"""The water around the model: added mass and damping, their memory, and forces that are not linear.
+
+* :mod:`sim.model.water.radiation` is what the hull needs to know of the water: a state space;
+* :mod:`sim.model.water.tables` reads added mass and damping over frequency;
+* :mod:`sim.model.water.memory` fits the state space to such a table;
+* :mod:`sim.model.water.tank` adds the tank's walls to it;
+* :mod:`sim.model.water.manoeuvring` turns manoeuvring derivatives into coefficients and force laws;
+* :mod:`sim.model.water.hydrostatics` gives the restoring coefficients.
+"""

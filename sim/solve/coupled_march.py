@@ -1,0 +1,201 @@
+"""Drive, mechanism and model made ready for the compiled march (:mod:`sim.solve.marching`)."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from sim import signals
+from sim.drive.prescribed import SHAFT, DriveSettings, Shaft
+from sim.mechanism.linkage import Mechanism
+from sim.model.blocks import HullState, marched_state
+from sim.model.hull import Hull
+from sim.model.law_table import has_number
+from sim.signals import FloatArray, Signals
+from sim.solve.linear import LinearSystem, causal_hold
+from sim.solve.model_march import OUTPUTS, Marching, marching_of
+from sim.stage import Block, Stage
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from sim.drive.shaft_loop import ShaftLoop
+    from sim.solve.marching import Course
+
+TORQUE_DEGREE = 3  # of the polynomial by which the torque goes on between samples
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftSystem:
+    """What the march needs of a drive.
+
+    Attributes
+    ----------
+    system
+        From the torques (load, and what a gear with a clearance gives back) to angle, speed and
+        acceleration beyond what the drive is told; with a clearance, its opening too.
+    inertia_kg_m2, reflected_inertia_kg_m2
+        Of the shaft; and what is solved as part of it.
+    gap
+        Stiffness and half clearance of the gear, or zeros.
+    """
+
+    settings: DriveSettings
+    frequency_hz: float
+    system: LinearSystem
+    inertia_kg_m2: float
+    reflected_inertia_kg_m2: float
+    friction: tuple[float, float]
+    cogging: tuple[tuple[float, float, float], ...]
+    gap: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class CoupledMarch:
+    """Drive, mechanism and model over one block, from the states before it."""
+
+    shaft: ShaftSystem
+    mechanism: Mechanism
+    hull: Hull
+    model: Marching
+    block: Block
+    flow_m_s: FloatArray
+
+    def run(
+        self,
+        states: tuple[float, ...] | None,
+        torques: tuple[tuple[float, ...], ...],
+        hull_state: HullState,
+    ) -> "tuple[ShaftLoop, Course, HullState, dict[str, FloatArray]] | None":
+        """Return what the march has come to; ``None`` if a sample does not settle.
+
+        Parameters
+        ----------
+        states, torques
+            Of the shaft: its state, and the torques of the last samples; ``None`` and nothing
+            before a run's first sample, in which nothing deviates yet.
+
+        Raises
+        ------
+        ConfigurationError
+            If the sample is one of a gear with backlash: sweeps cannot solve it either.
+        """
+        from sim.drive.shaft_loop import linkages_of
+        from sim.solve.marching import march
+
+        told = self.shaft.settings.commanded(self.shaft.frequency_hz, self.block.time_s)
+        known = 1 if states is None else 0
+        course = self._course(told, hull_state, known)
+        shaft = self._shaft_loop(told)
+        if states is not None:
+            shaft.states[TORQUE_DEGREE - 1] = states
+            shaft.torques[:TORQUE_DEGREE] = torques
+        whole = self.hull.mounting.joint is not None
+        outputs = np.empty((self.block.count, OUTPUTS if whole else OUTPUTS - 2))
+        links = linkages_of(self.mechanism)
+        bad = march(self.model.model, self.model.table, course, shaft, links, outputs)
+        if bad >= 0:
+            self._check_unsettled(float(self.block.time_s[bad]))
+            return None
+        after = marched_state(course) if self.hull.system.states else hull_state
+        force = self.hull.forces_over(self.block, self.flow_m_s).whole(
+            outputs[:, :6], outputs[:, 6:8] + course.loads[TORQUE_DEGREE:, :2]
+        )
+        return shaft, course, after, self._signals(shaft.motion, course.struts[1:], force)
+
+    def _check_unsettled(self, time_s: float) -> None:
+        gear = self.shaft.settings.gear
+        if gear is not None:
+            raise ConfigurationError(
+                f"drive: at {time_s:.4g} s the gear's teeth strike so hard that the sample has no "
+                f"solution, with stiffness_n_m_rad = {gear.stiffness_n_m_rad:g} and "
+                f"damping_n_m_s_rad = {gear.damping_n_m_s_rad:g}; make the teeth softer, or else "
+                f"try another sample rate"
+            )
+
+    def _course(self, told: Shaft, state: HullState, known: int) -> "Course":
+        struts = self._struts(told)
+        forces = self.hull.forces_over(self.block, self.flow_m_s)
+        if not self.hull.system.states:  # a model that remembers nothing
+            state = HullState((), (0.0,) * 6, ((0.0,) * 4,) * TORQUE_DEGREE)
+        elif state.states is None:
+            state = forces.at_first_sample(struts)
+        course = forces.course(state, struts, known)
+        reach = np.hypot(struts[:, :2], self._levers(told)).max()
+        torque = 2.0 * course.scale[0] * reach + np.finfo(np.float64).tiny
+        more = np.full(len(self.shaft.system.B.T), torque)
+        return course._replace(scale=np.concatenate([course.scale, more]))
+
+    def _struts(self, told: Shaft) -> FloatArray:
+        _, motion = self.mechanism.run(None, self.block, told.signals)
+        return np.column_stack([motion[one.name] for one in self.hull.reads[:6]])
+
+    def _levers(self, told: Shaft) -> FloatArray:
+        _, motion = self.mechanism.run(None, self.block, told.signals)
+        return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
+
+    def _shaft_loop(self, told: Shaft) -> "ShaftLoop":
+        from sim.drive.shaft_loop import ShaftLoop
+
+        one, count = self.shaft, self.block.count
+        hold = _hold(one.system, 1.0 / self.block.sample_rate_hz)
+        n, inputs = one.system.B.shape
+        to_outputs = np.zeros((n, 4))
+        to_outputs[:, : len(one.system.C)] = one.system.C.T
+        by_torque = np.zeros((inputs, 4))
+        by_torque[:, : len(one.system.D)] = one.system.D.T
+        at_once = by_torque + 0.0
+        by_torque += hold[1][-1].T @ to_outputs
+        return ShaftLoop(
+            True,
+            hold[0],
+            hold[1],
+            to_outputs,
+            by_torque,
+            at_once,
+            np.column_stack(told),
+            np.zeros((count + TORQUE_DEGREE, n)),
+            np.zeros((count + TORQUE_DEGREE, inputs)),
+            np.empty((count, 5)),
+            np.array([one.inertia_kg_m2, one.reflected_inertia_kg_m2, *one.friction[::-1]]),
+            np.array(one.cogging, dtype=np.float64).reshape(-1, 3),
+            np.array([*one.gap, 0.0]),
+        )
+
+    def _signals(
+        self, motion: FloatArray, struts: FloatArray, force: FloatArray
+    ) -> dict[str, FloatArray]:
+        names = [one.name for one in (*SHAFT, signals.LEVER_AFT, signals.LEVER_FORE)]
+        names += [one.name for one in (*self.hull.reads[:6], *self.hull.writes)]
+        columns = np.hstack([motion, struts, force])
+        return dict(zip(names, np.ascontiguousarray(columns.T), strict=True))
+
+
+def coupled_march(
+    shaft: ShaftSystem, parts: "tuple[Stage[Any], ...]", block: Block, inputs: Signals
+) -> CoupledMarch | None:
+    """Return the march over a block; ``None`` where only sweeps can do it.
+
+    That is without numba, with a law that has no number, with play that friction holds, with a part
+    that is another than the usual, or with a signal substituted between the parts.
+    """
+    mechanism, hull = parts
+    if not (type(mechanism) is Mechanism and type(hull) is Hull):
+        return None
+    play = mechanism.aft.half_play_m or mechanism.fore.half_play_m
+    numbered = all(has_number(one.law) for one in hull.laws)
+    if play or not numbered or inputs.keys() != {signals.CARRIAGE_SPEED.name}:
+        return None
+    model = marching_of(hull, 1.0 / block.sample_rate_hz, shaft.gap[1] > 0.0)
+    if model is None:
+        return None
+    flow = hull.flow_factor * inputs[signals.CARRIAGE_SPEED.name]
+    return CoupledMarch(shaft, mechanism, hull, model, block, flow)
+
+
+@lru_cache(maxsize=64)
+def _hold(system: LinearSystem, step_s: float) -> tuple[FloatArray, FloatArray]:
+    hold = causal_hold(system, step_s, TORQUE_DEGREE)
+    return np.array(hold.step), np.array(hold.weights)

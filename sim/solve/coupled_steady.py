@@ -1,0 +1,99 @@
+"""The periodic steady state of a drive that feels its load, with the load it feels."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sim import signals
+from sim.model.hull import Hull
+from sim.model.steady import HullSteady
+from sim.solve.linear import ComplexArray
+from sim.solve.period import Period, Spectra
+from sim.solve.relaxation import relax
+from sim.solve.sampled import steady_of
+from sim.stage import Stage
+
+if TYPE_CHECKING:
+    from sim.solve.coupled import Coupled
+
+_STRUTS = ("force_aft", "force_fore")
+_LOADING = ("shaft_angle", "shaft_speed", "lever_aft", "lever_fore", *_STRUTS)
+
+
+@dataclass
+class CoupledSteady:
+    """Sweeps of torque, motion and force over a period, until they fit each other.
+
+    What is swept is one array, a column each: the torque less the reflected inertia's, and with
+    a mounting that gives way, what the laws ask for at both struts and along the model. So the
+    laws come to terms with mounting and drive at once.
+    """
+
+    stage: "Coupled"
+    period: Period
+    inputs: Spectra
+
+    def __post_init__(self) -> None:
+        self._real = self.period
+        self._found: dict[str, ComplexArray] = {}
+        self._model: HullSteady | None = None
+        self._swept = _with_swept_laws(self.stage.hull)
+
+    def solve(self) -> tuple[Period, Spectra]:
+        """Return the period that the shaft has under its load, and the harmonics of all parts."""
+        columns = 1 if self._swept is None else 4
+        nothing = np.zeros((self.period.orders + 1, columns), dtype=np.complex128)
+        start = self._respond(nothing)
+        size = np.full(columns, np.abs(start[:, 0]).max())
+        if self._model is not None:
+            size[1:] = self._model.scale(_struts(self._found), start[:, 1:])
+        relax(self._respond, start, self.stage.name, size)
+        return self._real, {one.name: self._found[one.name] for one in self.stage.writes}
+
+    def _respond(self, at: ComplexArray) -> ComplexArray:
+        stage, inputs = self.stage, self.inputs
+        torque = {signals.LOAD_TORQUE.name: at[:, 0]}
+        self._real, shaft = stage.drive.steady(self.period, torque)
+        found: dict[str, ComplexArray] = {**inputs, **shaft}
+        motion = steady_of(stage.mechanism, self._real, {**found, **inputs})[1]
+        found = {**found, **motion, **inputs}
+        laws = at[:, 1:]
+        if self._swept is None:
+            forces = steady_of(stage.hull, self._real, found)[1]
+        else:
+            forces, laws = self._forces(self._swept, found, laws)
+        found = {**found, **forces, **inputs}
+        names = list(_LOADING)
+        values = self._real.values(np.stack([found[name] for name in names], axis=1)).T
+        load = stage.drive.load(
+            dict(zip(names, values, strict=True)), self._real.omega_rad_s * self._real.time_s
+        )
+        torque_now = self._real.harmonics(load)
+        self._found = {**found, signals.LOAD_TORQUE.name: torque_now}
+        inertia = stage.drive.reflected_inertia_kg_m2
+        rest = torque_now - inertia * found[signals.SHAFT_ACCELERATION.name]
+        return np.column_stack([rest, laws])
+
+    def _forces(
+        self, hull: Hull, found: Spectra, laws: ComplexArray
+    ) -> tuple[Spectra, ComplexArray]:
+        """Return the struts' forces and what the laws ask for, after one sweep."""
+        model = self._model
+        if model is None or model.period != self._real:
+            model = self._model = HullSteady(hull.at_speed(found), self._real)
+        y = _struts(found)
+        laws = model.laws(y, laws)
+        names = (one.name for one in hull.writes)
+        return dict(zip(names, model.force(y, laws).T, strict=True)), laws
+
+
+def _struts(found: Spectra) -> ComplexArray:
+    return np.stack([found["displacement_aft"], found["displacement_fore"]], axis=1)
+
+
+def _with_swept_laws(hull: Stage[Any]) -> Hull | None:
+    """Return the model if the balance of its laws and mounting can be part of the sweeps."""
+    if type(hull) is not Hull or hull.mounting.joint is not None or not hull.system.elastic_count:
+        return None
+    return hull

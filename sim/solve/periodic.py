@@ -1,0 +1,112 @@
+"""The exact periodic steady state of a chain: one period's harmonics of every signal.
+
+Linear parts are exact in the frequency domain; what is not linear is evaluated at the points of one
+period and balanced harmonic by harmonic. No transient has to die out, and no sample is taken: this
+is the form for whoever needs a run ten thousand times. What does not repeat with the shaft (noise,
+drift, jitter, hum, tones) has no part in it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import SetPoint
+from sim import signals
+from sim.chain import Chain
+from sim.rig import SimulatedRig
+from sim.solve.linear import ComplexArray
+from sim.solve.period import Period, Spectra
+from sim.solve.sampled import steady_of
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """One period of every signal.
+
+    Attributes
+    ----------
+    period
+        The period that is really run.
+    spectra
+        Harmonics by signal name, ``x(t) = Re sum X_n exp(i n w t)``; see :data:`Spectra`.
+    """
+
+    period: Period
+    spectra: Spectra
+
+    @property
+    def reference_s(self) -> float:
+        """Time of the photocell's pulse within the period; 0 without a photocell."""
+        edges = self.spectra.get(signals.PHOTOCELL_EDGE_TIME.name)
+        return 0.0 if edges is None else float(edges[0].real)
+
+    def referred(self, name: str) -> ComplexArray:
+        """Return a signal's harmonics with time counted from the photocell's pulse.
+
+        That is how a recording is analysed: the in-phase part of order n is minus the imaginary
+        part, the quadrature the real part.
+        """
+        turned: ComplexArray = self.spectra[name] * np.exp(self.period.s * self.reference_s)
+        return turned
+
+
+def steady_state(
+    chain: Chain, period: Period, substitute: Mapping[str, ComplexArray] | None = None
+) -> SteadyState:
+    """Return the periodic steady state of a chain.
+
+    Parameters
+    ----------
+    period
+        Frequency that is set, highest order, and points of the period.
+    substitute
+        Harmonics to use in place of the simulated ones, by signal; shape ``(orders + 1,)``.
+
+    Raises
+    ------
+    ConfigurationError
+        If a substituted signal is not one of the chain's or has not as many orders, an input of the
+        chain is missing, or the points do not resolve the orders.
+    """
+    given = _checked(chain, period, substitute or {})
+    spectra: dict[str, ComplexArray] = {one.name: given[one.name] for one in chain.inputs}
+    for stage in chain.stages:
+        fed = {one.name: spectra[one.name] for one in stage.reads}
+        fed |= {one.name: given[one.name] for one in stage.writes if one.name in given}
+        period, written = steady_of(stage, period, fed)
+        spectra |= {name: given.get(name, values) for name, values in written.items()}
+    return SteadyState(period, spectra)
+
+
+def steady_run(
+    rig: SimulatedRig, set_point: SetPoint, *, orders: int = 12, points: int = 128
+) -> SteadyState:
+    """Return the periodic steady state of a rig at a set-point; see :func:`steady_state`."""
+    return steady_state(rig.chain(set_point), Period(set_point.frequency_hz, orders, points))
+
+
+def _checked(
+    chain: Chain, period: Period, given: Mapping[str, ComplexArray]
+) -> Mapping[str, ComplexArray]:
+    if period.points <= 2 * period.orders or period.points % 2:
+        raise ConfigurationError(
+            f"points = {period.points} must be even and more than twice the orders "
+            f"({period.orders})"
+        )
+    known = {signal.name for signal in chain.signals}
+    for name, values in given.items():
+        if name not in known:
+            raise ConfigurationError(f"the chain has no signal {name!r}")
+        if np.shape(values) != (period.orders + 1,):
+            raise ConfigurationError(
+                f"signal {name!r}: harmonics of shape {np.shape(values)} were given where "
+                f"({period.orders + 1},) is needed: the mean and each order"
+            )
+    for signal in chain.inputs:
+        if signal.name not in given:
+            raise ConfigurationError(
+                f"signal {signal.name!r} is an input: its harmonics are needed"
+            )
+    return given

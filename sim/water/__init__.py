@@ -1,9 +1,0 @@
-"""The water around the model: added mass and damping, their memory, and forces that are not linear.
-
-* :mod:`sim.water.radiation` is what the hull needs to know of the water: a state space;
-* :mod:`sim.water.tables` reads added mass and damping over frequency;
-* :mod:`sim.water.memory` fits the state space to such a table;
-* :mod:`sim.water.tank` adds the tank's walls to it;
-* :mod:`sim.water.manoeuvring` turns manoeuvring derivatives into coefficients and force laws;
-* :mod:`sim.water.hydrostatics` gives the restoring coefficients.
-"""
