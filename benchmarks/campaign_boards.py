@@ -14,7 +14,7 @@ from benchmarks.boards.campaigns import MANY, NULLS
 from benchmarks.boards.outside import FRICTION
 from benchmarks.boards.rows import BOARDS, FOLDERS, TYPED, Line, kept
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from pmm.gap.scoring.intervals import wilson
+from tests.sealed.scoring.intervals import wilson
 
 _BROKEN: Final = ("traceback", "failed")
 _ALL: Final = "all"

@@ -1,4 +1,4 @@
-"""``pmm gap``: why rig and simulation differ, and how well that is found out."""
+"""``pmm gap``: why rig and simulation differ."""
 
 from importlib import import_module
 
@@ -10,7 +10,6 @@ from pmm.cli.group import NamingGroup
 _JOBS = {
     "add": "pmm.cli.gap_add",
     "answer": "pmm.cli.gap_answer",
-    "check": "pmm.cli.gap_check",
     "pendulum": "pmm.cli.gap_pendulum",
     "add-pendulum": "pmm.cli.gap_add_pendulum",
     "diagnose": "pmm.cli.gap_diagnose",
@@ -64,7 +63,7 @@ class Jobs(NamingGroup):
 
 @click.group(cls=Jobs, options_metavar="", subcommand_metavar="CAMPAIGN|COMMAND [OPTIONS]")
 def gap() -> None:
-    """Find out why rig and simulation differ, and check how well that is done.
+    """Find out why rig and simulation differ.
 
     "pmm gap CAMPAIGN" diagnoses a campaign, as "pmm gap diagnose CAMPAIGN" does.
 
@@ -72,5 +71,4 @@ def gap() -> None:
     pmm gap my-campaign --hold-out frequency=1.1 --page gap.html
     pmm gap pendulum roll.toml --page gap.html
     pmm gap answer board
-    pmm gap check board --page board.html
     """  # noqa: D301

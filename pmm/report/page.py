@@ -64,8 +64,10 @@ def write_page(analyses: Sequence[Analysis], path: Path, *, title: str, command:
     write_template("page.html.jinja", content, path)
 
 
-def write_template(name: str, content: Mapping[str, Any], path: Path) -> None:
-    """Fill one of this package's templates and write it as a page; all pages share one style.
+def write_template(
+    name: str, content: Mapping[str, Any], path: Path, package: str = "pmm.report"
+) -> None:
+    """Fill a package's template and write it as a page; all pages share one style.
 
     Parameters
     ----------
@@ -80,9 +82,8 @@ def write_template(name: str, content: Mapping[str, Any], path: Path) -> None:
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["markup"] = Markup
-    package = files("pmm.report")
-    template = environment.from_string(package.joinpath(name).read_text(encoding="utf-8"))
-    style = package.joinpath("page.css").read_text(encoding="utf-8")
+    template = environment.from_string(files(package).joinpath(name).read_text(encoding="utf-8"))
+    style = files("pmm.report").joinpath("page.css").read_text(encoding="utf-8")
     page = template.render(style=style, **content)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A file name may hold bytes that are no text; they must not cost the page.

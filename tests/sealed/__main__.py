@@ -9,6 +9,7 @@ import click
 from click.core import ParameterSource
 
 BOARD = click.argument("board", type=click.Path(exists=True, file_okay=False, path_type=Path))
+FILE = click.Path(dir_okay=False, path_type=Path)
 WORKERS = click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
                        type=click.IntRange(1))  # fmt: skip
 LIMIT = click.option("--limit", "limit_s", default=300.0, show_default=True,
@@ -124,8 +125,8 @@ def leave_out_command(
 
 @main.command("score")
 @BOARD
-@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write it there.")
-@click.option("--page", type=click.Path(path_type=Path), help="Write the page there.")
+@click.option("--json", "json_file", type=FILE, help="Write it there.")
+@click.option("--page", type=FILE, help="Write the page there.")
 @click.option("--docs", type=click.Path(exists=True, file_okay=False, path_type=Path),
               help="Keep the score in this folder's scores/, write its scoreboard.md.")  # fmt: skip
 @click.option(

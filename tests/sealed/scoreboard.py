@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Final
 
 from hardware.description.errors import DataError
-from pmm.gap.scoring.board import DIAGNOSIS
-from pmm.gap.scoring.markdown import described, tabulated
-from pmm.gap.scoring.rows import BINS
-from pmm.gap.scoring.tables import TITLES, Table, tables, with_ceiling
 from tests.sealed.scores import FOLDER, Kept, all_scores
+from tests.sealed.scoring.board import DIAGNOSIS
+from tests.sealed.scoring.markdown import described, tabulated
+from tests.sealed.scoring.rows import BINS
+from tests.sealed.scoring.tables import TITLES, Table, tables, with_ceiling
 from tests.sealed.targets import ceilings
 
 INTRO: Final = (

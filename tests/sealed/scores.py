@@ -12,9 +12,9 @@ from typing import Any, Final
 
 from benchmarks.outcome import Verdict
 from hardware.description.errors import DataError
-from pmm.gap.scoring.document import SCHEMA, document, read_document
-from pmm.gap.scoring.files import checked, read_json
-from pmm.gap.scoring.score import Score
+from tests.sealed.scoring.document import SCHEMA, document, read_document
+from tests.sealed.scoring.files import checked, read_json
+from tests.sealed.scoring.score import Score
 from tests.sealed.targets import verdicts
 
 FOLDER: Final = "scores"

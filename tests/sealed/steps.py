@@ -145,7 +145,7 @@ def shown(
         If the board is not whole, or its score cannot be kept.
     """
     from tests.sealed.carrying_out import carrier
-    from tests.sealed.scoring import score_board
+    from tests.sealed.scored import score_board
 
     carry_out = None if workers is None else carrier(board, workers)
     with _in_words():

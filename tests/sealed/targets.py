@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Iterator
 
 from benchmarks.outcome import Verdict, judge
-from pmm.gap.scoring.board import DIAGNOSIS
-from pmm.gap.scoring.intervals import Figure
-from pmm.gap.scoring.rows import RowScore
-from pmm.gap.scoring.score import Score
+from tests.sealed.scoring.board import DIAGNOSIS
+from tests.sealed.scoring.intervals import Figure
+from tests.sealed.scoring.rows import RowScore
+from tests.sealed.scoring.score import Score
 
 _BINS = ("low", "middle", "high")
 

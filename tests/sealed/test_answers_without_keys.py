@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from pmm.gap.scoring.answers import read_answer
-from pmm.gap.scoring.keys import read_truth
 from sim.effects.catalogue import catalogue
 from tests.sealed.answering import DIAGNOSIS, Given, answers, still_asked
 from tests.sealed.board import generate, jobs_of
 from tests.sealed.controls import CONTROLS
+from tests.sealed.scoring.answers import read_answer
+from tests.sealed.scoring.keys import read_truth
 
 OTHERS = ("largest-residual", *CONTROLS)
 

@@ -8,11 +8,8 @@ from click.testing import CliRunner
 
 from analysis.gap.components import Component, GapRun, Observation, Part
 from hardware.description.setpoint import SetPoint
-from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.score import score
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import catalogue
-from tests.pmm.gap.scoring import handmade
 from tests.sealed import answering
 from tests.sealed.__main__ import main
 from tests.sealed.answering import answer_case, still_asked
@@ -22,6 +19,9 @@ from tests.sealed.controls import CONTROLS, at_random
 from tests.sealed.peers import by_bic, largest, sparse, structural
 from tests.sealed.peers.scene import Remainder, Scene, scene
 from tests.sealed.peers.terms import TERMS, force_rows, library
+from tests.sealed.scoring import handmade
+from tests.sealed.scoring.board import read_board
+from tests.sealed.scoring.score import score
 from tests.sealed.targets import verdicts
 
 PARTS = [Component(channel, Part.MEAN) for channel in ("force_aft", "force_fore")] + [

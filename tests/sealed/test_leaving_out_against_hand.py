@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.pmm.gap.scoring import handmade
 from tests.sealed.answering import still_asked
 from tests.sealed.leaving_out import left_out
+from tests.sealed.scoring import handmade
 
 DRAWN = {"cable": 9, "memory": 4, "hum": 1}
 

@@ -11,14 +11,14 @@ from click.testing import CliRunner, Result
 
 from benchmarks import machine
 from hardware.description.errors import DataError
-from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.document import read_document
-from pmm.gap.scoring.score import Score, score
-from tests.pmm.gap.scoring import handmade
 from tests.sealed import steps
 from tests.sealed.__main__ import main
 from tests.sealed.scoreboard import page, write_scoreboard
 from tests.sealed.scores import all_scores, is_development, keep, read
+from tests.sealed.scoring import handmade
+from tests.sealed.scoring.board import read_board
+from tests.sealed.scoring.document import read_document
+from tests.sealed.scoring.score import Score, score
 
 DOCS = Path(__file__).parents[2] / "docs"
 FIRST, SECOND = "a" * 40, "0" * 3 + "b" * 37

@@ -13,7 +13,6 @@ ASKED: dict[str, tuple[str | Path, ...]] = {
     "campaign's page": ("gap", EXAMPLE.parent, "--page"),
     "campaign's plan": ("gap", EXAMPLE.parent, "--plan"),
     "pendulum's page": ("gap", "pendulum", DECAY, "--page"),
-    "board's page": ("gap", "check", EXAMPLE.parent, "--page"),
 }
 
 

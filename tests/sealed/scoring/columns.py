@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from pmm.gap.scoring.answers import UNKNOWN, Answer
-from pmm.gap.scoring.intervals import Figure, mean, median, share
-from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.right import best_name, brier, by_class, exactly, is_stated, named, stated
-from pmm.gap.scoring.shrinkage import Shrunk
+from tests.sealed.scoring.answers import UNKNOWN, Answer
+from tests.sealed.scoring.intervals import Figure, mean, median, share
+from tests.sealed.scoring.keys import Truth
+from tests.sealed.scoring.right import best_name, brier, by_class, exactly, is_stated, named, stated
+from tests.sealed.scoring.shrinkage import Shrunk
 
 CLEAR: Final = 10.0  # sigma left of each member of a pair, its rivals taken out
 TIE: Final = 0.01  # log-odds within which two runs are worth the same

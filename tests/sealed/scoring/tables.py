@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from pmm.gap.scoring.columns import COLUMNS
-from pmm.gap.scoring.intervals import Figure
-from pmm.gap.scoring.rows import BINS, RowScore
-from pmm.gap.scoring.score import Score
+from tests.sealed.scoring.columns import COLUMNS
+from tests.sealed.scoring.intervals import Figure
+from tests.sealed.scoring.rows import BINS, RowScore
+from tests.sealed.scoring.score import Score
 
 TITLES: Final = {
     **{column.key: column.title for column in COLUMNS},

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).parents[4] / "docs" / "sealed-scoring.md"
+PAGE = Path(__file__).parents[3] / "docs" / "sealed-scoring.md"
 Row = dict[str, str]
 ORDERS = 6
 SEED = "7"

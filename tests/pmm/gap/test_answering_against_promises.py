@@ -11,8 +11,15 @@ from click.testing import CliRunner, Result
 
 from hardware.description.errors import DataError
 from pmm.cli import cli, gap_answering
+from tests.sealed.scoring import handmade
 
 Asked = list[tuple[str, tuple[str, ...]]]
+
+
+@pytest.fixture
+def board(tmp_path: Path) -> Path:
+    """Return a board of twelve cases with their answers."""
+    return handmade.write(tmp_path / "board")
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.pmm.gap.scoring import handmade
+from tests.sealed.scoring import handmade
 
 
 @pytest.fixture

@@ -1,15 +1,19 @@
 """A board scored: printed, as JSON, as a page, and among the scores of the documentation."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from benchmarks.machine import describe
-from pmm.cli.gap_checking import print_score
 from pmm.cli.screen import messages, output
-from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.page import write_page
-from pmm.gap.scoring.score import CarryOut, score
 from tests.sealed.scoreboard import write_scoreboard
 from tests.sealed.scores import dumped, keep, refuse_another
+from tests.sealed.scoring.board import read_board
+from tests.sealed.scoring.page import write_page
+from tests.sealed.scoring.score import CarryOut, Score, score
+from tests.sealed.scoring.tables import tables
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 def score_board(
@@ -37,7 +41,7 @@ def score_board(
     if docs is not None:
         refuse_another(docs, read.seed)
     found, made_on = score(read, carry_out), describe()
-    print_score(output(), found)
+    _print(output(), found)
     if json_file is not None:
         json_file.write_text(dumped(found, made_on))
     if page is not None:
@@ -47,3 +51,21 @@ def score_board(
         messages().print(f"kept: {keep(docs, found, made_on)}")
         write_scoreboard(docs)
     messages().print(f"scored: {found.cases} cases, {len(found.rows)} rows")
+
+
+def _print(console: "Console", found: Score) -> None:
+    """Print a score as tables."""
+    from rich.table import Table
+
+    kinds = ", ".join(f"{count} {kind}" for kind, count in found.kinds.items())
+    console.print(f"board {found.seed}: {found.cases} cases ({kinds})")
+    for one in tables(found):
+        table = Table(title=one.caption, title_justify="left", box=None, padding=(0, 1))
+        for at, name in enumerate(one.head):
+            table.add_column(name, justify="right" if at else "left", overflow="fold")
+        for row in one.rows:
+            table.add_row(*row)
+        console.print()
+        console.print(table)
+    for note in found.notes:
+        console.print(f"- {note}", style="dim")

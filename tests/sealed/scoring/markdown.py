@@ -1,7 +1,7 @@
 """Parts of a score as Markdown, for the documentation."""
 
-from pmm.gap.scoring.score import Score
-from pmm.gap.scoring.tables import Table
+from tests.sealed.scoring.score import Score
+from tests.sealed.scoring.tables import Table
 
 
 def described(score: Score) -> str:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from hardware.description.errors import DataError
 from pmm.configuration import read_toml
-from pmm.gap.scoring.answers import Answer, read_answer
-from pmm.gap.scoring.keys import Truth, read_truth
-from pmm.gap.scoring.leaks import leaks
+from tests.sealed.scoring.answers import Answer, read_answer
+from tests.sealed.scoring.keys import Truth, read_truth
+from tests.sealed.scoring.leaks import leaks
 
 SCHEMA = "sealed-board-1"
 OWN = "answers"

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Self
 
-from pmm.gap.scoring.answers import UNKNOWN, Answer
-from pmm.gap.scoring.intervals import Figure, share
-from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.right import named
+from tests.sealed.scoring.answers import UNKNOWN, Answer
+from tests.sealed.scoring.intervals import Figure, share
+from tests.sealed.scoring.keys import Truth
+from tests.sealed.scoring.right import named
 
 SURE: Final = 0.9
 LEAST: Final = 3.0  # sigma that an imitator has to leave to be told from what is there

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.left_out import LeftOut, Omitted
-from pmm.gap.scoring.markdown import tabulated
-from pmm.gap.scoring.score import score
-from pmm.gap.scoring.tables import tables
-from tests.pmm.gap.scoring import handmade
+from tests.sealed.scoring import handmade
+from tests.sealed.scoring.board import read_board
+from tests.sealed.scoring.left_out import LeftOut, Omitted
+from tests.sealed.scoring.markdown import tabulated
+from tests.sealed.scoring.score import score
+from tests.sealed.scoring.tables import tables
 
 
 def _key(board: Path, case: str, **entries: Any) -> None:

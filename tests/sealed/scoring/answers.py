@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, ClassVar, Final, TypeAlias
 
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
-from pmm.gap.scoring.files import checked, read_json
-from pmm.gap.scoring.keys import Truth, forces
+from tests.sealed.scoring.files import checked, read_json
+from tests.sealed.scoring.keys import Truth, forces
 
 NONE, COEFFICIENTS, UNKNOWN, FAILED = "none", "coefficients", "unknown", "failed"
 VERDICTS = (NONE, COEFFICIENTS, UNKNOWN)

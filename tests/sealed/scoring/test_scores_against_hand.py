@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
-from pmm.gap.scoring.answers import Answer
-from pmm.gap.scoring.board import read_board
-from pmm.gap.scoring.columns import COLUMNS, Entry
-from pmm.gap.scoring.files import checked
-from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.right import best_name
-from pmm.gap.scoring.score import Score, score
-from tests.pmm.gap.scoring import handmade
+from tests.sealed.scoring import handmade
+from tests.sealed.scoring.answers import Answer
+from tests.sealed.scoring.board import read_board
+from tests.sealed.scoring.columns import COLUMNS, Entry
+from tests.sealed.scoring.files import checked
+from tests.sealed.scoring.keys import Truth
+from tests.sealed.scoring.right import best_name
+from tests.sealed.scoring.score import Score, score
 
 
 def _carry_out(

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Final
 
-from pmm.gap.scoring.answers import Answer, Forecast, Predicted
-from pmm.gap.scoring.keys import TrueChannel, Truth, forces
+from tests.sealed.scoring.answers import Answer, Forecast, Predicted
+from tests.sealed.scoring.keys import TrueChannel, Truth, forces
 
 SEEN: Final = 1.0  # sigma: below it there is nothing that could shrink
 

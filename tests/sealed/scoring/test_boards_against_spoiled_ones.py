@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from hardware.description.errors import DataError
-from pmm.gap.scoring.board import read_board
+from tests.sealed.scoring.board import read_board
 
 
 def _changed(**entries: Any) -> Callable[[Path], None]:

@@ -1,4 +1,4 @@
-"""``pmm gap check``: what is printed and written, and how it ends."""
+"""``python -m tests.sealed score``: what is printed and written, and how it ends."""
 
 import json
 from html.parser import HTMLParser
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from pmm.cli import cli
+from tests.sealed.__main__ import main
 
 
 class _Page(HTMLParser):
@@ -31,15 +31,15 @@ class _Page(HTMLParser):
             assert self.open.pop() == tag
 
 
-def _run(*words: str) -> tuple[int, str, str]:
-    done = CliRunner().invoke(cli, ["gap", *words])
+def _run(*words: str | Path) -> tuple[int, str, str]:
+    done = CliRunner().invoke(main, ["score", "--no-carry-out", *map(str, words)])
     return done.exit_code, done.stdout, done.stderr
 
 
-def test_json_has_every_figure(board: Path) -> None:
-    status, text, _ = _run("check", str(board), "--json")
-    found = json.loads(text)
-    assert status == 0
+def test_json_has_every_figure(board: Path, tmp_path: Path) -> None:
+    target = tmp_path / "score.json"
+    assert _run(board, "--json", target)[0] == 0
+    found = json.loads(target.read_text())
     assert found["schema"] == "sealed-score-1"
     figure = found["rows"][0]["bins"][-1]["figures"]["top_1_by_class"]
     assert figure["value"] == 0.8
@@ -48,17 +48,16 @@ def test_json_has_every_figure(board: Path) -> None:
 
 
 def test_table_names_columns_and_what_is_left_out(board: Path) -> None:
-    status, text, _ = _run("check", str(board))
+    status, text, said = _run(board)
     assert status == 0
     assert "top-1 by class" in text
     assert "The proposed runs were not carried out" in text
+    assert "scored: 12 cases, 1 rows" in said
 
 
 def test_page_needs_nothing_besides_itself(board: Path, tmp_path: Path) -> None:
     target = tmp_path / "pages" / "board.html"
-    status, _, said = _run("check", str(board), "--page", str(target))
-    assert status == 0
-    assert f"written: {target}" in said.replace("\n", "")
+    assert _run(board, "--page", target)[0] == 0
     page = _Page()
     page.feed(target.read_text())
     assert page.loads == []
@@ -67,16 +66,15 @@ def test_page_needs_nothing_besides_itself(board: Path, tmp_path: Path) -> None:
     assert "top-1 by class" in text
     assert "<svg" in text
     assert "0.8 [" in text
+    assert "--ground: #ffffff" in text  # the style of all pages
 
 
 def test_a_board_that_is_not_whole_ends_with_1(board: Path) -> None:
     (board / "answers" / "case-0001.json").unlink()
-    status, text, said = _run("check", str(board), "--json")
+    status, text, said = _run(board)
     assert (status, text) == (1, "")
     assert "no answer to case-0001" in said
 
 
-def test_misspelt_jobs_and_missing_boards_end_with_2(tmp_path: Path) -> None:
-    assert _run("chek")[0] == 2
-    assert "'check'" in _run("chek")[2]
-    assert _run("check", str(tmp_path))[0] == 2
+def test_missing_boards_end_with_2(tmp_path: Path) -> None:
+    assert _run(tmp_path / "nowhere")[0] == 2

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from pmm.gap.scoring.keys import TRUTH_SCHEMA
+from tests.sealed.scoring.keys import TRUTH_SCHEMA
 
 _LOOKED_AT = 1 << 20  # bytes of each file
 

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Final
 
-from pmm.gap.scoring.rows import RowScore
-from pmm.gap.scoring.score import Score
 from pmm.report.style import PALETTE, TRACE, drawing
+from tests.sealed.scoring.rows import RowScore
+from tests.sealed.scoring.score import Score
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,8 +4,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
-from pmm.gap.scoring.files import checked, read_json
-from pmm.gap.scoring.score import Score
+from tests.sealed.scoring.files import checked, read_json
+from tests.sealed.scoring.score import Score
 
 SCHEMA: Final = "sealed-score-1"
 

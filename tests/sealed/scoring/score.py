@@ -4,13 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pmm.gap.scoring.answers import Answer
-from pmm.gap.scoring.board import Board, Row
-from pmm.gap.scoring.columns import Entry
-from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.left_out import LeftOut, left_out
-from pmm.gap.scoring.rows import DETERMINABLE, RowScore, binned, row_score
-from pmm.gap.scoring.shrinkage import SEEN, gap, shrunk
+from tests.sealed.scoring.answers import Answer
+from tests.sealed.scoring.board import Board, Row
+from tests.sealed.scoring.columns import Entry
+from tests.sealed.scoring.keys import Truth
+from tests.sealed.scoring.left_out import LeftOut, left_out
+from tests.sealed.scoring.rows import DETERMINABLE, RowScore, binned, row_score
+from tests.sealed.scoring.shrinkage import SEEN, gap, shrunk
 
 Gains = Mapping[str, tuple[float, float]]
 CarryOut = Callable[[Sequence[tuple[str, Mapping[str, Any] | None]]], Gains]

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
-from pmm.gap.scoring.answers import COEFFICIENTS, FAILED, NONE, UNKNOWN, Answer
-from pmm.gap.scoring.keys import Truth
+from tests.sealed.scoring.answers import COEFFICIENTS, FAILED, NONE, UNKNOWN, Answer
+from tests.sealed.scoring.keys import Truth
 
 
 def named(answer: str) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pmm.gap.scoring.intervals import auroc, mean, median, share, wilson
+from tests.sealed.scoring.intervals import auroc, mean, median, share, wilson
 
 SHARES = st.lists(st.sampled_from([0.0, 0.5, 1.0]), min_size=1, max_size=60)
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from pmm.gap.scoring.answers import UNKNOWN
-from pmm.gap.scoring.columns import COLUMNS, Entry
-from pmm.gap.scoring.intervals import Figure, auroc, share
-from pmm.gap.scoring.keys import Truth
-from pmm.gap.scoring.right import Reliability, reliability
+from tests.sealed.scoring.answers import UNKNOWN
+from tests.sealed.scoring.columns import COLUMNS, Entry
+from tests.sealed.scoring.intervals import Figure, auroc, share
+from tests.sealed.scoring.keys import Truth
+from tests.sealed.scoring.right import Reliability, reliability
 
 DETERMINABLE: Final = 3.0
 ANGLES_DEG: Final = ((0.0, 8.0), (8.0, 25.0), (25.0, 50.0), (50.0, 90.1))

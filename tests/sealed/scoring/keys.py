@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from pmm.gap.scoring.files import checked, read_json
+from tests.sealed.scoring.files import checked, read_json
 
 TRUTH_SCHEMA = "sealed-truth-1"
 

@@ -1,0 +1,33 @@
+"""A score as one page: figure, tables and how it was made in a single file, offline."""
+
+from pathlib import Path
+
+from pmm.report.inline import inline_svg
+from pmm.report.page import write_template
+from pmm.report.style import render
+from pmm.report.tabulate import versions
+from tests.sealed.scoring.figure import score_figure
+from tests.sealed.scoring.score import Score
+from tests.sealed.scoring.tables import tables
+
+
+def write_page(score: Score, path: Path, *, title: str, command: str) -> None:
+    """Write a score as one HTML page that needs nothing besides itself.
+
+    Parameters
+    ----------
+    path
+        The file to write; its folder is made if it is not there.
+    command
+        What was run to make it.
+    """
+    svg = render(score_figure(score), "svg", "score")
+    content = {
+        "title": title,
+        "command": command,
+        "score": score,
+        "tables": tables(score),
+        "drawing": inline_svg(svg, "score", "what each row reaches"),
+        "versions": versions(),
+    }
+    write_template("page.html.jinja", content, path, "tests.sealed.scoring")
