@@ -28,6 +28,7 @@ from sim.model.forces import CrossFlow
 from sim.model.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig
 from tests.analysis.coefficients.cycles import simulated, zeroed
+from tests.analysis.coefficients.kvlcc2 import DERIVATIVES
 
 ALL = {**HORIZONTAL, **CUBIC}
 ORDERS = 9  # of the motion: what lies above them is rounding
@@ -165,10 +166,7 @@ def test_mariners_cubic_derivatives_put_in_come_out_in_the_prime_system() -> Non
         assert prime_value == pytest.approx(value, rel=2e-4, abs=0.02), name
 
 
-# KVLCC2 (Yasukawa and Yoshimura), MMG: L 320 m, d 20.8 m; cubic ones with v' and r' = r L/U.
-KVLCC2 = {"Y_vdot": -0.223, "N_rdot": -0.011, "Y_v": -0.315, "N_v": -0.137, "Y_r": 0.083,
-          "N_r": -0.049, "Y_vvv": -1.607, "Y_vvr": 0.379, "Y_vrr": -0.391, "Y_rrr": 0.008,
-          "N_vvv": -0.030, "N_vvr": -0.294, "N_vrr": 0.055, "N_rrr": -0.013}  # fmt: skip
+KVLCC2 = {name: one for name, one in DERIVATIVES.items() if name[0] in "YN"}
 
 
 def test_kvlcc2_put_in_comes_out_in_the_mmg_system() -> None:
