@@ -26,10 +26,10 @@ from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane, Range
 from hardware.description.setpoint import SetPoint
-from sim.acquisition import Digitiser
+from sim.acquisition.channels import Digitiser
+from sim.model.surge import SurgeForces
 from sim.rig import SimulatedRig
 from sim.run import simulate
-from sim.surge import SurgeForces
 from tests.analysis.coefficients import kvlcc2
 from tests.analysis.coefficients.exact_campaigns import cycle_of
 from tests.analysis.coefficients.test_nonlinear_against_put_in_values import put_in_prime
