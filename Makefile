@@ -50,8 +50,9 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# Errors, plan checks and gallery are made from the code; tests hold them to it.
+# Effects, errors, plan checks and gallery are made from the code; tests hold them to it.
 docs: $(VENV)/.docs
+	$(BIN)/python docs/effects.py
 	$(BIN)/python docs/errors.py
 	$(BIN)/python docs/plan_checks.py
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs site

@@ -2,13 +2,14 @@
 
 Kept because users of such rigs know them and have decades of results from them; the whole-period
 estimator (:mod:`analysis.resolver.estimate`) is better wherever there is a mean, a drift
-or an edge between samples (``docs/modes-of-1963.md``). Use
+or an edge between samples . Use
 
 * :mod:`analysis.resolver.classic_average`, the needles of the running average, above 0.5 Hz;
 * :mod:`analysis.resolver.classic_gate`, the integral over m periods with hold and reset, below;
 * :mod:`analysis.resolver.classic_recording` for either on a whole recording, and for the gate cut
-  to whole samples, as a warning only;
-* :mod:`analysis.resolver.classic_errors` for the error that each of them has, in closed form.
+  to whole samples, as a warning only.
+
+``docs/modes-of-1963.md`` states the error that each of them has.
 """
 
 from enum import StrEnum

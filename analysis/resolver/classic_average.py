@@ -1,15 +1,14 @@
 """The running average of 1963: needles behind a first-order low-pass.
 
 The product of the signal with ``2 sin(n theta)`` and ``2 cos(n theta)`` goes through
-``1 / (1 + tau p)``; what the needles settle to is ``S_n`` and ``C_n``. What this reading carries:
+``1 / (1 + tau p)``; what the needles settle to is ``S_n`` and ``C_n``. What this reading carries
+(``docs/modes-of-1963.md`` in figures):
 
 * ripple at ``n w`` from the mean, and at ``|k - n| w`` and ``(k + n) w`` from harmonic k (and from
-  anything else in the signal): :func:`analysis.resolver.classic_errors.average_ripple`;
-* 1 % of the step while "settled" lights up, after 4.6 time constants:
-  :func:`~analysis.resolver.classic_errors.average_step_left`;
+  anything else in the signal);
+* 1 % of the step while "settled" lights up, after 4.6 time constants;
 * 2.3 times (1.52 squared) the variance of a least-squares fit over those 4.6 time constants, 3.5
-  times (1.86 squared) over the 6.9 that settling to 0.1 % takes:
-  :func:`~analysis.resolver.classic_errors.average_variance_ratio`.
+  times (1.86 squared) over the 6.9 that settling to 0.1 % takes.
 """
 
 from collections.abc import Callable

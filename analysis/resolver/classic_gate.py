@@ -3,14 +3,12 @@
 A pulse opens the gate, the m-th after it closes it; the integral of ``y 2 sin(n theta)`` is divided
 by the gate's measured time and held. Further pulses are ignored until the reset. The integrator is
 a trapezoid from sample to sample, with the product interpolated straight to the pulses: nothing is
-solved for and no drift is taken out. What this reading carries:
+solved for and no drift is taken out. What this reading carries (``docs/modes-of-1963.md`` in
+figures):
 
-* mean and other harmonics through the gate's edges only:
-  :func:`analysis.resolver.classic_errors.gate_edge_error`;
-* a drift of d per period as ``-d / (n pi)`` in phase, whatever m:
-  :func:`~analysis.resolver.classic_errors.gate_drift_bias`;
-* interference at x times the fundamental by the boxcar's sidelobes:
-  :func:`~analysis.resolver.classic_errors.gate_leak`.
+* mean and other harmonics through the gate's edges only;
+* a drift of d per period as ``-d / (n pi)`` in phase, whatever m;
+* interference at x times the fundamental by the boxcar's sidelobes.
 """
 
 from collections.abc import Callable

@@ -150,7 +150,7 @@ def rounded_gate(
 
     What a first digital copy of the apparatus does: the samples from the one nearest the opening
     pulse to the one before that nearest the closing pulse, each counted once. Up to one sample is
-    missing or too much, which is :func:`analysis.resolver.classic_errors.rounded_gate_error`.
+    missing or too much.
 
     Raises
     ------

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.inertia.papers import Figure, all_figures, check_figure, comparison_table
+from tests.analysis.inertia.papers import Figure, all_figures, check_figure, comparison_table
 
 FIGURES = all_figures()
 PAGE = Path(__file__).parents[3] / "docs" / "inertia.md"
@@ -34,7 +34,7 @@ def test_page_holds_the_table() -> None:
 def test_our_copy_of_the_papers_inputs_is_the_reference_one() -> None:
     import tomllib
 
-    from analysis.inertia import papers_bifilar, papers_swing
+    from tests.analysis.inertia import papers_bifilar, papers_swing
 
     tables = tomllib.loads(SHARED.read_text(encoding="utf-8"))
     for part, row in zip(tables["swing"]["table1"]["parts"], papers_swing.PARTS, strict=True):

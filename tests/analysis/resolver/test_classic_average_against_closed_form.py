@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from analysis.recording import Recording
 from analysis.resolver.classic import ClassicMode, mode_for
 from analysis.resolver.classic_average import AverageState, Needles, RunningAverage
-from analysis.resolver.classic_errors import (
-    average_ripple,
-    average_step_left,
-    average_variance_ratio,
-)
 from analysis.resolver.classic_recording import running_average
 from analysis.resolver.reference import PhaseReference, from_frequency
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
+from tests.analysis.resolver.classic_errors import (
+    average_ripple,
+    average_step_left,
+    average_variance_ratio,
+)
 
 FloatArray = NDArray[np.float64]
 RATE_HZ = 400.0

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.resolver import classic_errors
+from tests.analysis.resolver import classic_errors
 
 PAGE = Path(__file__).parents[3] / "docs" / "modes-of-1963.md"
 ROW = re.compile(r"\| `(\w+)\(([^)]*)\)` \| ([^|]+) \|")

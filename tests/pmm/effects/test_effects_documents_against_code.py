@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from docs.effects import POINTS, SET_POINTS, page
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.cli import cli
-from pmm.report.effects_page import PAGE, POINTS, SET_POINTS, effects_page
 from sim.effects.agreement import mismatch
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, catalogue, load_file, user_effects
@@ -18,6 +18,7 @@ from sim.rig import vertical_rig
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
+PAGE = Path(__file__).parents[3] / "docs" / "effects.md"
 ADDING = (PAGE.parent / "adding-an-effect.md").read_text(encoding="utf-8")
 (EXAMPLE,) = re.findall(r"^```python\n(.*?)^```", ADDING, flags=re.MULTILINE | re.DOTALL)
 RIG = vertical_rig().ideal()
@@ -31,7 +32,7 @@ def boot_file(tmp_path: Path) -> Path:
 
 
 def test_the_page_is_in_step() -> None:
-    assert PAGE.read_text(encoding="utf-8") == effects_page()
+    assert PAGE.read_text(encoding="utf-8") == page()
 
 
 def test_the_page_has_every_effect_once() -> None:

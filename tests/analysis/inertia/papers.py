@@ -76,8 +76,8 @@ def check_figure(figure: Figure) -> Checked:
 
 def all_figures() -> tuple[Figure, ...]:
     """Return every figure of both papers that can be computed from its own inputs."""
-    from analysis.inertia.papers_bifilar import bifilar_figures
-    from analysis.inertia.papers_swing import swing_figures
+    from tests.analysis.inertia.papers_bifilar import bifilar_figures
+    from tests.analysis.inertia.papers_swing import swing_figures
 
     return swing_figures() + bifilar_figures()
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from analysis.inertia.papers import Figure, Printed
 from analysis.inertia.swing import inertia_at_cg, pivot_inertia
+from tests.analysis.inertia.papers import Figure, Printed
 
 P = Printed
 

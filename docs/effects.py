@@ -1,7 +1,4 @@
-"""``docs/effects.md``: the catalogue as a table, with how near the simulator is to theory.
-
-``python -m pmm.report.effects_page`` writes the page; a test keeps it in step.
-"""
+"""Write ``effects.md``: ``python docs/effects.py``. The catalogue, and how near it is to theory."""
 
 import math
 from pathlib import Path
@@ -15,8 +12,6 @@ from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
 from sim.rig import vertical_rig
-
-PAGE: Final = Path(__file__).parents[2] / "docs" / "effects.md"
 
 SET_POINTS: Final = (
     SetPoint(0.5, 0.01, 0.0, 0.0),
@@ -42,7 +37,7 @@ _SMALL_ANGLES: Final = "theory has small angles"  # of all others
 
 _HEAD: Final = """# The catalogue of effects
 
-Written by `python -m pmm.report.effects_page` from the classes in `sim/effects/`; do not edit.
+Written by `python docs/effects.py` from the classes in `sim/effects/`; do not edit.
 `pmm effects NAME` shows one whole, with its signature at a set-point of your choice, and `--plot`
 draws it; `pmm simulate --effect NAME:PARAM=VALUE` switches it on.
 [adding-an-effect.md](adding-an-effect.md) shows how to add one.
@@ -64,7 +59,7 @@ _COLUMNS: Final = (
 )
 
 
-def effects_page() -> str:
+def page() -> str:
     """Return the page's text."""
     kinds = catalogue().values()
     rows = [_row(kind) for kind in kinds]
@@ -98,11 +93,5 @@ def _agreement(kind: type[Effect]) -> str:
     return f"below 1e{decade:d}"
 
 
-def write_page() -> Path:
-    """Write the page."""
-    PAGE.write_text(effects_page(), encoding="utf-8")
-    return PAGE
-
-
 if __name__ == "__main__":
-    write_page()
+    (Path(__file__).parent / "effects.md").write_text(page(), encoding="utf-8")

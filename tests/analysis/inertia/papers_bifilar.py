@@ -11,13 +11,13 @@ from analysis.inertia.beats import (
 from analysis.inertia.bifilar import ratio_gyradius, yaw_gyradius, yaw_period
 from analysis.inertia.corrections import gyradius_with_end_masses
 from analysis.inertia.double_pendulum import best_line_length, mode_periods
-from analysis.inertia.papers import Figure, Printed
 from analysis.inertia.principal import (
     gyradius_about,
     mass_equivalent_ellipsoid,
     principal_angle,
     roll_from_tilts,
 )
+from tests.analysis.inertia.papers import Figure, Printed
 
 P = Printed
 
