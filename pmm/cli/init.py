@@ -75,7 +75,11 @@ _INERTIA = _number("--inertia-kg-m2", "KG_M2", "Its inertia about the midpoint."
     _MASS,
     _INERTIA,
     _number("--length-m", "M", "Of the model."),
+    _number("--beam-m", "M", "Of the model."),
+    _number("--draught-m", "M", "Of the model."),
     _number("--tank-length-m", "M", "What the carriage may use."),
+    _number("--tank-width-m", "M", "Of the tank."),
+    _number("--tank-depth-m", "M", "Of the water."),
     _number("--full-scale-n", "N", "Of a force gauge."),
 )  # fmt: skip
 def rig(**options: Any) -> None:

@@ -72,7 +72,11 @@ RIG: Final = (
     SPACING,
     *MODEL,
     Question("length_m", "Length of the model [m]", 2.5, lowest=0.0),
+    Question("beam_m", "Its beam [m]", 0.36, lowest=0.0),
+    Question("draught_m", "Its draught [m]", 0.13, lowest=0.0),
     Question("tank_length_m", "Length that the carriage may use [m]", 120.0, lowest=0.0),
+    Question("tank_width_m", "Width of the tank [m]", 4.2, lowest=0.0),
+    Question("tank_depth_m", "Depth of the water [m]", 2.5, lowest=0.0),
     Question("full_scale_n", "Full scale of a force gauge [N]", 500.0, lowest=0.0),
 )
 CAMPAIGN: Final = (NAME, PLANE, SPACING, *MODEL)

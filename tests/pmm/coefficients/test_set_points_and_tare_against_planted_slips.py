@@ -68,6 +68,35 @@ def test_two_text_recordings_that_changed_places(tmp_path: Path) -> None:
     assert flagged(done(tmp_path)) == {"one-0.6-20", "two-0.6-20"}
 
 
+@pytest.mark.parametrize(
+    ("text", "told_hz", "named"),
+    [(True, 0.604, False), (True, 0.608, True), (True, 0.45, True), (False, 0.604, True)],
+)
+def test_a_run_at_another_frequency_than_it_was_told(
+    tmp_path: Path, text: bool, told_hz: float, named: bool
+) -> None:
+    """The shaft turned at 0.6 Hz, and the coefficients go with that.
+
+    A measured frequency may be 1 % off what was told; a set-point that our own recording carries
+    may not be another than the campaign's at all.
+    """
+    vertical_campaign(tmp_path, (0.6,))
+    campaign = (tmp_path / "campaign.toml").read_text()
+    for name in ("one-0.6-20", "two-0.6-20"):
+        if text:
+            as_text(tmp_path / f"{name}.nc")
+            campaign = campaign.replace(
+                f'name = "{name}"\n', f'name = "{name}"\nfile = "{name}.csv"\n'
+            )
+    slipped = campaign.replace("frequency_hz = 0.6\n", f"frequency_hz = {told_hz}\n", 1)
+    assert slipped != campaign
+    (tmp_path / "campaign.toml").write_text(slipped)
+    found = done(tmp_path)
+    assert flagged(found) == ({"one-0.6-20"} if named else set())
+    turned = [row["frequency_hz"] for row in found["coefficients"]["table"]]
+    np.testing.assert_allclose(turned, 0.6, rtol=1e-4)
+
+
 def as_text(path: Path) -> None:
     """Write a recording's struts and forces as other systems do, and take the NetCDF away."""
     recording = read_recording(path)

@@ -31,6 +31,31 @@ def test_a_rig_passes_the_check_of_its_plan(
     assert (tmp_path / "simulated.toml").exists() == (interface == "pmm-simulated")
 
 
+@pytest.mark.parametrize(
+    ("plane", "clearance"),
+    [("vertical", "reach down [m]"), ("horizontal", "reach to the side [m]")],
+)
+def test_a_new_rig_is_checked_for_blockage_and_clearance(
+    tmp_path: Path, plane: str, clearance: str
+) -> None:
+    """Blockage is B T / (W h) of the answers; nothing of model or tank is left unchecked."""
+    told = {"beam-m": 0.5, "draught-m": 0.2, "tank-width-m": 5.0, "tank-depth-m": 3.0}
+    options = [word for name, value in told.items() for word in (f"--{name}", value)]
+    pmm("init", "rig", "--yes", "--output", tmp_path, "--plane", plane, *options)
+    checked = pmm("plan", "check", tmp_path / "plan.toml", "--json")
+    found: dict[str, list[dict[str, object]]] = {}
+    for one in json.loads(checked.stdout)["findings"]:
+        found.setdefault(one["quantity"], []).append(one)
+    (blockage,) = {one["value"] for one in found["blockage B T / (W h)"]}
+    assert blockage == pytest.approx(0.5 * 0.2 / (5.0 * 3.0))
+    (depth,) = {one["value"] for one in found["depth over draught h / T"]}
+    assert depth == pytest.approx(3.0 / 0.2)
+    assert clearance in found
+    unchecked = " ".join(str(one["message"]) for one in found.get("not checked", []))
+    assert "model" not in unchecked
+    assert "tank" not in unchecked
+
+
 def test_a_simulated_rig_runs(tmp_path: Path) -> None:
     pmm("init", "rig", "--yes", "--output", tmp_path)
     done = pmm("run", tmp_path / "plan.toml", "--output", tmp_path / "runs",
