@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from hardware.bus import LARGEST_LOAD
-from sim.model.water.tank import interference_limit
+from pmm.plan.echoes import echo_limit
 
 _RIG = "the rig's file"
 _OURS = "this project"
@@ -196,7 +196,7 @@ ECHO: Final = Check(
     "ITTC 7.5-02-07-02.1, table 1",
     "what the walls send back reaches the model: raise the frequency or the speed",
     "half: echoes pass unsaid; twice: said of runs that outrun their echoes",
-    (interference_limit(0.5, 1.0), interference_limit(4.0, 1.0)),
+    (echo_limit(0.5), echo_limit(4.0)),
 )
 REACH: Final = Check(
     "reach to the side [m]",

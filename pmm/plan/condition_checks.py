@@ -6,24 +6,22 @@ the limit that :mod:`pmm.plan.check_table` has for it.
 
 import math
 from collections.abc import Iterator
-from contextlib import suppress
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from analysis.kinematics.motion import Driven, Motion, motion
-from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan import check_table as table
 from pmm.plan import kinds
 from pmm.plan.check_table import Check
+from pmm.plan.echoes import echo_limit
 from pmm.plan.findings import Finding, Verdict
 from pmm.plan.geometry import geometry_of
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from sim.model.water.tank import interference_limit
 
 _INSTANTS = 720
 _NOTHING = 1e-9
@@ -102,9 +100,9 @@ def _of_waves(run: RunPlan, rig: RigFile, made: Motion) -> Iterator[_Condition]:
     check = _REDUCED.get(run.motion, table.REDUCED)
     yield _below(check, omega * length / speed, check.numbers[-1] if check.numbers else math.nan)
     if rig.tank is not None and rig.oscillator.plane is Plane.VERTICAL:
-        with suppress(ConfigurationError):  # a tank broader or narrower than the ITTC's table
-            if tau < (limit := interference_limit(rig.tank.width_m, length)):
-                yield _Condition(table.ECHO, tau, limit)
+        limit = echo_limit(rig.tank.width_m / length)
+        if tau < limit:  # never below NaN: a tank broader or narrower than the ITTC's table
+            yield _Condition(table.ECHO, tau, limit)
 
 
 def _tau(tau: float, plane: Plane) -> _Condition:

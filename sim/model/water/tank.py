@@ -13,12 +13,11 @@ A model that oscillates from rest is undisturbed until the first echo is back, a
 group velocity c_g (:func:`echo_delay_s`). A few modes do not reproduce that silence, as their sum
 answers from the start; so they have no input until then. Modes also say nothing of waves that run
 along the tank, which is why their strength and damping are given, not computed; at forward speed
-the model outruns its echoes (:func:`interference_limit`).
+the model outruns its echoes.
 """
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,10 +27,6 @@ from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.model.water.radiation import Radiation
 from sim.signals import FloatArray
-
-# ITTC 7.5-02-07-02.1, table 1: tank breadth over model length, and w U/g below which walls matter.
-_BREADTHS: Final = (0.5, 1.0, 2.0, 4.0)
-_LIMITS: Final = (0.635, 0.378, 0.280, 0.245)
 
 
 @dataclass(frozen=True)
@@ -150,26 +145,6 @@ def group_velocity_m_s(
 def echo_delay_s(omega_rad_s: float, tank: Tank) -> float:
     """Return W/c_g: the time from the start during which no echo has come back yet."""
     return tank.breadth_m / group_velocity_m_s(omega_rad_s, tank.depth_m, tank.gravity_m_s2)
-
-
-def interference_limit(breadth_m: float, length_m: float) -> float:
-    """Return w U/g above which the walls' echoes miss the model (ITTC 7.5-02-07-02.1, table 1).
-
-    Interpolated between the table's ratios of tank breadth to model length.
-
-    Raises
-    ------
-    ConfigurationError
-        If the ratio is outside the table, 0.5 to 4.
-    """
-    _check_positive(breadth_m=breadth_m, length_m=length_m)
-    ratio = breadth_m / length_m
-    if not _BREADTHS[0] <= ratio <= _BREADTHS[-1]:
-        raise ConfigurationError(
-            f"tank breadth over model length = {ratio:.3g} is outside the ITTC's table, "
-            f"{_BREADTHS[0]:g} to {_BREADTHS[-1]:g}"
-        )
-    return float(np.interp(ratio, _BREADTHS, _LIMITS))
 
 
 def blockage_speed_factor(model_section_m2: float, tank_section_m2: float) -> float:

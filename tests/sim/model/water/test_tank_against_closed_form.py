@@ -16,7 +16,6 @@ from sim.model.water.tank import (
     echo_delay_s,
     ground_factor,
     group_velocity_m_s,
-    interference_limit,
     wave_number,
     with_walls,
 )
@@ -90,14 +89,6 @@ def test_walls_keep_the_radiation_passive(plane: Plane) -> None:
 def test_nothing_radiates_nothing_comes_back() -> None:
     still = constant(np.diag([40.0, 9.0]))
     assert with_walls(still, TANK, Plane.VERTICAL) == still
-
-
-def test_interference_limit_of_the_ittc() -> None:
-    for ratio, limit in ((0.5, 0.635), (1.0, 0.378), (2.0, 0.280), (4.0, 0.245)):
-        assert interference_limit(3.0 * ratio, 3.0) == limit
-    assert 0.280 < interference_limit(1.5, 1.0) < 0.378
-    with pytest.raises(ConfigurationError, match=r"= 5 is outside the ITTC's table, 0\.5 to 4"):
-        interference_limit(5.0, 1.0)
 
 
 def test_ground_factor_against_its_harmonics() -> None:
