@@ -14,12 +14,12 @@ import can
 from analysis.readers import read_recording
 from benchmarks.devices import tables
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import SetPoint
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan

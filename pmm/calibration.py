@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import parse_toml
-from pmm.plan.toml_text import toml_value
+from pmm.toml_text import toml_value
 from pmm.whole_file import write_whole
 
 FloatArray = NDArray[np.float64]

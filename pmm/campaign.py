@@ -13,11 +13,11 @@ from analysis.resolver.analyse import Settings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import KnownMass, LoadStep
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
-from pmm.plan.kinds import Motion, RunKind
-from pmm.plan.run_plan import KnownMass, LoadStep
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.photocell import Photocell
 from sim.drive.carriage import CarriageSettings

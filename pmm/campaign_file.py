@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from analysis.readers import ColumnMap
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign import AtRest, Campaign, Run
@@ -17,7 +18,6 @@ from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, v
 from pmm.file_names import campaign_name_faults, no_file_name
 from pmm.model_uncertainty import take_uncertainty
 from pmm.oscillator_table import expand_preset
-from pmm.plan.kinds import RunKind
 
 T = TypeVar("T")
 

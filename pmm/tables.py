@@ -10,7 +10,7 @@ import numpy as np
 from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
 from pmm.classic_rows import ClassicRow, classic_rows
-from pmm.report.labels import units_loads_first
+from pmm.labels import units_loads_first
 
 if TYPE_CHECKING:
     from analysis.resolver.analyse import Analysis

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from analysis.readers import read_recording
 from pmm.cli import cli
 from pmm.configuration import read_toml
-from pmm.plan.toml_text import toml_value
+from pmm.toml_text import toml_value
 
 FloatArray = NDArray[np.float64]
 

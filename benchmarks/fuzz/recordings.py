@@ -12,11 +12,11 @@ from analysis.recording import Recording
 from benchmarks.fuzz.promises import check_recording
 from benchmarks.machine import ROOT
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import SetPoint
 from hardware.raw_log import Frame
 from hardware.raw_log_reading import read_frames
 from hardware.roles import Pulse
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.files import BUS, HEADER, MARKER, RECORDING, STREAMS

@@ -84,7 +84,7 @@ def _show(error: Exception, *, with_traceback: bool) -> None:
 
 def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:  # noqa: ARG001
     if wanted and not ctx.resilient_parsing:
-        from pmm.cli.version import version_line
+        from pmm.version import version_line
 
         click.echo(version_line())
         ctx.exit()

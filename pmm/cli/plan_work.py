@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from hardware.description.kinds import RunKind
 from pmm.cli.documents import without_nan
 from pmm.cli.findings import condition_table, finding_lines
 from pmm.cli.folders import check_folder
@@ -19,7 +20,6 @@ from pmm.cli.screen import output
 from pmm.plan.checks import Finding, Verdict, check_plan
 from pmm.plan.duration import duration_rows, tank_length_m
 from pmm.plan.force_estimate import force_peak_n
-from pmm.plan.kinds import RunKind
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pmm.cli.screen import print_flags
-from pmm.report.labels import display
+from pmm.labels import display
 from pmm.tables import floored, format_value, is_open
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from analysis.coefficients.corrections import ZERO_BLOCKS
 from analysis.readers import from_dataset
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.campaign import AtRest, Campaign
 from pmm.campaign_order import made_in_order, place_in
-from pmm.plan.kinds import RunKind
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig

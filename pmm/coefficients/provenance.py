@@ -3,7 +3,7 @@
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
-from pmm.cli.version import version_line
+from pmm.version import version_line
 
 _PACKAGES = ("numpy", "scipy", "GTC", "h5netcdf", "matplotlib")
 

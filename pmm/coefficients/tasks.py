@@ -11,13 +11,13 @@ from analysis.plausibility import Seen
 from analysis.resolver.analyse import Settings as ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.flags import Flag, Severity
+from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.calibration import Calibration
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.campaign_recording import COMPLETE, RecordingSource
 from pmm.coefficients.settings import Amplifier
-from pmm.plan.kinds import RunKind
 
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 

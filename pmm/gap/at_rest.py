@@ -9,11 +9,11 @@ from analysis.recording import Recording
 from hardware.description.channels import DISPLACEMENTS
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
+from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.campaign_order import place_in
 from pmm.campaign_recording import RecordingSource, open_recording
-from pmm.plan.kinds import RunKind
 
 
 def records_at_rest(

@@ -6,8 +6,8 @@ from difflib import get_close_matches
 from typing import Final
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
 from pmm.campaign import AtRest, Campaign, Run
-from pmm.plan.kinds import RunKind
 
 # As people write them, in the units that the tables show.
 KEYS: Final[Mapping[str, Callable[[Run], float]]] = {

@@ -5,9 +5,9 @@ from typing import Any, Final
 
 from analysis.gap.measurements import REST_S
 from analysis.gap.propose import Proposal, dead_weight
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import Medium
-from pmm.plan.kinds import Motion, RunKind
-from pmm.plan.toml_text import toml_table, toml_value
+from pmm.toml_text import toml_table, toml_value
 from sim.effects.effect import Measurement
 
 RIG_FILE: Final = "rig.toml"

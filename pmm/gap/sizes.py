@@ -14,7 +14,7 @@ from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.steps import StepRow
-from pmm.report.labels import display
+from pmm.labels import display
 
 FloatArray = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.plan.sensors import acquisition_table, dynamometers_table
-from pmm.plan.toml_text import toml_table, toml_value
+from pmm.toml_text import toml_table, toml_value
 from pmm.whole_file import write_whole
 
 _NAME: Final = "campaign.toml"

@@ -11,10 +11,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from analysis.kinematics.motion import Driven, Motion, motion
+from hardware.description import kinds
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan import check_table as table
-from pmm.plan import kinds
 from pmm.plan.check_table import Check
 from pmm.plan.echoes import echo_limit
 from pmm.plan.findings import Finding, Verdict

@@ -5,11 +5,12 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from typing import Any, TypeVar
 
+from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import LoadDirection, LoadStep
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan_tables import Defaults, Entry
-from pmm.plan.run_plan import LoadDirection, LoadStep, RunPlan
+from pmm.plan.run_plan import RunPlan
 
 T = TypeVar("T")
 Lists = Sequence[Sequence[Any]]

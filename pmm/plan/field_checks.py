@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
+from hardware.description.kinds import RunKind
 from pmm.plan.check_table import CYCLES, SAMPLING, SETTLING, STRUCTURE, TANK_MODE
 from pmm.plan.findings import Finding, Verdict
-from pmm.plan.kinds import RunKind
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import Tank
 from pmm.plan.run_plan import RunPlan

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.description.kinds import RunKind
 from pmm.plan.findings import Verdict
-from pmm.plan.kinds import RunKind
 from pmm.plan.limits import limit_findings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile

@@ -6,10 +6,10 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import SetPoint
 from pmm.plan.expansion import all_of, expand, snake
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan_tables import Entry, Order, PlanTables, Scheme, Zero
 from pmm.plan.run_plan import RunPlan
 

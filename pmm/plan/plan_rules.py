@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, Final, TypeVar
 
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator, Plane
 from pmm.configuration import Fault, Place, unknown
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan_tables import Control, Defaults, Entry
 
 T = TypeVar("T")

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import ClassVar
 
+from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium
-from pmm.plan.kinds import Motion, RunKind
-from pmm.plan.run_plan import KnownMass
 
 
 class Scheme(StrEnum):

@@ -15,7 +15,7 @@ from analysis.recording import FloatArray, Recording
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-from pmm.plan.kinds import RunKind
+from hardware.description.kinds import RunKind
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import (
     BUS,

@@ -12,7 +12,7 @@ from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.campaign import Campaign, Run
 from pmm.campaign_order import place_in
-from pmm.report.labels import display, plain
+from pmm.labels import display, plain
 from pmm.report.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals
 from sim.effects.applied import switch_on

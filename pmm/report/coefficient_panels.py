@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from pmm.report.labels import plain
+from pmm.labels import plain
 from pmm.report.style import PALETTE
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from analysis.gap.where import CHAIN
 from pmm.gap.cells import HARMONIC, Cell
 from pmm.gap.report import GapReport
 from pmm.gap.words import joined
+from pmm.labels import plain
 from pmm.report.heat import (
     AFTER,
     BEFORE,
@@ -22,7 +23,6 @@ from pmm.report.heat import (
     logarithmic,
     probability_bars,
 )
-from pmm.report.labels import plain
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

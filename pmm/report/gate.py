@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
+from pmm.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.report.envelope import Trace, overview, zigzag
 from pmm.report.gated import caption, fitted, gate_sums, reading_of
-from pmm.report.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.report.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
 from pmm.report.tabulate import WINDOWS
 from pmm.tables import window_kind

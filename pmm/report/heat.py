@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pmm.report.labels import plain
+from pmm.labels import plain
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import numpy as np
 
 from analysis.inertia.record import ModeAnalysis, RecordAnalysis
 from pmm.inertia.sources import PeriodRuns
+from pmm.labels import display, plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from analysis.inertia.monte_carlo import Assessment
 from pmm.inertia.outcome import Finding, Outcome
-from pmm.report.labels import plain
+from pmm.labels import plain
 from pmm.report.rounding import rounded
 from pmm.report.style import PALETTE, TRACE, drawing
 

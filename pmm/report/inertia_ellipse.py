@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.inertia.principal import inertia_ellipse
 from pmm.inertia.outcome import PlaneAxes
-from pmm.report.labels import plain
+from pmm.labels import plain
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from pmm.inertia.sources import PeriodRuns
+from pmm.labels import plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.labels import plain, shown_name
 from pmm.report.style import FIT, PALETTE, drawing
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pmm.inertia.outcome import Outcome
-from pmm.report.labels import plain
+from pmm.labels import plain
 from pmm.report.style import PALETTE, drawing
 
 if TYPE_CHECKING:

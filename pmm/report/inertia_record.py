@@ -8,8 +8,8 @@ from analysis.inertia.numeric import FloatArray
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
 from pmm.inertia.sources import PeriodRuns
+from pmm.labels import display, plain, shown_name
 from pmm.report.envelope import zigzag
-from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import FIT, STEADY_SHADE, TRACE, drawing
 
 if TYPE_CHECKING:

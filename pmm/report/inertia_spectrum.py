@@ -9,8 +9,8 @@ from analysis.inertia.numeric import FloatArray
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from pmm.inertia.sources import PeriodRuns
+from pmm.labels import display, plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
-from pmm.report.labels import display, plain, shown_name
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pmm.inertia.outcome import StaticTest
-from pmm.report.labels import plain, shown_name
+from pmm.labels import plain, shown_name
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

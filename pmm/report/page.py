@@ -8,8 +8,8 @@ from typing import Any
 
 from analysis.resolver.analyse import Analysis
 from pmm.flag_lines import FlagLine, flag_lines
+from pmm.labels import plain
 from pmm.report.inline import inline_svg
-from pmm.report.labels import plain
 from pmm.report.plots import FIGURES
 from pmm.report.style import render
 from pmm.report.tabulate import GateTable, gate_table, provenance, versions

@@ -11,8 +11,8 @@ from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import as_stated, remainder
 from analysis.inertia.numeric import FloatArray
 from pmm.gap.pendulum_document import ranking
+from pmm.labels import plain
 from pmm.report.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
-from pmm.report.labels import plain
 from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

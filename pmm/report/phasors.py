@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
+from pmm.labels import Display, display, loads_first, shown_name
 from pmm.report.gated import caption, reading_of, single_periods
-from pmm.report.labels import Display, display, loads_first, shown_name
 from pmm.report.region import Ellipse, ellipses
 from pmm.report.style import PALETTE, drawing
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
-from pmm.report.labels import display, shown_name
+from pmm.labels import display, shown_name
 from pmm.report.style import PALETTE, drawing, write_figure
 from sim.effects.agreement import phasor
 from sim.effects.applied import switch_on

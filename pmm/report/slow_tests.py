@@ -12,7 +12,7 @@ from analysis.coefficients.restoring import Restoring, Track
 from analysis.coefficients.term_waves import MOVES, waves_of
 from analysis.coefficients.terms import VELOCITY_LETTERS, term_of
 from analysis.coefficients.tows import Tow
-from pmm.plan.kinds import RunKind
+from hardware.description.kinds import RunKind
 from pmm.report.rounding import rounded
 from pmm.report.style import FIT, PALETTE
 

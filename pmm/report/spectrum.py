@@ -10,9 +10,9 @@ from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights
+from pmm.labels import axis_label, display, loads_first, shown_name
 from pmm.report.envelope import tops
 from pmm.report.gated import caption, gate_sums, in_words, reading_of
-from pmm.report.labels import axis_label, display, loads_first, shown_name
 from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:

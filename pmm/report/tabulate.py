@@ -9,8 +9,8 @@ import numpy as np
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
 from pmm.flag_lines import FlagLine, flag_lines
+from pmm.labels import display, loads_first, plain
 from pmm.report.gated import caption
-from pmm.report.labels import display, loads_first, plain
 from pmm.report.rounding import rounded, rounded_phase
 from pmm.tables import floored, window_kind
 

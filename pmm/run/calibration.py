@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hardware.description.errors import DataError
 from pmm.calibration import Calibration
-from pmm.plan.toml_text import toml_table
 from pmm.run.results import RunResult
+from pmm.toml_text import toml_table
 
 FloatArray = NDArray[np.float64]
 _LEAST_STEPS: Final = 3

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from hardware.demand import Demand
+from hardware.description.kinds import RunKind
 from hardware.rig import Rig
 from hardware.roles import PositionAxis
-from pmm.plan.kinds import RunKind
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.measurement import Measurement

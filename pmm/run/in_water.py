@@ -15,6 +15,7 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
 from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
+from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign import Campaign
 from pmm.coefficients.given import chain_of, oscillator_of, stated_of
@@ -22,7 +23,6 @@ from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import Settings, settings_of
 from pmm.coefficients.tasks import Done, Failed, Task, work_of
 from pmm.coefficients.workflow import request_of
-from pmm.plan.kinds import RunKind
 
 _HARMONICS = 3
 

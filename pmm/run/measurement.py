@@ -14,10 +14,11 @@ from analysis.resolver.weights import REACH
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
+from hardware.description.known_loads import LoadStep
 from hardware.rig import Rig
 from hardware.roles import Pulse
 from pmm.plan.force_estimate import Expected
-from pmm.plan.run_plan import LoadStep, RunPlan
+from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import as_record
 from pmm.run.errors import GateVoidError
 from pmm.run.gate import Gate, GateState

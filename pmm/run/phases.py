@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 from analysis.resolver.weights import REACH
-from pmm.plan.kinds import RunKind
+from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 from pmm.run.conduct import Conduct
 from pmm.run.errors import PulseOverdueError

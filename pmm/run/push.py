@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.channels import Channel
+from hardware.description.known_loads import LoadStep
 from pmm.devices.push_test import PushError, faults, judge
-from pmm.plan.run_plan import LoadStep
 from pmm.run.errors import PushRefusedError
 
 FloatArray = NDArray[np.float64]

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from hardware.demand import Demand
+from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.driver import Prompt
 from pmm.plan.geometry import drift_prompt, geometry_of
-from pmm.plan.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 
 Answered = Callable[[Demand, str], None]

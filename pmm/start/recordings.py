@@ -13,8 +13,8 @@ import numpy as np
 from analysis.readers import read_recording
 from analysis.readers.reader import NETCDF_SUFFIX
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
+from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
-from pmm.plan.kinds import RunKind
 from pmm.start import words
 from pmm.start.at_rest import at_rest
 from pmm.start.behaviour import Watched, watch

@@ -13,12 +13,12 @@ from analysis.resolver.analyse import Settings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
+from hardware.description.known_loads import KnownMass, LoadStep
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign import AtRest, Campaign, Run, Simulation, SwitchedOn
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
-from pmm.plan.run_plan import KnownMass, LoadStep
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import Photocell
 from sim.drive.carriage import CarriageSettings, Fluctuation

@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 
 from analysis.gap.propose import Proposal
+from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.cli import cli
 from pmm.gap.next_plan import plan_text
-from pmm.plan.kinds import RunKind
 from pmm.plan.plan import read_plan
 from tests.pmm.plan.plans import EXAMPLES
 

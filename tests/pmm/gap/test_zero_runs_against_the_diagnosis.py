@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from hardware.description.kinds import RunKind
 from pmm.campaign import AtRest, Campaign, Run
 from pmm.gap.at_rest import records_at_rest
 from pmm.gap.load import load_campaign
-from pmm.plan.kinds import RunKind
 from tests.pmm.gap.rigs import changed, run, short
 from tests.pmm.run.harness import at_rest, bench, oscillation
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from hardware.description.body import Ship
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import VERTICAL_1963, Oscillator
 from hardware.description.setpoint import SetPoint
 from hardware.rig_configuration import RigConfiguration, read_rig
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, Tank
 from pmm.plan.run_plan import RunPlan

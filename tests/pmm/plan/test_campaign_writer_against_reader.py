@@ -15,17 +15,17 @@ from hypothesis import strategies as st
 from analysis.readers import from_dataset, write_recording
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
 from hardware.roles import Reading
 from pmm.campaign import Campaign
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
 from pmm.cli.inputs import find_sources
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
-from pmm.plan.kinds import RunKind
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import HANDED_ON
-from pmm.plan.toml_text import toml_table, toml_value
+from pmm.toml_text import toml_table, toml_value
 from sim.rig import vertical_rig
 from sim.run import simulate
 from tests.pmm.plan.plans import EXAMPLES, RIG_TEXT, write_plan

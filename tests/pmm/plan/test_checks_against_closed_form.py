@@ -10,6 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hardware.description.kinds import RunKind
+from hardware.description.known_loads import LoadStep
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from hardware.description.setpoint import Medium
 from hardware.rig_configuration import RigConfiguration, read_rig
@@ -22,13 +24,12 @@ from pmm.plan.checks import (
 )
 from pmm.plan.duration import duration_rows, run_s, tank_length_m
 from pmm.plan.field_checks import field_findings, tank_modes_hz
-from pmm.plan.kinds import RunKind
 from pmm.plan.limits import bus_finding, limit_findings
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import Gauge, Limits, StructuralMode, Tank
-from pmm.plan.run_plan import LoadStep, RunPlan
+from pmm.plan.run_plan import RunPlan
 from tests.pmm.plan.plans import rig_file, run
 
 G = 9.80665

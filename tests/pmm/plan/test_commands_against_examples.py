@@ -10,11 +10,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 from hardware.description.body import Ship
+from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import KnownMass
 from hardware.rig_configuration import TABLES
 from pmm.cli import cli
 from pmm.plan.duration import duration_rows
 from pmm.plan.findings import Finding
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan import read_plan, read_plan_and_rig
 from pmm.plan.plan_tables import Control, Defaults, Entry, Order, PlanTables, Scheme, Zero
 from pmm.plan.plan_units import EXTRA_KEYS
@@ -30,7 +31,6 @@ from pmm.plan.rig_tables import (
     StructuralMode,
     Tank,
 )
-from pmm.plan.run_plan import KnownMass
 from tests.pmm.plan.plans import EXAMPLES, HEAVE, HOUSE, write_plan
 
 NAMES = ("vertical", "horizontal", "manual")

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from hardware.description.body import Ship
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.findings import Finding, largest_stated
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.rig_tables import Tank
 from tests.pmm.plan.plans import rig_file, run
 

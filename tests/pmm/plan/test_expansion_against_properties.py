@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import KnownMass
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium
 from pmm.plan.expansion import all_of, expand, snake, strut_phase_of
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.ordering import in_order, runs_of, with_control, with_zeros
 from pmm.plan.plan_tables import Control, Defaults, Entry, Order, PlanTables, Scheme, Zero
-from pmm.plan.run_plan import KnownMass, RunPlan
+from pmm.plan.run_plan import RunPlan
 from tests.pmm.plan.plans import run
 
 CHANNELS = ("force_aft", "force_fore")

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from hardware.description.body import Ship
+from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.calibration import Calibration
 from pmm.plan.force_estimate import FAR, expected_readings, force_peak_n
 from pmm.plan.rig_tables import HullEstimate
-from pmm.plan.run_plan import KnownMass
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
 from tests.pmm.plan.plans import rig_file, run

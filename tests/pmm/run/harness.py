@@ -8,13 +8,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import SetPoint
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from pmm.calibration import Calibration
-from pmm.plan.kinds import Motion, RunKind
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import Gauge, RecorderSettings, RigFile
 from pmm.plan.run_plan import RunPlan

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from hardware.demand import Demand
+from hardware.description.kinds import RunKind
+from hardware.description.known_loads import KnownMass, LoadDirection, LoadStep
 from hardware.description.oscillator import VERTICAL_1963
 from pmm.calibration import read_calibration, write_calibration
-from pmm.plan.kinds import RunKind
-from pmm.plan.run_plan import KnownMass, LoadDirection, LoadStep
 from pmm.run.calibration import calibrate
 from pmm.run.results import of_kind, read_results
 from pmm.run.rig_tests import known_mass_responses, rung_modes, zero_drifts

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from analysis.readers import read_recording
-from pmm.plan.kinds import RunKind
+from hardware.description.kinds import RunKind
 from pmm.run.gate import GateState
 from pmm.run.states import Command, RunStateError, State
 from tests.pmm.run.harness import at_rest, bench, oscillation

@@ -28,7 +28,7 @@ def _version(package: str) -> str:
 
 def _commit() -> str | None:
     """Return the commit of the clone that this package lies in, and whether files were changed."""
-    house = Path(__file__).resolve().parents[2]
+    house = Path(__file__).resolve().parents[1]
     git = shutil.which("git")
     if git is None or not (house / ".git").exists():
         return None
