@@ -3,12 +3,18 @@
 from collections.abc import Sequence
 
 from analysis.plausibility import Seen, plausibility_flags
+from hardware.description.arrangement import Joint
 from hardware.description.flags import Flag
 from pmm.campaign import Campaign
 
 
 def implausible(campaign: Campaign, runs: Sequence[Seen]) -> tuple[Flag, ...]:
-    """Return what :func:`analysis.plausibility.plausibility_flags` says of a campaign's runs."""
+    """Return what :func:`analysis.plausibility.plausibility_flags` says of a campaign's runs.
+
+    Nothing of a turntable: what is known beforehand is of two struts on one rigid model.
+    """
     oscillator = campaign.oscillator
+    if oscillator is not None and oscillator.joint is Joint.YAW_TABLE:
+        return ()
     half_spacing_m = oscillator.half_spacing_m if oscillator is not None else None
     return plausibility_flags(runs, campaign.model, half_spacing_m)

@@ -1,8 +1,11 @@
 """What a run's channels are called and what they measure."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
+
+from hardware.description.arrangement import Joint
 
 
 class Quantity(StrEnum):
@@ -61,6 +64,19 @@ FORCE_AFT = Channel("force_aft", "N")
 FORCE_FORE = Channel("force_fore", "N")
 FORCE_X = Channel("force_x", "N")
 CARRIAGE_SPEED = Channel("carriage_speed", "m/s")
+
+# A turntable's sway, angle, force and moment stand in the places of the struts', aft first.
+_STRUTS: Final = {
+    one.name: one.unit
+    for one in (DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X)
+}
+_TURNTABLE: Final = _STRUTS | {DISPLACEMENT_FORE.name: "rad", FORCE_FORE.name: "N m"}
+
+
+def units_on(joint: Joint) -> Mapping[str, str]:
+    """Return the SI unit of each displacement and gauge of a rig, by the channel's name."""
+    return _TURNTABLE if joint is Joint.YAW_TABLE else _STRUTS
+
 
 # Names of the struts' channels, aft first; and all that a rig records, in the order of a recording.
 DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)

@@ -20,7 +20,14 @@ from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static
 from analysis.first_harmonics import seen_in
 from analysis.recording import Recording
 from analysis.resolver.analyse import analyse
-from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCE_X, FORCES
+from hardware.description.arrangement import Joint
+from hardware.description.channels import (
+    CARRIAGE_SPEED,
+    DISPLACEMENTS,
+    FORCE_X,
+    FORCES,
+    units_on,
+)
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from pmm.calibrated import applied
@@ -60,8 +67,9 @@ def _recording(task: Task) -> Recording:
     chain = task.chain
     given = chain.calibration if chain.matrix is None else RAW
     recording = open_recording(replace(task.source, calibration=given))
-    _check_forces(recording)
+    _check_channels(recording, task)
     if chain.matrix is None:
+        _check_units(recording, task.oscillator.joint)
         return recording
     if applied(recording) is not None:
         raise DataError(
@@ -71,7 +79,7 @@ def _recording(task: Task) -> Recording:
     return recording
 
 
-def _check_forces(recording: Recording) -> None:
+def _check_channels(recording: Recording, task: Task) -> None:
     missing = [name for name in FORCES if name not in recording.channel_names]
     if missing:
         alone = "; with one force, pmm analyse and pmm gap still work" if len(missing) == 1 else ""
@@ -79,6 +87,30 @@ def _check_forces(recording: Recording) -> None:
             f"{recording.name}: no channel {' or '.join(missing)}; coefficients need the forces at "
             f"both struts (channels: {', '.join(recording.channel_names)}). Name the columns in "
             f"[columns] of the campaign file{alone}"
+        )
+    still = [name for name in DISPLACEMENTS if name not in recording.channel_names]
+    if still and task.kind.oscillates and task.oscillator.joint is Joint.YAW_TABLE:
+        raise DataError(
+            f"{recording.name}: no channel {' or '.join(still)}; the set-point has no angle of a "
+            'turntable (joint = "yaw_table"), so its sway and its angle have to be recorded'
+        )
+
+
+def _check_units(recording: Recording, joint: Joint) -> None:
+    """Refuse a stated unit that the rig's channel cannot have; a calibration makes its own."""
+    made = applied(recording) is not None
+    wrong = [
+        f"{one.name} is in {one.unit}, not in {unit}"
+        for name, unit in units_on(joint).items()
+        for one in recording.channels
+        if one.name == name
+        and one.unit not in ("", unit)
+        and not (made and name not in DISPLACEMENTS)
+    ]
+    if wrong:
+        raise DataError(
+            f'{recording.name}: {"; ".join(wrong)}, as joint = "{joint}" has it; name the right '
+            "column and its unit in [columns.channels], or correct joint in [oscillator]"
         )
 
 

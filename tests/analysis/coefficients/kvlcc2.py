@@ -8,9 +8,14 @@
 
 import math
 
+import numpy as np
+
 from analysis.coefficients.normalisation import mmg
 from analysis.coefficients.terms import term_of
+from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.oscillator import Plane
+from tests.exact.hull import polynomial
+from tests.exact.rig import ExactBody, ExactRig
 
 PRINTED = {
     "X_0": "-0.022", "X_vv": "-0.040", "X_vr": "0.002", "X_rr": "0.011", "X_vvvv": "0.771",
@@ -20,7 +25,6 @@ PRINTED = {
     "N_vvv": "-0.030", "N_vvr": "-0.294", "N_vrr": "0.055", "N_rrr": "-0.013",
     "Y_vdot": "-0.223", "N_rdot": "-0.011",
 }  # fmt: skip
-SURGE_ADDED_MASS = 0.022  # m_x'
 DERIVATIVES = {name: float(digits) for name, digits in PRINTED.items()}
 ROUNDING = {name: 0.5 * 10.0 ** -len(text.split(".")[1]) for name, text in PRINTED.items()}
 
@@ -44,3 +48,15 @@ def in_si(name: str, value: float) -> float:
 def without_dimensions(name: str, value: float) -> float:
     """Return a derivative in the published system."""
     return value / SYSTEM.term_factor(term_of(name, Plane.HORIZONTAL))
+
+
+def turntable(sway_m: float, frequency_hz: float, drift_rad: float, *, yaws: bool) -> ExactRig:
+    """A turntable that sways, and where it yaws turns by the angle of its way."""
+    turn = 2j * math.pi * frequency_hz * sway_m / SPEED_M_S * yaws
+    hull = polynomial({name: in_si(name, one) for name, one in DERIVATIVES.items()})
+    return ExactRig(
+        np.array([[0.0, 0.0], [sway_m, turn]]), frequency_hz, SPEED_M_S, drift_rad,
+        arrangement=Arrangement(Joint.YAW_TABLE, drift_by=DriftBy.STRUTS_OFFSET),
+        body=ExactBody(MASS_KG, INERTIA_KG_M2, CG_X_M),
+        hull=hull,
+    )  # fmt: skip

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from analysis.coefficients.campaign_nonlinear import (
@@ -22,7 +21,6 @@ from analysis.coefficients.campaign_nonlinear import (
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.readers import from_dataset, write_recording
-from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane, Range
 from hardware.description.setpoint import SetPoint
@@ -33,8 +31,6 @@ from sim.run import simulate
 from tests.analysis.coefficients import kvlcc2
 from tests.analysis.coefficients.exact_campaigns import cycle_of
 from tests.analysis.coefficients.test_nonlinear_against_put_in_values import put_in_prime
-from tests.exact.hull import polynomial
-from tests.exact.rig import ExactBody, ExactRig
 from tests.pmm.coefficients.test_command_against_put_in_values import done
 
 OSCILLATOR = Oscillator(
@@ -142,25 +138,14 @@ def test_through_simulator_and_command(tmp_path: Path) -> None:
     assert told[STATIC_DRIFT] >= {"Y_v", "Y_vvv", "N_v", "N_vvv"}
 
 
-def turntable(sway_m: float, frequency_hz: float, drift_rad: float, *, yaws: bool) -> ExactRig:
-    """A turntable that sways, and where it yaws turns by the angle of its way."""
-    turn = 2j * math.pi * frequency_hz * sway_m / kvlcc2.SPEED_M_S * yaws
-    hull = polynomial({n: kvlcc2.in_si(n, one) for n, one in kvlcc2.DERIVATIVES.items()})
-    return ExactRig(
-        np.array([[0.0, 0.0], [sway_m, turn]]), frequency_hz, kvlcc2.SPEED_M_S, drift_rad,
-        arrangement=Arrangement(Joint.YAW_TABLE, drift_by=DriftBy.STRUTS_OFFSET),
-        body=ExactBody(kvlcc2.MASS_KG, kvlcc2.INERTIA_KG_M2, kvlcc2.CG_X_M),
-        hull=hull,
-    )  # fmt: skip
-
-
 @pytest.fixture(scope="module")
 def cycles() -> list[Cycle]:
-    rigs = {f"sway {a}": turntable(a, kvlcc2.SWAY_HZ, 0.0, yaws=False) for a in kvlcc2.SWAY_M}
+    table = kvlcc2.turntable
+    rigs = {f"sway {a}": table(a, kvlcc2.SWAY_HZ, 0.0, yaws=False) for a in kvlcc2.SWAY_M}
     for drift in kvlcc2.DRIFTS_RAD:
-        rigs[f"drift {drift}"] = turntable(0.0, kvlcc2.YAW_HZ, drift, yaws=False)
+        rigs[f"drift {drift}"] = table(0.0, kvlcc2.YAW_HZ, drift, yaws=False)
         for a in kvlcc2.YAW_M:
-            rigs[f"yaw {a}, {drift}"] = turntable(a, kvlcc2.YAW_HZ, drift, yaws=True)
+            rigs[f"yaw {a}, {drift}"] = table(a, kvlcc2.YAW_HZ, drift, yaws=True)
     return [cycle_of(rig, name, 7) for name, rig in rigs.items()]
 
 
