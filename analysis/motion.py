@@ -14,17 +14,14 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_motion, to_strut_forces
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 def _nothing() -> FloatArray:

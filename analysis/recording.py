@@ -6,14 +6,12 @@ from difflib import get_close_matches
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.setpoint import SetPoint
-
-FloatArray = NDArray[np.float64]
 
 
 class Samples(Protocol):

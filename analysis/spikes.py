@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.recording import FloatArray, Samples
+from analysis.recording import Samples
+from hardware.description.arrays import FloatArray, IntArray
 
 LONGEST_SPIKE: Final = 3  # samples: more is an event, not a sample gone wrong
 STANDS_OUT: Final = 8.0  # times the curvature of the rest; the cubic leaves 1/5.5 of a step's
@@ -180,7 +180,7 @@ def _without_holes(values: FloatArray) -> FloatArray:
 
 def _window(
     samples: Samples, row: int, chunk: int, found: list[Spike]
-) -> tuple[NDArray[np.int64], FloatArray, float]:
+) -> tuple[IntArray, FloatArray, float]:
     """Return the good samples around where a chunk bends most: their numbers and values, the bend.
 
     What has been found already is taken out.
@@ -202,7 +202,7 @@ def _window(
     return place[around], values[around], float(bend[at - 1])
 
 
-def _pulse(place: NDArray[np.int64], values: FloatArray, count: int) -> Spike | None:
+def _pulse(place: IntArray, values: FloatArray, count: int) -> Spike | None:
     """Return the pulse in a window, if one to three samples are all that bends there.
 
     Of those that calm the window the shortest is taken that does it about as well as any.
@@ -269,7 +269,7 @@ def _recur(times: FloatArray) -> bool:
 def switches(samples: Samples, row: int) -> bool:
     """Whether a channel has so few values that it is a switch, or a display of a few digits."""
     count = samples.shape[1]
-    levels: NDArray[np.float64] = np.zeros(0)
+    levels: FloatArray = np.zeros(0)
     for start in range(0, count, _BLOCK):
         values = samples[row : row + 1, start : min(start + _BLOCK, count)][0]
         levels = np.unique(np.concatenate((levels, values[np.isfinite(values)])))

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.estimate import resolve
 from analysis.resolver.reference import from_frequency
@@ -11,8 +10,7 @@ from analysis.resolver.sums import period_sums
 from benchmarks.accuracy_rivals import RIVALS, Gate
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import Truth, draw_coefficients, recorded
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _RATE_HZ = 100.0
 _MODELLED = (10.0, 1.0, 0.3, 0.1)

@@ -10,11 +10,9 @@ from functools import cache, partial
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
 from analysis.resolver.template import template
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _ORDERS = np.arange(1.0, 4.0)
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic_average import SETTLED_AFTER
@@ -13,8 +12,7 @@ from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import Truth, draw_coefficients, recorded
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _RATE_HZ = 100.0
 _HARMONICS = (1.0, 1.0, 0.2, 0.1)  # mean and harmonics 1 to 3

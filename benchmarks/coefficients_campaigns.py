@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.cycle import Cycle
@@ -22,14 +21,12 @@ from analysis.coefficients.phasors import Phasors, Source, from_interleaved, int
 from analysis.coefficients.stated import Stated
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.terms import term_of
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 HALF_M = 0.5
 BODY = Body(mass_kg=70.0, inertia_kg_m2=27.5, cg_x_m=-0.02, cg_z_m=0.02)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import fit_cycles
@@ -33,8 +32,6 @@ from benchmarks.coefficients_campaigns import (
 from benchmarks.outcome import Report, Row
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-
-FloatArray = NDArray[np.float64]
 
 STATED = Stated(
     mass_kg=0.05,

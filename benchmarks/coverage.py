@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
@@ -17,8 +16,7 @@ from benchmarks import coverage_memory
 from benchmarks.noises import NOISES, SAMPLES_PER_PERIOD, Noise, white
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import recorded
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _LEVEL = 0.95
 _ORDERS = np.arange(1.0, 4.0)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from analysis.inertia.damped import Mode, fit_damped
-from analysis.inertia.numeric import FloatArray
 from benchmarks.inertia_campaigns import series_of
+from hardware.description.arrays import FloatArray
 from sim.pendulum.effects import make_effect
 from sim.pendulum.simulate import simulate_swing
 

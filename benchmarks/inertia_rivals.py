@@ -21,7 +21,7 @@ import numpy as np
 from numpy.random import Generator
 
 from analysis.inertia.damped import fit_damped
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 
 SUCCESS = 1e-3  # relative error of the period
 

@@ -4,7 +4,6 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic_average import AverageState, RunningAverage
@@ -15,8 +14,6 @@ from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import Truth, draw_coefficients, recorded
-
-FloatArray = NDArray[np.float64]
 
 _CHANNELS = 16
 _RATE_HZ = 10_000.0

@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers import read_recording
 from analysis.recording import Recording
 from analysis.resolver.analyse import Settings, analyse
 from benchmarks.peak import peak_bytes
 from benchmarks.signals import Truth, draw_coefficients, recorded
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 CHANNELS = 16
 RATE_HZ = 10_000.0

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording, Samples
 from analysis.resolver.template import template
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

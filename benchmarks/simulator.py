@@ -9,6 +9,7 @@ import numpy as np
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.simulator_rivals import METHODS, ModelOnGauges
 from benchmarks.timing import Contender, interleave
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import SetPoint
@@ -22,7 +23,6 @@ from sim.model.laws import Coulomb, Quadratic
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, vertical_rig
-from sim.signals import FloatArray
 from sim.solve.periodic import steady_run
 
 RATE_HZ = 200.0

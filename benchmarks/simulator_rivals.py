@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 
 METHODS = ("RK45", "DOP853", "LSODA")
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.analyse import analyse
@@ -17,8 +16,8 @@ from benchmarks import speed_rivals
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from benchmarks.signals import Truth, draw_coefficients, recorded
 from benchmarks.timing import Contender, interleave
+from hardware.description.arrays import FloatArray
 
-FloatArray = NDArray[np.float64]
 Rival = Callable[[FloatArray, float, float], FloatArray]
 
 _CHANNELS = 8

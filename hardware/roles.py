@@ -12,8 +12,8 @@ from enum import StrEnum
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 
@@ -70,7 +70,7 @@ class Block:
     """
 
     first: int
-    values: NDArray[np.float64]
+    values: FloatArray
 
 
 Sample = tuple[int, tuple[float, ...]]

@@ -13,7 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.recording import FloatArray, Recording, Samples
+from analysis.recording import Recording, Samples
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from pmm.calibration import Calibration, as_table, from_table

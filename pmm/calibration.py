@@ -10,14 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import parse_toml
 from pmm.toml_text import toml_value
 from pmm.whole_file import write_whole
 
-FloatArray = NDArray[np.float64]
 CALIBRATION_FILE: Final = "calibration.toml"
 _WORST_CONDITION: Final = 1e6
 

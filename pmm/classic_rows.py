@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from hardware.description.arrays import FloatArray
 
 if TYPE_CHECKING:
     from analysis.resolver.analyse import Analysis
 
-FloatArray = NDArray[np.float64]
 
 GATES = (1, 2, 3, 4)  # periods, as on the apparatus
 

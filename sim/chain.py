@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.stage import Block, Composite, Stage
 
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hardware.description import dataset as schema
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 
 if TYPE_CHECKING:
     import xarray as xr

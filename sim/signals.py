@@ -8,14 +8,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hardware.description import channels
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.dataset import EDGE_TIME
-
-FloatArray: TypeAlias = NDArray[np.float64]
 
 # Values by signal name: one array of shape ``(samples,)`` each, events of shape ``(events,)``.
 Signals: TypeAlias = Mapping[str, FloatArray]

@@ -5,7 +5,8 @@ from typing import Any, Final, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from sim.signals import FloatArray, Signal, Signals
+from hardware.description.arrays import FloatArray
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 
 StateT = TypeVar("StateT")

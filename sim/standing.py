@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive.prescribed import DriveSettings
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 from sim.solve.period import Period
 from sim.solve.periodic import SteadyState, steady_state
 

@@ -11,12 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.phasors import (
-    ComplexArray,
-    FloatArray,
-    Phasors,
-    interleaved,
-)
+from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS, UNITS, in_body_axes
 from analysis.kinematics.cycle import harmonics, per_part
@@ -24,6 +19,7 @@ from analysis.kinematics.geometry import Geometry, Waves
 from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Driven, motion
 from analysis.kinematics.projection import loads, readings
+from hardware.description.arrays import ComplexArray, FloatArray
 
 _AFT, _FORE = 0, 1
 _DRIVEN = ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2))  # channel, times differentiated

@@ -20,8 +20,8 @@ from analysis.coefficients.cycle_fit import (
 from analysis.coefficients.determined import moved_of
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 FIRST_HARMONICS = "first harmonics, several runs"

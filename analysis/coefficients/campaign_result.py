@@ -20,7 +20,8 @@ from analysis.coefficients.campaign_records import (
 from analysis.coefficients.form_choice import LINEAR_FORM
 from analysis.coefficients.names import Form
 from analysis.coefficients.terms import load_of
-from analysis.uncertainty import FloatArray, UncertainValues
+from analysis.uncertainty import UncertainValues
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane

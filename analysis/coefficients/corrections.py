@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
+from analysis.coefficients.phasors import Phasors, Source
 from analysis.recording import Recording
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError, DataError
 

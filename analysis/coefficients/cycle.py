@@ -12,11 +12,12 @@ import numpy as np
 
 from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.hull_cycle import HullCycle, on_hull
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS
 from analysis.kinematics.cycle import INSTANTS
 from analysis.motion import mass_matrix, weight_matrix
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity

@@ -22,10 +22,10 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED, Stated
 from analysis.coefficients.terms import Term, name_of_term, term_of
 from analysis.uncertainty import Contribution, UncertainValues, added
+from hardware.description.arrays import FloatArray
 
 HIGHER = (1, 2, 3)
 FIRST = (1,)

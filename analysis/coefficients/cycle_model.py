@@ -17,12 +17,13 @@ import numpy as np
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import FloatArray, interleaved
+from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.stated import STATED
 from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
 from analysis.coefficients.terms import Term
 from analysis.kinematics.averaged import CHANNELS
 from analysis.kinematics.cycle import basis, mean
+from hardware.description.arrays import FloatArray
 
 DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB
 _LOADS = 4

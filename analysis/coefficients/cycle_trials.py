@@ -6,7 +6,8 @@ from numpy.random import Generator
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
-from analysis.coefficients.phasors import FloatArray, Source
+from analysis.coefficients.phasors import Source
+from hardware.description.arrays import FloatArray
 
 TRIALS_AT_ONCE = 5_000
 

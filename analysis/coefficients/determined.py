@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.coefficients.cycle import Cycle, at_order
 from analysis.coefficients.names import Form, Place
-from analysis.coefficients.phasors import ComplexArray
+from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Plane
 
 ALONE = 1e-2  # of the other motion: less may be left out

@@ -23,7 +23,8 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form
-from analysis.uncertainty import Contribution, FloatArray, UncertainValues
+from analysis.uncertainty import Contribution, UncertainValues
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane

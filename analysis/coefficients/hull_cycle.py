@@ -11,13 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.phasors import (
-    FloatArray,
-    Phasors,
-    from_interleaved,
-    interleaved,
-    real_form,
-)
+from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
 from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS, UNITS
 from analysis.kinematics.cycle import harmonics, per_part
@@ -25,6 +19,7 @@ from analysis.kinematics.geometry import Waves
 from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Motion
 from analysis.kinematics.rigid_body import inertia_terms
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2

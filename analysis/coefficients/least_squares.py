@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray
+from hardware.description.arrays import FloatArray
 
 
 def least_squares(matrix: FloatArray, target: FloatArray) -> FloatArray:

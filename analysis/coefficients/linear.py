@@ -21,9 +21,9 @@ from analysis.coefficients.determined import (
     told_apart,
 )
 from analysis.coefficients.names import PLACES, Form, Place, name_of
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import Stated
 from analysis.coefficients.terms import Term
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray, Phasors, Source
+from analysis.coefficients.phasors import Phasors, Source
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.estimate import fit_drift, no_drift, scatter_of, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics
 from analysis.resolver.sums import PeriodSums
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

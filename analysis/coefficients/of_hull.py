@@ -6,7 +6,7 @@ import numpy as np
 
 from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.motion import incidence
-from analysis.uncertainty import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 
 

@@ -9,7 +9,7 @@ from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, Refer
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
 from analysis.coefficients.of_hull import named
-from analysis.uncertainty import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.cycle import LOADS, Cycle, at_order
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source
+from analysis.coefficients.phasors import Phasors, Source
+from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 2e-2

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
-from analysis.coefficients.phasors import FloatArray, Phasors
+from analysis.coefficients.phasors import Phasors
 from analysis.motion import mass_matrix, weight_matrix
 from analysis.uncertainty import student_factor
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane

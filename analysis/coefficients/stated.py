@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.random import Generator
 
-from analysis.coefficients.phasors import FloatArray
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)

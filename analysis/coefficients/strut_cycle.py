@@ -18,10 +18,11 @@ from analysis.coefficients.corrections import (
 )
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.measured import MOTION_ASKED, joint_of, reading_phasors
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors, Source, joined
+from analysis.coefficients.phasors import Phasors, Source, joined
 from analysis.kinematics.geometry import Geometry
 from analysis.motion import strut_displacements
 from analysis.resolver.analyse import Analysis
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.terms import Term
+from hardware.description.arrays import FloatArray
 
 MOVES = ("u", "v", "r", "vdot", "rdot")
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.uncertainty import FloatArray, UncertainValues
+from analysis.uncertainty import UncertainValues
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _DEGREES = (0, 1, 2)

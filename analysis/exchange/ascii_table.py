@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _WIDTH = 25

@@ -15,9 +15,10 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.cycle import LOADS, SURGE_FORCE, Cycle, at_order, labels
-from analysis.coefficients.phasors import ComplexArray, FloatArray, Phasors
+from analysis.coefficients.phasors import Phasors
 from analysis.kinematics import averaged
 from analysis.kinematics.averaged import CHANNELS
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 

@@ -7,7 +7,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.coefficients.phasors import FloatArray
 from analysis.exchange.ascii_table import read_table, write_table
 from analysis.exchange.simman import (
     AHEAD,
@@ -18,6 +17,7 @@ from analysis.exchange.simman import (
     Description,
     fourier,
 )
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 
 LONGEST_ANSWER: Final = 1 << 22  # bytes: names, units and lengths of 4096 columns, 1 KiB each
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from analysis.foreign.found import ForeignColumns
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _RATES: Final = ("fs", "sample_rate_hz", "sample_rate", "samplerate")

@@ -4,13 +4,11 @@ What acts on motion alone is not in it: a zero that is off stays, friction and w
 only while the model moves does not. What drifts goes on.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
 from analysis.coefficients.corrections import ZERO_BLOCKS, zero_reading
 from analysis.gap.components import Component, GapRun, Observation, Part
 from analysis.gap.plateau import steps_of
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
@@ -18,8 +16,6 @@ from sim.effects.campaign import CampaignRun
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from sim.standing import standing, standing_state
-
-FloatArray = NDArray[np.float64]
 
 
 def run_at_rest(

@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Part
+from hardware.description.arrays import BoolArray, FloatArray
 
-FloatArray = NDArray[np.float64]
 Found = Iterator[tuple[Component, float, float]]
 
 _BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
@@ -15,7 +14,7 @@ _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
 
 
-def free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> NDArray[np.bool_]:
+def free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> BoolArray:
     """Tell which lines no harmonic's own leakage reaches.
 
     Parameters

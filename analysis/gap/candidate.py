@@ -12,11 +12,9 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from sim.effects.effect import Effect, Parameter
-
-FloatArray = NDArray[np.float64]
 
 _EVEN = math.pi / math.sqrt(3.0)  # standard deviation of an even distribution on the circle
 _TYPICAL = 3.0  # a prior's standard deviation, in typical values

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from analysis.gap.plateau import Plateau
 from analysis.gap.spectrum import Lines
+from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.standing import Applied
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 class Part(StrEnum):
@@ -81,8 +79,8 @@ class Layout:
     order: NDArray[np.intp]
     real: FloatArray
     imaginary: FloatArray
-    frequency: NDArray[np.bool_]
-    steady: NDArray[np.bool_]
+    frequency: BoolArray
+    steady: BoolArray
 
     @classmethod
     def of(cls, components: Sequence[Component]) -> "Layout":
@@ -232,6 +230,6 @@ class Stack:
         return tuple(one for one in self.runs if one.turns)
 
     @cached_property
-    def steady(self) -> NDArray[np.bool_]:
+    def steady(self) -> BoolArray:
         """Which observations a steady state tells, shape ``(observations,)``."""
         return np.concatenate([one.observed.layout.steady for one in self.runs])

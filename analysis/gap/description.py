@@ -12,17 +12,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.polynomial import motion
 from analysis.gap.sparse_law import FORM, Law, scaled_motion, sparse_law
 from analysis.gap.where import remaining
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import Medium, SetPoint
-
-FloatArray = NDArray[np.float64]
 
 _BINS: Final = 12
 _CLEAR: Final = 2.0  # sigma, root mean square, below which there is nothing to describe
@@ -104,7 +102,7 @@ def _highest(stack: Stack) -> int:
     return max(one.order for one in stack.components if one.part in FORM)
 
 
-def _orders(stack: Stack, left: FloatArray, rows: NDArray[np.bool_]) -> dict[int, float]:
+def _orders(stack: Stack, left: FloatArray, rows: BoolArray) -> dict[int, float]:
     total = float(np.sum(left[rows] ** 2))
     order = np.array([one.order for one in stack.components])
     return {
@@ -113,7 +111,7 @@ def _orders(stack: Stack, left: FloatArray, rows: NDArray[np.bool_]) -> dict[int
     }
 
 
-def _shown(stack: Stack, left: FloatArray, rows: NDArray[np.bool_]) -> FloatArray:
+def _shown(stack: Stack, left: FloatArray, rows: BoolArray) -> FloatArray:
     """Return the remainder without first harmonics, if the others show it.
 
     The free coefficients take their part of the first harmonics, and leave another dependence on

@@ -4,9 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forward import Simulator
@@ -34,12 +31,11 @@ from analysis.gap.verdict import (
 from analysis.gap.whence import unknown_stages
 from analysis.gap.where import Walk, walk
 from analysis.gap.withheld import Predicted, Shrinkage, foretells, predict_withheld, shrinkage
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
 _NAMED = 0.01  # probability below which it does not matter whether a name foretells

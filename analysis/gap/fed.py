@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
 from analysis.gap.forward import ORDERS, POINTS, Simulator, read_steady, turned
 from analysis.gap.gaussian import Nuisances
+from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from sim import signals
@@ -33,8 +33,6 @@ from sim.solve.periodic import steady_state
 if TYPE_CHECKING:
     from sim.acquisition.channels import Digitiser
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Spectra = dict[str, ComplexArray]
 
 _ROUNDS: Final = 3  # until the phase reference is that of what is fed
@@ -71,12 +69,12 @@ class Fed:
         The same with the simulated input, against the same u.
     """
 
-    rows: NDArray[np.bool_]
+    rows: BoolArray
     left: FloatArray
     unfed: FloatArray
 
 
-def fed(problem: Problem, feed: Feed, rows: NDArray[np.bool_]) -> Fed | None:
+def fed(problem: Problem, feed: Feed, rows: BoolArray) -> Fed | None:
     """Return what is left with measured channels fed to the chain; ``None`` where none were.
 
     Of the free numbers the frequency is as it was measured; the others are fitted to what is
@@ -112,8 +110,8 @@ def fed(problem: Problem, feed: Feed, rows: NDArray[np.bool_]) -> Fed | None:
 def _left(
     nuisances: Nuisances,
     residual: FloatArray,
-    rows: NDArray[np.bool_],
-    timed: NDArray[np.bool_],
+    rows: BoolArray,
+    timed: BoolArray,
 ) -> FloatArray:
     """Return what the free numbers leave of a difference, each run's frequency as measured."""
     fitted = nuisances.among(rows | timed).fitted(residual[rows | timed])

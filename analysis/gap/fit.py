@@ -13,9 +13,8 @@ from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior, scales
+from hardware.description.arrays import FloatArray
 from sim.effects.effect import Effect
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

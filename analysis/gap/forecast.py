@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.fit import Fit, Problem, at
@@ -14,11 +13,10 @@ from analysis.gap.free import Free, columns
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.priors import Priors
 from analysis.gap.together import signature_on
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-
-FloatArray = NDArray[np.float64]
 
 LEAST_FORM: Final = 0.05  # of itself, by which any effect's signature is off on a real rig
 

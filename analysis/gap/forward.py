@@ -20,6 +20,7 @@ from analysis.gap.observe import observe
 from analysis.gap.powers import on_noise
 from analysis.gap.prefix import Solved
 from analysis.resolver.choice import ReferenceChoice
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -30,8 +31,6 @@ from sim.model.laws import Spring
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
 from sim.solve.periodic import SteadyState
-
-FloatArray = NDArray[np.float64]
 
 Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
 
@@ -248,12 +247,12 @@ def read_steady(
     return values + ratio * layout.frequency
 
 
-def turned(state: SteadyState, reference_channel: str | None) -> NDArray[np.complex128]:
+def turned(state: SteadyState, reference_channel: str | None) -> ComplexArray:
     """Return by what each order is turned for time to count from the phase reference."""
     if reference_channel is None:
         return np.exp(state.period.s * state.reference_s)
     first = state.spectra[f"recorded_{reference_channel}"][1]
     # A sin(theta + phi) has X_1 = -i A exp(i phi): turned back by phi it is in phase.
     phase = float(np.angle(first * 1j))
-    orders: NDArray[np.complex128] = np.exp(-1j * phase * np.arange(len(state.period.s)))
+    orders: ComplexArray = np.exp(-1j * phase * np.arange(len(state.period.s)))
     return orders

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
 from analysis.gap.priors import Priors
 from analysis.gap.spectrum import spread_about
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.a3_photocell_angle import PhotocellAngle
 from sim.effects.effect import Effect
@@ -30,7 +30,6 @@ from sim.rig import SimulatedRig
 if TYPE_CHECKING:
     from sim.model.coefficients import Matrix
 
-FloatArray = NDArray[np.float64]
 Change = Callable[[SimulatedRig, float], SimulatedRig]
 
 _TERMS: Final = {"added_mass": "a", "damping": "b", "restoring": "c"}

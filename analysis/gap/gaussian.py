@@ -16,9 +16,8 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import BoolArray, FloatArray
 
 _APART: Final = 3.0  # from one width of a size's prior to the next
 _HARDLY: Final = 3.0  # sigma of a prior deviation's signature, below which there is no next one
@@ -57,7 +56,7 @@ class Nuisances:
         """Return the nuisances' most probable values, in units of their prior."""
         return self._gain @ residual
 
-    def among(self, rows: NDArray[np.bool_]) -> "Nuisances":
+    def among(self, rows: BoolArray) -> "Nuisances":
         """Return the nuisances over some of the observations."""
         return Nuisances(self.columns[rows])
 
@@ -86,9 +85,7 @@ class Posterior:
         return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
 
 
-def any_size(
-    found: Posterior, groups: Sequence[NDArray[np.bool_]], reaches: Sequence[float]
-) -> float:
+def any_size(found: Posterior, groups: Sequence[BoolArray], reaches: Sequence[float]) -> float:
     """Return the log evidence gained by not knowing by orders of magnitude how large effects are.
 
     A size's prior is a mixture of normals: as wide as it is, thrice that up to what is plausible, a

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.fit import Fit, Problem, most_probable
 from analysis.gap.free import Free
@@ -19,8 +18,6 @@ from analysis.gap.together import together
 from analysis.gap.unknown import Deviation, find_deviation
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
-
-FloatArray = NDArray[np.float64]
 
 # What these change are the coefficients, and those are free in every hypothesis.
 COEFFICIENTS: Final = ("added-mass-error", "damping-error")

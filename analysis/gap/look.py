@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.candidate import Candidate, candidates
 from analysis.gap.fit import (
@@ -24,10 +23,9 @@ from analysis.gap.fit import (
 )
 from analysis.gap.gaussian import left_over, misfit, null_evidence
 from analysis.gap.powers import grown
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
-
-FloatArray = NDArray[np.float64]
 
 _MUCH: Final = 4.0  # times what there is to explain, from which a look begins nearer
 _SEEN: Final = 10.0  # chi-square that there is to explain, at least

@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Component, GapRun, Observation, Part
 from analysis.gap.fit import Problem
@@ -21,8 +20,6 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Measurement
 from sim.standing import Applied, check_weight, injection
-
-FloatArray = NDArray[np.float64]
 
 BESIDES: Final = (
     (Measurement.REST, ""),

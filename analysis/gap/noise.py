@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
 from analysis.gap.forward import DRAWS
@@ -23,8 +22,6 @@ from analysis.gap.wander import wander, wandered
 from hardware.description.channels import SHAFT_ANGLE
 from sim.acquisition.channels import Digitiser
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 # Of the first harmonic of the channel: what a simulation by harmonics does not promise to hold.
 SIMULATION: Final = 3e-6

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.bands import band, free_of_harmonics
 from analysis.gap.components import TRENDS, Component, Observation, Part
@@ -24,10 +23,10 @@ from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
 from analysis.resolver.settings import Settings
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.errors import DataError
 
-FloatArray = NDArray[np.float64]
 Found = Iterator[tuple[Component, float, float]]
 
 ORDERS: Final = 6

@@ -11,16 +11,14 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.doubt import SAY_UNIT, UNIT_NEAR, Doubt
 from analysis.mistaken_units import mistaken
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENT_AFT, DISPLACEMENTS, FORCE_AFT
 from hardware.description.setpoint import Medium
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 _ODD: Final = math.log(1.8)  # a ratio that no gap of a working rig reaches in one run alone
 _ALIKE: Final = 0.15  # spread of the other runs' ratios up to which one that is odd stands out

@@ -9,15 +9,14 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.fit import Fit, Problem, at, expected_evidence, most_probable, weighed_at
 from analysis.gap.where import CHAIN, gap_of, left_by_step, step_of
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
 
-FloatArray = NDArray[np.float64]
-Rows = NDArray[np.bool_]
+Rows = BoolArray
 
 _LEAST: Final = 10.0  # u: a weaker effect may hide in the others, where it is smaller still
 _ROUNDS: Final = 3  # of fitting the effect that the others may have

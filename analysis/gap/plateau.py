@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers.conditioning import flat_top
 from analysis.recording import Recording
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -9,21 +9,19 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Component, GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import left_over, misfit, posterior
+from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.channels import FORCES
-
-FloatArray = NDArray[np.float64]
 
 DEGREE: Final = 3
 _POINTS: Final = 128
 _SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a term's prior, in sigma
 
 
-def polynomial(problem: Problem, fitted: NDArray[np.bool_] | None = None) -> Fit:
+def polynomial(problem: Problem, fitted: BoolArray | None = None) -> Fit:
     """Return the control as a hypothesis without a name, its prior as wide as fits best.
 
     Parameters
@@ -42,7 +40,7 @@ def polynomial_ahead(problem: Problem, there: Problem) -> FloatArray:
     return _scaled(problem, there.simulator.stack)
 
 
-def _scaled(problem: Problem, stack: Stack, fitted: NDArray[np.bool_] | None = None) -> FloatArray:
+def _scaled(problem: Problem, stack: Stack, fitted: BoolArray | None = None) -> FloatArray:
     """Return all terms over the runs of a stack, each as wide as its prior in the campaign."""
     rows = np.ones(len(problem.residual), dtype=bool) if fitted is None else fitted
     raw = _raw(problem.simulator.stack, problem.simulator.stack)
@@ -69,7 +67,7 @@ def _fit(problem: Problem, columns: FloatArray) -> Fit:
     return Fit((), found.mean, columns, signature, cost, found, shared)
 
 
-def log_evidence(problem: Problem, columns: FloatArray, rows: NDArray[np.bool_]) -> float:
+def log_evidence(problem: Problem, columns: FloatArray, rows: BoolArray) -> float:
     """Return the evidence of a sum of columns with unit normal weights, on some observations."""
     part, residual = problem.nuisances.among(rows), problem.residual[rows]
     found = posterior(residual, columns[rows], part)
@@ -131,7 +129,7 @@ def components_of(stack: Stack, channel: str, forces: Sequence[FloatArray]) -> F
     )
 
 
-def _part(one: Component, spectrum: NDArray[np.complex128]) -> float:
+def _part(one: Component, spectrum: ComplexArray) -> float:
     if one.part is Part.MEAN:
         return float(spectrum[0].real)
     if one.part is Part.IN_PHASE:

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Part
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 # What each of these is the logarithm of, to this power, adds up like powers do.
 _POWERS: Final = {

@@ -12,7 +12,7 @@ from sim.solve.periodic import SteadyState
 from sim.solve.sampled import steady_of
 
 if TYPE_CHECKING:
-    from sim.solve.linear import ComplexArray
+    from hardware.description.arrays import ComplexArray
 
 _MOST: Final = 4096  # results that are kept: some 10 kB each
 

@@ -16,7 +16,6 @@ from itertools import islice, product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun
 from analysis.gap.fit import Problem
@@ -34,8 +33,6 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Measurement
 from sim.signals import FORCE_AFT, FORCE_FORE
-
-FloatArray = NDArray[np.float64]
 
 NO_GAP: Final = "no gap"
 OSCILLATION: Final = "oscillation"

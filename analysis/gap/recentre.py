@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.forward import Simulator
@@ -21,11 +20,10 @@ from analysis.gap.free import Free, columns, free_numbers, with_coefficients
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
 from analysis.gap.priors import Priors
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 FAR: Final = 3.0  # prior deviations beyond which a coefficient is moved
 _STEPS: Final = 5

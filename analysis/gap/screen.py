@@ -9,11 +9,11 @@ from collections.abc import Iterable, Mapping, Set
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS, TRENDS, Component, Part
 from analysis.gap.fit import Problem
 from analysis.gap.where import left_by_step
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.effect import Effect, Trace
 
@@ -60,7 +60,7 @@ def _show(deviating: Iterable[str], channels: Set[str]) -> bool:
     return any(one in channels or not (one and channels) for one in deviating)
 
 
-def _deviates(left: NDArray[np.float64], rows: list[int]) -> bool:
+def _deviates(left: FloatArray, rows: list[int]) -> bool:
     own = left[rows]
     limit = len(rows) + BEYOND * (2.0 * len(rows)) ** 0.5
     return bool(own @ own > limit or np.abs(own).max() > _LONE)

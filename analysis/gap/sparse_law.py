@@ -9,15 +9,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.gaussian import rooted
 from analysis.gap.polynomial import components_of, motion
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 
-FloatArray = NDArray[np.float64]
 Moved = tuple[FloatArray, FloatArray, FloatArray]
 
 FORM: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)

@@ -11,9 +11,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _ALIKE = 1e-10  # of the largest: squared size from which a direction is more than rounding
 _BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach

@@ -7,14 +7,10 @@ Left alone, a second effect would take the credit for that.
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from analysis.gap.fit import Fit, Problem, built, most_probable, weighed_at
 from analysis.gap.free import Free, with_coefficients
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
-
-FloatArray = NDArray[np.float64]
 
 _ROUNDS = 2
 

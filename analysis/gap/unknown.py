@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.gaussian import Nuisances
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
-
-FloatArray = NDArray[np.float64]
 
 SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a cell's deviation, in sigma
 _OWN = 0.2  # share of a cell's variance that is every run's own

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 _COVERED = 0.975  # by an interval of 95 %
 _OF_MEDIAN = 1.4826  # standard deviation over median deviation, of a normal distribution

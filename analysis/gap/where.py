@@ -12,17 +12,15 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.fed import MEASURED_MOTION, MEASURED_SHAFT, fed
 from analysis.gap.fit import Problem
 from analysis.gap.observe import SPEED
 from analysis.gap.regimes import contrasts
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.effects.effect import StageName
-
-FloatArray = NDArray[np.float64]
 
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
 
@@ -132,7 +130,7 @@ def walk(problem: Problem) -> Walk:
     return Walk(tuple(steps), tuple(_contrasts(problem, left)))
 
 
-def _with_measured(problem: Problem, plain: Gap, what: str, rows: NDArray[np.bool_]) -> list[Gap]:
+def _with_measured(problem: Problem, plain: Gap, what: str, rows: BoolArray) -> list[Gap]:
     """Return a step's gap with the last input that was measured fed; none where there is none."""
     stack = problem.simulator.stack
     for step, feed, name in _FED:
@@ -176,7 +174,7 @@ def step_of(one: Component) -> str:
     return steps.get(one.channel) or (FORCE if one.part in _HARMONIC else BESIDE)
 
 
-def _of_step(components: Sequence[Component], what: str) -> NDArray[np.bool_]:
+def _of_step(components: Sequence[Component], what: str) -> BoolArray:
     return np.array([step_of(one) == what for one in components])
 
 
@@ -184,7 +182,7 @@ def gap_of(
     stack: Stack,
     left: FloatArray,
     what: str,
-    rows: NDArray[np.bool_],
+    rows: BoolArray,
     whole: FloatArray | None = None,
 ) -> Gap:
     """Return the gap over some components: what is left of it, and the whole where it is given."""

@@ -10,14 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import STEADY_PARTS
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import misfit, posterior
 from analysis.gap.regimes import Regime
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import BoolArray, FloatArray
 
 _FEWEST = 2  # regimes that can refute a name: one may itself be off
 _DRAWS = 400
@@ -40,7 +38,7 @@ class Predicted:
     """
 
     regime: Regime
-    rows: NDArray[np.bool_]
+    rows: BoolArray
     left: FloatArray
     log_density: float
 
@@ -114,7 +112,7 @@ def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatAr
 
 
 def _evidence(
-    problem: Problem, residual: FloatArray, columns: FloatArray, rows: NDArray[np.bool_]
+    problem: Problem, residual: FloatArray, columns: FloatArray, rows: BoolArray
 ) -> float:
     part = problem.nuisances.among(rows)
     found = posterior(residual[rows], columns[rows], part)

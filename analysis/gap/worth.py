@@ -6,11 +6,9 @@ from itertools import combinations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.fit import Fit, Problem
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 Leading = Sequence[tuple[Fit | None, float]]
 """The leading answers with their probabilities; ``None`` for no gap."""

@@ -19,8 +19,8 @@ import numpy as np
 
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.local import FEWEST_PARTS, LocalPeriods
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.projection import inverse_gram
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 POWERS = (0, 1, 2)

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray, Value
+from analysis.inertia.numeric import Value
 from analysis.inertia.parts import Part, combined
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
 _STARTS = 12

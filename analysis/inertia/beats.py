@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.numeric import FloatArray, Value
+from analysis.inertia.numeric import Value
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 

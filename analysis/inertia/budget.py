@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 
 Formula = Callable[..., Any]

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.series import Series, UsablePart
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import STANDARD_GRAVITY_M_S2

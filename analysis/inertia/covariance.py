@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray, inner
+from analysis.inertia.numeric import inner
 from analysis.inertia.projection import Problem, derivative, inverse_gram
 from analysis.inertia.residuals import ResidualDiagnostics
+from hardware.description.arrays import FloatArray
 
 
 def covariance(

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.covariance import covariance
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.projection import (
     NEAR_START,
     Problem,
@@ -24,6 +23,7 @@ from analysis.inertia.projection import (
 )
 from analysis.inertia.residuals import ResidualDiagnostics, diagnose
 from analysis.inertia.starts import starting_points, thinned
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

@@ -5,7 +5,7 @@ from enum import StrEnum
 import numpy as np
 
 from analysis.inertia.damped import DampedFit, fit_damped
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 
 
 class SwingForm(StrEnum):

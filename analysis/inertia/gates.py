@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray, IntArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -33,7 +32,7 @@ class GateEvents:
 
     name: str
     time_s: FloatArray
-    blocked: NDArray[np.bool_]
+    blocked: BoolArray
     gates: tuple[str, ...]
     flags: tuple[Flag, ...] = ()
 
@@ -54,7 +53,7 @@ class Passages:
     """
 
     name: str
-    number: NDArray[np.int64]
+    number: IntArray
     time_s: FloatArray
     speed: FloatArray
     flags: tuple[Flag, ...] = ()
@@ -175,7 +174,7 @@ def passages(events: GateEvents) -> Passages:
 
 
 def _one_gate(
-    name: str, gate: str, time_s: FloatArray, blocked: NDArray[np.bool_]
+    name: str, gate: str, time_s: FloatArray, blocked: BoolArray
 ) -> tuple[FloatArray, FloatArray, list[Flag]]:
     """Return middles and widths of one gate's blocked stretches."""
     change = np.flatnonzero(blocked[1:] != blocked[:-1]) + 1

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.inertia.damped import DampedFit, fit_damped
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -47,7 +46,7 @@ class LocalPeriods:
     phase_rad: FloatArray
     period_s: FloatArray
     covariance: FloatArray
-    stretch: NDArray[np.int64]
+    stretch: IntArray
     flags: tuple[Flag, ...] = ()
 
     @property

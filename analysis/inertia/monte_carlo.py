@@ -15,7 +15,7 @@ from analysis.inertia.budget import (
     linear_budget,
 )
 from analysis.inertia.estimate import Distribution, Estimate
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 DEFAULT_TRIALS = 200_000

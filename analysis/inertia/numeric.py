@@ -8,9 +8,9 @@ from collections.abc import Callable
 from typing import TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
+
 Value = TypeVar("Value", float, FloatArray)
 
 

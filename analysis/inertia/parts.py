@@ -9,7 +9,8 @@ import numpy as np
 
 from analysis.inertia.budget import Correlations
 from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.numeric import FloatArray, jacobian
+from analysis.inertia.numeric import jacobian
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 
 NAMES = ("mass_kg", "x_m", "y_m", "z_m", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")

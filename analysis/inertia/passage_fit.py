@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import Passages
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _BLOCKS = 12

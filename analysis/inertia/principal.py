@@ -10,7 +10,8 @@ import numpy as np
 
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import FloatArray, Value, arctan, cos, sin, sqrt, tan
+from analysis.inertia.numeric import Value, arctan, cos, sin, sqrt, tan
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 

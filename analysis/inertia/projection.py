@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.inertia.numeric import FloatArray, inner
+from analysis.inertia.numeric import inner
+from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 MOST_ITERATIONS = 60
 DAMPED_START, NEAR_START = 1e-3, 1e-9  # of the method's own damping: from far off, from close by
@@ -46,7 +46,7 @@ class Problem:
         return float(self.time_s[-1] - self.time_s[0])
 
     @cached_property
-    def places(self) -> "NDArray[np.int64] | None":
+    def places(self) -> "IntArray | None":
         """Each sample's place on the even grid that all lie on; None where there is no such grid.
 
         Gaps may be in it. A billionth of an interval is allowed: that turns no phase.
@@ -94,7 +94,7 @@ def columns(problem: Problem, omega: FloatArray, decay: FloatArray) -> FloatArra
     return matrix
 
 
-def _wave(problem: Problem, exponent: complex) -> NDArray[np.complex128]:
+def _wave(problem: Problem, exponent: complex) -> ComplexArray:
     """Return ``exp(exponent t)``: on a grid, as products of a coarse one's and a fine one's."""
     places = problem.places
     if places is None:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.spectrum import Spectrum, spectrum
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 FEWEST_SAMPLES_A_PERIOD = 5.0

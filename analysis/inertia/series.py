@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.sampling import rough_period
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.projection import Problem, columns, iterate, project
 from analysis.inertia.spectrum import spectrum
+from hardware.description.arrays import FloatArray
 
 Start = tuple[FloatArray, FloatArray]
 

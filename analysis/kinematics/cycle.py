@@ -9,12 +9,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import Driven
+from hardware.description.arrays import FloatArray
 
-FloatArray = NDArray[np.float64]
 INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 degrees
 
 

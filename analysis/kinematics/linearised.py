@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from analysis.kinematics.cycle import FloatArray, harmonics
+from analysis.kinematics.cycle import harmonics
 from analysis.kinematics.geometry import Waves
+from hardware.description.arrays import FloatArray
 
 _STEP = 1e-30  # its square is lost in rounding: the slope has no truncation error
 

@@ -9,11 +9,11 @@ many runs at once and for bodies that are known with an uncertainty.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.kinematics.geometry import Geometry, Waves
 from analysis.kinematics.motion import Driven, Motion, motion
 from analysis.kinematics.projection import readings
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -28,7 +28,7 @@ class Buoyancy:
     centre_z_m: float = 0.0
 
 
-def moments(body: Body) -> NDArray[np.float64]:
+def moments(body: Body) -> FloatArray:
     """Return mass, m x_G, m z_G and I: kg, kg m, kg m and kg m^2."""
     mass = body.mass_kg
     return np.array([mass, mass * body.cg_x_m, mass * body.cg_z_m, body.inertia_kg_m2])
@@ -96,7 +96,7 @@ def zero_readings(geometry: Geometry, body: Body, buoyancy: Buoyancy | None = No
     return readings(geometry, at.line_rad, weight(body, at, buoyancy))[:, 0]
 
 
-def _sum(values: NDArray[np.float64], terms: Waves) -> Waves:
+def _sum(values: FloatArray, terms: Waves) -> Waves:
     return np.asarray(np.einsum("k,...krt->...rt", values, terms))
 
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from analysis.recording import FloatArray, Recording, Samples
+from analysis.recording import Recording, Samples
 from hardware.description import dataset as schema
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag

@@ -14,8 +14,8 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.recording import FloatArray
 from hardware.description import dataset as schema
+from hardware.description.arrays import BoolArray, FloatArray
 
 KIND: Final = "crc32"
 BLOCK_SAMPLES: Final = 1024  # what a flipped bit costs: 10 s at 100 Hz
@@ -51,7 +51,7 @@ class Sums:
     counts: Mapping[str, int]
     attributes: AttributeSums
 
-    def is_same(self, name: str, values: FloatArray, first: int) -> NDArray[np.bool_]:
+    def is_same(self, name: str, values: FloatArray, first: int) -> BoolArray:
         """Tell of each block of values whether it is what was written.
 
         Parameters
@@ -61,7 +61,7 @@ class Sums:
         """
         found = block_sums(values, block_of(name))
         at = first // block_of(name)
-        same: NDArray[np.bool_] = found == self.blocks[name][at : at + found.size]
+        same: BoolArray = found == self.blocks[name][at : at + found.size]
         return same
 
 

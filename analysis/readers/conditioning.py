@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers.missing import empty_flag
-from analysis.recording import FloatArray, Recording, Samples
+from analysis.recording import Recording, Samples
 from analysis.spikes import FEWEST_LEVELS, Spike, cubic, find_spikes
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -159,7 +159,7 @@ def _missing_flags(name: str, repaired: int, left: int, longest: int) -> list[Fl
     return flags
 
 
-def runs(condition: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def runs(condition: BoolArray) -> list[tuple[int, int]]:
     """Return the stretches ``[start, stop)`` over which a condition holds."""
     padded = np.concatenate(([False], condition, [False]))
     edges = np.flatnonzero(padded[1:] != padded[:-1])

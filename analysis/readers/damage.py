@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers.checksums import (
     BLOCK_SAMPLES,
@@ -20,10 +19,10 @@ from analysis.readers.checksums import (
 )
 from analysis.recording import Recording
 from hardware.description import dataset as schema
+from hardware.description.arrays import BoolArray
 from hardware.description.errors import DataError
 from hardware.description.flags import DAMAGED, Flag, Severity
 
-BoolArray = NDArray[np.bool_]
 _READ: Final = 128 * BLOCK_SAMPLES  # values looked at in one go: a megabyte
 _NAMED: Final = 3  # stretches of a variable; the others are counted
 _REMEDY: Final = "copy the file again, or move it away and have pmm recover make it again"

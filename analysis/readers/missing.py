@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.recording import FloatArray, Recording, Samples
+from analysis.recording import Recording, Samples
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.flags import DAMAGED, Flag, Severity
 
 # Of whatever unit: a load cell ends at 1e8 N and a counter at 1e10, and sums of squares of 1e12 are
@@ -68,7 +68,7 @@ class _Survey:
                 self._open[:] = 0
 
     def _take(
-        self, values: FloatArray, within: NDArray[np.bool_], start_s: float, start: int, hz: float
+        self, values: FloatArray, within: BoolArray, start_s: float, start: int, hz: float
     ) -> None:
         beyond = ~within & ~np.isnan(values)
         self.beyond += np.count_nonzero(beyond, axis=1)
@@ -82,7 +82,7 @@ class _Survey:
         for row, lost in enumerate(missing):
             self._runs(row, lost)
 
-    def _runs(self, row: int, lost: NDArray[np.bool_]) -> None:
+    def _runs(self, row: int, lost: BoolArray) -> None:
         """Take the stretches of one channel; one may have begun in the block before."""
         edges = np.flatnonzero(np.diff(lost, prepend=False, append=False))
         lengths = edges[1::2] - edges[::2]

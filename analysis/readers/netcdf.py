@@ -25,8 +25,9 @@ from analysis.readers.heaps import check_heaps
 from analysis.readers.missing import with_missing_said
 from analysis.readers.reserved import reserved
 from analysis.readers.stored_samples import StoredSamples, identity, reading
-from analysis.recording import FloatArray, Recording
+from analysis.recording import Recording
 from hardware.description import dataset as schema
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.room import said
 

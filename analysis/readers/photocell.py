@@ -10,7 +10,7 @@ from analysis.readers.headers import Header
 from analysis.readers.text_layout import find_layout
 from analysis.readers.text_source import TextSource
 from analysis.readers.text_table import read_numbers
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import unit

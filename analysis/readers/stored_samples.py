@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.checksums import BLOCK_SAMPLES
-from analysis.readers.damage import BoolArray, stretches
-from analysis.recording import FloatArray
+from analysis.readers.damage import stretches
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import DataError
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from analysis.readers.columns import ChannelColumn, ColumnMap
 from analysis.readers.columns_options import COMMAND_LINE
 from analysis.readers.headers import Header, find_header, unit_hint
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity

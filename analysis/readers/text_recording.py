@@ -16,7 +16,8 @@ from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, wi
 from analysis.readers.text_source import Progress, TextSource
 from analysis.readers.text_table import read_numbers
 from analysis.readers.time_base import TimeBase, fit_time_base
-from analysis.recording import FloatArray, Recording
+from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 
 READER = "csv"

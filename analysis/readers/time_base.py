@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -32,7 +31,7 @@ class TimeBase:
     start_s: float
     sample_rate_hz: float
     sample_count: int
-    places: NDArray[np.int64] | None = None
+    places: IntArray | None = None
     flags: tuple[Flag, ...] = ()
 
 
@@ -95,7 +94,7 @@ def _check_increasing(time_s: FloatArray, where: str) -> None:
         )
 
 
-def _places(steps: FloatArray) -> tuple[NDArray[np.int64], float]:
+def _places(steps: FloatArray) -> tuple[IntArray, float]:
     """Return each row's sample number and the interval between samples.
 
     The median step may be rounded (1 ms stamps of 300 Hz); the mean of the single steps is not.
@@ -166,7 +165,7 @@ def _single_precision_flag(rate_hz: float) -> tuple[Flag, ...]:
     return (Flag("time_single_precision", Severity.NOTE, message),)
 
 
-def _gap_flag(time_s: FloatArray, places: NDArray[np.int64], rate_hz: float, where: str) -> Flag:
+def _gap_flag(time_s: FloatArray, places: IntArray, rate_hz: float, where: str) -> Flag:
     lost = np.diff(places) - 1
     missing, worst = int(lost.sum()), int(np.argmax(lost))
     longest = f"{lost[worst]} after t = {time_s[worst]:.6g} s"

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.checks import gate_flags
@@ -23,11 +22,10 @@ from analysis.resolver.steady import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from analysis.resolver.turning import frequency_flags
 from analysis.resolver.weights import REACH
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
 
 _ENOUGH_STEADY = 3  # periods: a shorter stretch is no stretch
 

@@ -13,12 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.recording import Recording
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 ATTENUATION_DB = 140.0  # of the stop band; the pass band is then flat to 10^(-140/20) = 1e-7
 ROOM = 3.0  # carrier, image and output rate over the bandwidth, at least

@@ -1,14 +1,11 @@
 """What is worth knowing about a gate before its numbers are believed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.estimate import PeriodValues, solve_periods, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
 from analysis.resolver.sums import PeriodSums
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
 
 _SPEED_CHANGE = 0.005  # from the shortest to the longest period, relative
 _FEW_PERIODS = 3  # below it an interval is a formality

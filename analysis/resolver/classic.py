@@ -15,12 +15,10 @@ or an edge between samples . Use
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.template import template
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-
-FloatArray = NDArray[np.float64]
 
 SWITCH_HZ = 0.5
 

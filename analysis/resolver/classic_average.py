@@ -15,13 +15,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.classic import check_frequency, check_harmonics, check_values, products
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 LEAST_TIME_CONSTANT_PERIODS = 1.5
 SETTLED_AFTER = 4.6  # time constants: 1 % of the step is left

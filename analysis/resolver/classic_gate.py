@@ -15,14 +15,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.classic import check_harmonics, check_values, products
 from analysis.resolver.classic_gate_state import GateReading, GateState, IntegratorState
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
 
 SAMPLE_SLACK = 1e-7  # a pulse this near to a sample falls on it: times are rounded
 GATE_TOLERANCE = 0.01  # of a revolution: what a gate may miss of m whole ones

@@ -4,11 +4,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
-
-FloatArray = NDArray[np.float64]
 
 
 class GateState(StrEnum):

@@ -3,7 +3,6 @@
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic import check_harmonics, products
@@ -16,9 +15,8 @@ from analysis.resolver.classic_average import (
 from analysis.resolver.classic_gate import SAMPLE_SLACK, GatedIntegrator
 from analysis.resolver.classic_gate_state import GateReading, IntegratorState
 from analysis.resolver.reference import PhaseReference
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-
-FloatArray = NDArray[np.float64]
 
 _BLOCK_SAMPLES = 65_536  # taken at a time
 

@@ -14,15 +14,13 @@ assumption, is never used.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
 from analysis.resolver.memory import widened
 from analysis.resolver.sums import PeriodSums
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """A phase channel with missing samples: the part of the record in which it has none."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.reference import NoReferenceError
+from hardware.description.arrays import BoolArray, IntArray
 from hardware.description.flags import Flag, Severity
 
 
@@ -65,13 +65,13 @@ def gap_in_words(flags: tuple[Flag, ...]) -> str:
     )
 
 
-def _runs(condition: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _runs(condition: BoolArray) -> IntArray:
     """Stretches ``[start, stop)`` over which a condition holds, shape ``(stretches, 2)``."""
     padded = np.concatenate(([False], condition, [False]))
     return np.flatnonzero(padded[1:] != padded[:-1]).astype(np.int64).reshape(-1, 2)
 
 
-def _in_words(recording: Recording, gaps: NDArray[np.int64]) -> str:
+def _in_words(recording: Recording, gaps: IntArray) -> str:
     """Say how many samples are missing, and where the most are."""
     lengths = np.diff(gaps, axis=1)[:, 0]
     longest = int(np.argmax(lengths))
@@ -84,8 +84,8 @@ def _in_words(recording: Recording, gaps: NDArray[np.int64]) -> str:
 
 
 def _that_holds(
-    recording: Recording, name: str, stretches: NDArray[np.int64], holds_s: float, where: str
-) -> NDArray[np.int64]:
+    recording: Recording, name: str, stretches: IntArray, holds_s: float, where: str
+) -> IntArray:
     number = float(recording.sample_number(np.array([holds_s]))[0])
     inside = (stretches[:, 0] <= number + 1e-6) & (number - 1e-6 <= stretches[:, 1] - 1)
     if not inside.any():

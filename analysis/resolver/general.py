@@ -7,15 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight import Gates, Sums
 from analysis.resolver.template import template
 from analysis.resolver.weights import REACH, gate_weights
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import BoolArray, FloatArray
 
 Taper = Callable[[FloatArray], FloatArray]
 """Extra weight of samples as a function of their cycles."""
@@ -30,7 +28,7 @@ class General:
     orders: FloatArray
     taper: Taper | None
 
-    def needed(self, gates: Gates) -> NDArray[np.bool_]:
+    def needed(self, gates: Gates) -> BoolArray:
         """Tell which periods the quick sums cannot take."""
         if self.taper is not None or not np.array_equal(
             self.orders, np.arange(1.0, len(self.orders) + 1.0)
@@ -40,7 +38,7 @@ class General:
         ends_late = gates.closing >= self.recording.sample_count - REACH
         return np.asarray(self._bent(gates) | starts_early | ends_late)
 
-    def _bent(self, gates: Gates) -> NDArray[np.bool_]:
+    def _bent(self, gates: Gates) -> BoolArray:
         """Tell in which periods the phase does not run straight."""
         inside = 1e-9 * (gates.closing_cycle - gates.opening_cycle)
         knots = self.reference.cycles

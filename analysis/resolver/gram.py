@@ -7,14 +7,12 @@ and a phasor's sum over evenly spaced samples is a geometric series.
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 
 def phasor_series(
-    first_cycle: FloatArray, step: FloatArray, count: NDArray[np.int64], highest: int
+    first_cycle: FloatArray, step: FloatArray, count: IntArray, highest: int
 ) -> tuple[ComplexArray, ComplexArray]:
     """Sum ``exp(i n theta)`` over ``count`` samples whose cycles are ``first_cycle + k * step``.
 

@@ -7,16 +7,14 @@ nothing of the harmonics through: noise of any colour that is level across them 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import fit_drift, no_drift
 from analysis.resolver.harmonics import Harmonics, IntervalSource
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.sums import period_sums
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-
-FloatArray = NDArray[np.float64]
 
 MIN_PERIODS = 5
 _FARTHEST_BIN = 8

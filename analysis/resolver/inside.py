@@ -13,13 +13,9 @@ from typing import Final
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from analysis.resolver.template import phasors
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-IntArray = NDArray[np.int64]
+from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 _FEW: Final = 16
 ROW: Final = _FEW**2

@@ -3,13 +3,11 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.harmonics import Harmonics
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
-
-FloatArray = NDArray[np.float64]
 
 _AT_ONCE = 16  # frequencies tried together
 

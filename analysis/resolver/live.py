@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
@@ -24,10 +23,9 @@ from analysis.resolver.sums import PeriodSums
 from analysis.resolver.template import template
 from analysis.resolver.weights import REACH
 from analysis.spikes import AROUND
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
-
-FloatArray = NDArray[np.float64]
 
 _NEIGHBOURS = 7  # periods whose median is the present one
 _AHEAD = REACH + AROUND  # samples after a period's edge that show whether one of its is a spike

@@ -27,9 +27,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
+
 Doubled = Callable[[FloatArray], FloatArray]
 
 LEVEL = 0.95

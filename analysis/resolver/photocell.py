@@ -1,13 +1,11 @@
 """The photocell's pulses as a phase reference: one a revolution, some missed, some too many."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.reference import PhaseReference, ReferenceSource
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
 
 _NEIGHBOURS = 7  # intervals whose median is the local period
 EARLY = 0.7  # of the local period: a pulse too many

@@ -13,12 +13,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
 
 _WRAP_IN_DEGREES = 50.0  # no shaft turns as far between two samples: radians wrap by 2 pi
 KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import solve_periods
@@ -15,11 +14,9 @@ from analysis.resolver.reference import (
     from_frequency,
 )
 from analysis.resolver.sums import period_sums
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 _COARSE_SAMPLES = 1 << 20  # enough for the first look at the frequency of a record of any length
 _FASTEST = 0.9  # of the Nyquist frequency: beyond it a period has too few samples to follow

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.recording import FloatArray
 from analysis.spikes import Pulses, Spike, curvature_of_chunks, find_pulses, most_of, switches
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,9 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.estimate import PeriodValues
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
 _PRESENT = 0.2  # of the usual amplitude: below it nothing moves yet, or no longer
 _ROUNDING = 1e-12  # of the mean: what a constant channel leaves in its harmonics
@@ -59,7 +56,7 @@ class _Judged:
     phasors: ComplexArray
     size: FloatArray
     allowed: FloatArray
-    present: NDArray[np.bool_]
+    present: BoolArray
 
     @property
     def parts(self) -> FloatArray:
@@ -139,9 +136,7 @@ def _noise(phasor: ComplexArray) -> float:
     return float(1.4826 * np.median(np.abs(parts)) / np.sqrt(6.0))
 
 
-def _longest_within(
-    parts: FloatArray, allowed: FloatArray, usable: NDArray[np.bool_]
-) -> tuple[int, int]:
+def _longest_within(parts: FloatArray, allowed: FloatArray, usable: BoolArray) -> tuple[int, int]:
     """Longest run of usable rows in which no column's range exceeds what is allowed."""
     highs: list[deque[int]] = [deque() for _ in allowed]
     lows: list[deque[int]] = [deque() for _ in allowed]

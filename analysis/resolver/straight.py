@@ -8,14 +8,12 @@ from dataclasses import dataclass, fields
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.gram import gram_of, phasor_series
 from analysis.resolver.inside import phasor_sums
 from analysis.resolver.template import basis_of, phasors
 from analysis.resolver.weights import REACH, edge_corrections
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import BoolArray, FloatArray, IntArray
 
 Sums: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 """``gram``, ``moment`` and ``ramp`` of some periods; the ramp counts samples here."""
@@ -38,7 +36,7 @@ class Gates:
     opening_cycle: FloatArray
     closing_cycle: FloatArray
 
-    def __getitem__(self, chosen: slice | NDArray[np.bool_]) -> "Gates":
+    def __getitem__(self, chosen: slice | BoolArray) -> "Gates":
         """Return some of the periods."""
         return Gates(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
@@ -79,7 +77,7 @@ def sum_straight(samples: FloatArray, gates: Gates, harmonics: int) -> Sums:
     return gram_of(series, harmonics), basis_of(moment), basis_of(ramp[:, : harmonics + 1])
 
 
-def _edges(gates: Gates) -> tuple[NDArray[np.int64], FloatArray]:
+def _edges(gates: Gates) -> tuple[IntArray, FloatArray]:
     """Numbers and weights of the samples around both edges, shapes ``(periods, 12)``."""
     around = np.arange(1 - REACH, REACH + 1)
     below = [np.floor(edge).astype(np.int64) for edge in (gates.opening, gates.closing)]

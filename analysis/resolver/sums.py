@@ -16,7 +16,6 @@ are summed in threads, each by itself, so the sums do not depend on how many thr
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.general import General, Taper
@@ -24,9 +23,8 @@ from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight import Gates, Sums, sum_straight
 from analysis.resolver.weights import REACH
 from analysis.threads import spread
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-
-FloatArray = NDArray[np.float64]
 
 _STRETCH_SAMPLES = 300_000
 """Summed at a time by a thread, of each channel. Measured from 100,000 to 1,000,000: below, threads
@@ -71,7 +69,7 @@ class PeriodSums:
         """Where periods that follow each other meet, shape ``(periods + 1,)``."""
         return np.append(self.opened_cycle, self.opened_cycle[-1] + 1.0)
 
-    def __getitem__(self, periods: slice | NDArray[np.bool_]) -> "PeriodSums":
+    def __getitem__(self, periods: slice | BoolArray) -> "PeriodSums":
         """Return the sums of some of the periods."""
         per_period = ("opened_s", "closed_s", "opened_cycle", "gram", "moment", "ramp")
         return replace(self, **{name: getattr(self, name)[periods] for name in per_period})
@@ -186,7 +184,7 @@ def _stretches(gates: Gates) -> list[slice]:
     return stretches
 
 
-def _sum_stretch(general: General, gates: Gates, bent: NDArray[np.bool_]) -> Sums:
+def _sum_stretch(general: General, gates: Gates, bent: BoolArray) -> Sums:
     """Read the samples of some periods that follow each other, and sum them."""
     first = max(0, int(gates.opening[0]) + 1 - REACH)
     block = general.recording.samples[:, first : int(gates.closing[-1]) + REACH + 1]
@@ -200,7 +198,7 @@ def _sum_stretch(general: General, gates: Gates, bent: NDArray[np.bool_]) -> Sum
     return gram, moment, ramp + gram[:, 0] * first
 
 
-def _put(into: Sums, where: NDArray[np.bool_] | np.intp, sums: Sums) -> None:
+def _put(into: Sums, where: BoolArray | np.intp, sums: Sums) -> None:
     for target, part in zip(into, sums, strict=True):
         target[where] = part
 

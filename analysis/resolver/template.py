@@ -1,10 +1,8 @@
 """The resolver's basis ``[1, sin theta, cos theta, sin 2 theta, ...]`` over some samples."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from hardware.description.arrays import ComplexArray, FloatArray
 
 
 def template(cycles: FloatArray, orders: FloatArray) -> FloatArray:

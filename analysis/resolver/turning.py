@@ -1,14 +1,11 @@
 """A given frequency that is not the motion's: the phase then turns from period to period."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.estimate import PeriodValues
 from analysis.resolver.reference import PhaseReference, ReferenceSource
+from hardware.description.arrays import ComplexArray
 from hardware.description.flags import Flag, Severity
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 _FEWEST = 4  # periods: fewer tell no turning from noise
 _NOTABLE_CYCLES = 0.05  # from the first period to the last

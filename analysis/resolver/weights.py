@@ -14,9 +14,8 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 REACH = 3  # samples on either side of an edge that its correction touches
 _NODES = np.arange(1 - REACH, REACH + 1)  # of the cell from sample 0 to sample 1

@@ -11,14 +11,12 @@ from typing import Any, Final
 
 import numpy as np
 from click.testing import CliRunner
-from numpy.typing import NDArray
 
 from analysis.readers import read_recording
+from hardware.description.arrays import FloatArray
 from pmm.cli import cli
 from pmm.configuration import read_toml
 from pmm.toml_text import toml_value
-
-FloatArray = NDArray[np.float64]
 
 # Two motions, three frequencies, a run in air: as few as a diagnosis takes, and short ones.
 _RUNS: Final = (

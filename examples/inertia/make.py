@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
+
+from hardware.description.arrays import FloatArray
 
 SEED = 2014
 SWING_PERIOD_S = 7.2923
@@ -23,9 +24,7 @@ HALF_SPACING_M, LINE_M, GYRADIUS_M = 0.900, 3.477, 1.056
 GRAVITY_M_S2 = 9.81
 
 
-def damped(
-    t: NDArray[np.float64], period_s: float, tau_s: float, phase: float
-) -> NDArray[np.float64]:
+def damped(t: FloatArray, period_s: float, tau_s: float, phase: float) -> FloatArray:
     """Damped cosine of unit amplitude."""
     return np.asarray(np.exp(-t / tau_s) * np.cos(2.0 * np.pi * t / period_s + phase))
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.stated import STATED, Stated
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError

@@ -18,8 +18,8 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import block_sizes, columns, draw_cycles
 from analysis.coefficients.linear import linear_fit
-from analysis.coefficients.phasors import FloatArray
 from analysis.coefficients.repeats import repeatability, with_repeats
+from hardware.description.arrays import FloatArray
 
 Progress = Callable[[int, int, str], None]
 """Takes how many are done, of how many, and what of."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from analysis.coefficients.corrections import ZeroReading
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.phasors import FloatArray
 from analysis.plausibility import Seen
 from analysis.resolver.analyse import Settings as ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
+from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator

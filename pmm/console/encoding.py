@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from pmm.console.messages import FloatArray, Frame, Hello, Needles, Notice, Trace
+from hardware.description.arrays import FloatArray
+from pmm.console.messages import Frame, Hello, Needles, Notice, Trace
 from pmm.run.status import HarmonicRow, RunOutcome
 
 _DIGITS = 6

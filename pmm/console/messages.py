@@ -6,9 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
@@ -18,7 +16,6 @@ from pmm.run.status import RunOutcome, Status
 if TYPE_CHECKING:
     from pmm.console.packing import PackedPlan
 
-FloatArray = NDArray[np.float64]
 WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
 
 

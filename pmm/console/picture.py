@@ -6,8 +6,9 @@ from typing import Final
 import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
+from hardware.description.arrays import FloatArray
 from hardware.rig import Rig
-from pmm.console.messages import Bus, ChannelInfo, FloatArray, Needles
+from pmm.console.messages import Bus, ChannelInfo, Needles
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.measurement import Measurement

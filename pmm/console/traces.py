@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 from hardware.rig import Rig
 from hardware.roles import Block, Pulse
@@ -17,7 +17,6 @@ from pmm.recorder.run_recorder import Outcome
 from pmm.run.journal import Journal
 from pmm.run.sampler import sampled_devices
 
-FloatArray = NDArray[np.float64]
 POINTS: Final = 2000  # of each trace
 WINDOW_S: Final = 20.0
 

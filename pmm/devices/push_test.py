@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 
-Records = Mapping[str, NDArray[np.float64]]
+Records = Mapping[str, FloatArray]
 
 NOISE_TIMES: Final = 8.0  # a push is so many standard deviations of the reading at rest
 LEAST_SHARE: Final = 0.005  # and at least this part of the full scale

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hardware.demand import Demand
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCE_X, Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
@@ -70,7 +70,7 @@ class Gauges:
                     for one, row in zip(device.channels, block.values, strict=True):
                         self._kept[one.name].extend(row.tolist())
 
-    def records(self, last_s: float | None = None) -> Mapping[str, NDArray[np.float64]]:
+    def records(self, last_s: float | None = None) -> Mapping[str, FloatArray]:
         """Return the samples of each channel, all of them or the last seconds."""
         found = {}
         for name, values in self._kept.items():
@@ -124,7 +124,7 @@ def direction(channel: str, plane: Plane | None) -> str:
 def _wait_for_push(
     gauges: Gauges,
     name: str,
-    rest: Mapping[str, NDArray[np.float64]],
+    rest: Mapping[str, FloatArray],
     plane: Plane | None,
     within_s: float,
 ) -> Pushed:
@@ -143,7 +143,7 @@ def _wait_for_push(
     return Pushed(name, None, (f"{why} (waited {within_s:g} s)",))
 
 
-def _judged(gauges: Gauges, name: str, rest: Mapping[str, NDArray[np.float64]]) -> Pushed:
+def _judged(gauges: Gauges, name: str, rest: Mapping[str, FloatArray]) -> Pushed:
     try:
         push = judge(gauges.channels, rest, gauges.records())
     except PushError as error:
@@ -152,7 +152,7 @@ def _judged(gauges: Gauges, name: str, rest: Mapping[str, NDArray[np.float64]]) 
 
 
 def _wait_for_rest(
-    gauges: Gauges, name: str, rest: Mapping[str, NDArray[np.float64]], within_s: float
+    gauges: Gauges, name: str, rest: Mapping[str, FloatArray], within_s: float
 ) -> None:
     """Let cycles pass until no gauge shows a push any more, or the time is over."""
     demand = Demand(f"let go of {name}", "load", 0.0, 1.0, name)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
@@ -22,12 +21,11 @@ from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
 from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import answer_of
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from pmm.gap.case import HeldOut
 from pmm.gap.prepare import shares_of
 from sim.effects.effect import Measurement
-
-FloatArray = NDArray[np.float64]
 
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import TRENDS, Component, Part
 from analysis.gap.fit import Problem
 from analysis.gap.where import left_by_step, step_of
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 HARMONIC: Final = "harmonic"
 

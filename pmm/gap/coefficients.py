@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from pmm.gap.examine import Examined
 from pmm.gap.reported import HULL, Convention, Reported, reported
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}
 _BODY: Final = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")

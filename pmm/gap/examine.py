@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
@@ -26,6 +25,7 @@ from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
 from analysis.gap.verdict import NONE, answer_of, ranked
 from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld, shrinkage
+from hardware.description.arrays import FloatArray
 from pmm.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
@@ -33,8 +33,6 @@ from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
 from pmm.gap.steps import remains, walk_rows
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
-
-FloatArray = NDArray[np.float64]
 
 _LIKELIEST: Final = 6  # answers that are asked to foretell
 

@@ -6,17 +6,16 @@ from functools import partial
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.forward import Simulator
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, PmmError
 from sim.effects.catalogue import catalogue, find, user_effects
 from sim.effects.effect import Effect
 from sim.pendulum import effects as pendulum
 from sim.rig import SimulatedRig
 
-FloatArray = NDArray[np.float64]
 Kind = TypeVar("Kind")
 
 

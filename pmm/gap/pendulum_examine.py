@@ -13,7 +13,7 @@ from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import MOST_CAUSES
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.own_effects import chosen_of_pendulums, files_among, tried
 from pmm.gap.pendulum import problem_of

@@ -5,9 +5,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from analysis.gap.description import Description
 from analysis.gap.diagnose import SHIFTED
 from analysis.gap.fit import Fit
@@ -18,6 +15,7 @@ from analysis.gap.twins import coefficient_error, separating_measurements
 from analysis.gap.verdict import answer_of, coefficient_shift, coefficient_twins, effects_in
 from analysis.gap.where import left_by_step
 from analysis.gap.withheld import Predicted, gap_of, shrinkage
+from hardware.description.arrays import FloatArray
 from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, heat_cells
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
@@ -30,8 +28,6 @@ from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
 from pmm.gap.words import Remedies, joined, sentences
-
-FloatArray = NDArray[np.float64]
 
 JSON_SCHEMA: Final = "pmm-gap-1"
 _SHOWN: Final = 8  # hypotheses of the ranking

@@ -6,18 +6,16 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.coefficients.campaign_systems import common_name
 from analysis.coefficients.names import place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.of_hull import as_reported
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.coefficients.settings import Settings, System
 from pmm.coefficients.systems import system_of
 from sim.rig import SimulatedRig
-
-FloatArray = NDArray[np.float64]
 
 # Added mass and damping by rows, about the midpoint between the struts.
 HULL: Final = tuple(f"{term}{row}{column}" for term in "ab" for row in "12" for column in "12")

@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.components import TRENDS, Component, GapRun, Part, Stack
 from analysis.gap.fit import Fit
 from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.steps import StepRow
 from pmm.labels import display
-
-FloatArray = NDArray[np.float64]
 
 _UNITS: Final = {
     **dict.fromkeys(FORCES, "N"),

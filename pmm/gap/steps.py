@@ -6,13 +6,11 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.diagnose import SHIFTED
 from analysis.gap.fit import Problem
 from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)

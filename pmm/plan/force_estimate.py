@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Ship
 from hardware.description.channels import FORCES
 from hardware.description.oscillator import Oscillator, Plane
@@ -22,9 +22,6 @@ from pmm.plan.motion_peaks import omega_of, rod_factor
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import HullEstimate
 from pmm.plan.run_plan import RunPlan
-
-Complex = NDArray[np.complex128]
-FloatArray = NDArray[np.float64]
 
 # Relative standard uncertainties of what the estimate is made of: the upper ends of what each is
 # usually wrong by (docs/effects.md: S8 and S9 with all that moves below the gauges, H1, H2, H5 of
@@ -61,8 +58,8 @@ class ForceEstimate:
         ``(entries, 2)``.
     """
 
-    forces: Complex
-    parts: Complex
+    forces: ComplexArray
+    parts: ComplexArray
 
 
 def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
@@ -137,14 +134,14 @@ def _gauges(rig: RigFile) -> FloatArray:
     return matrix
 
 
-def _at_struts(load: Complex, oscillator: Oscillator) -> Complex:
+def _at_struts(load: ComplexArray, oscillator: Oscillator) -> ComplexArray:
     force, moment = complex(load[0]), complex(load[1])
     return np.array(to_strut_forces(force, moment, oscillator.half_spacing_m, oscillator.plane))
 
 
 def _reactions(
-    run: RunPlan, rig: RigFile, model: Ship, motion: Complex
-) -> Iterator[tuple[FloatArray, Complex, float]]:
+    run: RunPlan, rig: RigFile, model: Ship, motion: ComplexArray
+) -> Iterator[tuple[FloatArray, ComplexArray, float]]:
     """Yield matrices, the phasors that they act on, and their relative standard uncertainties."""
     plane, iw = rig.oscillator.plane, 1j * omega_of(run)
     yield _mass(run, model, plane), iw**2 * motion, MODEL_UNCERTAINTY

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.kinds import RunKind
 from pmm.plan.findings import Verdict
 from pmm.plan.limits import limit_findings
@@ -142,9 +142,7 @@ def _frequency_axis(axes: "Axes", lowest_hz: float, highest_hz: float) -> None:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
-def _limit_lines(
-    axes: "Axes", rig: RigFile, frequency_hz: NDArray[np.float64], largest_mm: float
-) -> None:
+def _limit_lines(axes: "Axes", rig: RigFile, frequency_hz: FloatArray, largest_mm: float) -> None:
     """Draw the largest amplitude over frequency; a rod's second harmonic is left out."""
     omega = 2.0 * math.pi * frequency_hz
     half_stroke = math.inf if rig.limits.stroke_m is None else rig.limits.stroke_m / 2.0

@@ -16,6 +16,8 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.description.arrays import IntArray
+
 KEY: Final = b"checksums"
 KIND: Final = b"crc32"  # what a stream whose batches have checksums says under the key
 _TEXT: Final = "crc32={:08x} before={:08x}"
@@ -40,7 +42,7 @@ class Batch:
     """
 
     content: Any
-    sync: NDArray[np.int64]
+    sync: IntArray
     own: int | None
     before: int | None
     end: int

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.errors import DriveStateError, HardwareError, NotAtRestError, TransitionTimeoutError
 from hardware.line_log import LoggedPort

@@ -10,11 +10,12 @@ import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import LiveResolver
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.rig import Rig
 from hardware.roles import Pulse, Sampled
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.samples import FloatArray, Piece
+from pmm.recorder.samples import Piece
 
 PATIENCE_CYCLES: Final = 3
 

@@ -1,9 +1,8 @@
 """The noise of each channel, from a record in which nothing moves."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 
 def white_noise_rms(samples: FloatArray) -> FloatArray:

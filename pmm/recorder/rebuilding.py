@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from pmm.recorder.decoding import decode, spread

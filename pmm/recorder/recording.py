@@ -11,7 +11,8 @@ from zlib import crc32
 import numpy as np
 
 from analysis.readers.netcdf import write_recording
-from analysis.recording import FloatArray, Recording
+from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.roles import Pulse
 from pmm.campaign_owner import writer_of

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.raw_log import Frame, FramePacker, container, file_header
@@ -151,7 +151,7 @@ class RunRecorder:
         """Whether the run has files of its own: there is something to keep."""
         return self._journal.begun
 
-    def samples(self, first_sync: int, values: NDArray[np.float64]) -> None:
+    def samples(self, first_sync: int, values: FloatArray) -> None:
         """Take samples of consecutive SYNCs; shape ``(channels, n)``, NaN where there is none.
 
         Raises

@@ -15,11 +15,11 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import DataError
 from pmm.recorder import batches
 from pmm.recorder.header import RunHeader
 
-FloatArray = NDArray[np.float64]
 Piece = tuple[int, FloatArray]
 SYNC: Final = "sync"
 _HEADER_KEY: Final = b"run_header"
@@ -108,7 +108,7 @@ class JournalSamples:
     changes: tuple[str, ...]
     is_headed: bool
     batches: tuple[Any, ...]
-    syncs: tuple[NDArray[np.int64], ...]
+    syncs: tuple[IntArray, ...]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -207,7 +207,7 @@ def _open(path: Path) -> tuple[RunHeader, Any, int, int] | None:
         return header, schema, end, crc32(file.read(end))
 
 
-def _gaps(syncs: Sequence[NDArray[np.int64]]) -> tuple[tuple[int, int], ...]:
+def _gaps(syncs: Sequence[IntArray]) -> tuple[tuple[int, int], ...]:
     """Return the first missing SYNC and the count of each gap."""
     found = []
     before = int(syncs[0][0]) - 1

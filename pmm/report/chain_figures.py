@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.campaign import Campaign, Run
@@ -18,13 +18,12 @@ from sim import signals
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-BoolArray = NDArray[np.bool_]
 
 _SHOWN_PERIODS: Final = 2
 _AFT, _FORE = PALETTE[0], PALETTE[1]

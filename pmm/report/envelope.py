@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray, IntArray
 
 _READ_SAMPLES = 200_000  # of all channels at a time
 
@@ -74,24 +72,24 @@ def overview(recording: Recording, bins: int) -> Trace:
     return Trace(time_s, np.concatenate(parts, axis=1), True)
 
 
-def _edges(count: int, bins: int) -> NDArray[np.int64]:
+def _edges(count: int, bins: int) -> IntArray:
     return np.asarray(np.linspace(0, count, bins + 1), dtype=np.int64)
 
 
-def _middles(first_s: float, last_s: float, edges: NDArray[np.int64]) -> FloatArray:
+def _middles(first_s: float, last_s: float, edges: IntArray) -> FloatArray:
     """Times of the two points of each bin: both at its middle."""
     middle = (edges[:-1] + edges[1:] - 1) / 2.0
     return np.repeat(first_s + middle * (last_s - first_s) / (edges[-1] - 1), 2)
 
 
-def _blocks(edges: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+def _blocks(edges: IntArray) -> Iterator[IntArray]:
     """Whole bins, as many as are read at a time; consecutive blocks share an edge."""
     each = max(1, int(_READ_SAMPLES * (len(edges) - 1) / edges[-1]))
     for first in range(0, len(edges) - 1, each):
         yield edges[first : first + each + 1]
 
 
-def _extremes(values: FloatArray, starts: NDArray[np.int64]) -> FloatArray:
+def _extremes(values: FloatArray, starts: IntArray) -> FloatArray:
     """Lowest and highest value from each start to the next, one after the other."""
     pairs = np.stack(
         (

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.description import ForceMap
 from analysis.gap.where import CHAIN
+from hardware.description.arrays import FloatArray
 from pmm.gap.cells import HARMONIC, Cell
 from pmm.gap.report import GapReport
 from pmm.gap.words import joined
@@ -27,8 +27,6 @@ from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FloatArray = NDArray[np.float64]
 
 
 def heat_map(report: GapReport) -> "Figure":

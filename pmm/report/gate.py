@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
+from hardware.description.arrays import FloatArray
 from pmm.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.report.envelope import Trace, overview, zigzag
 from pmm.report.gated import caption, fitted, gate_sums, reading_of
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
 
 _POINTS = 3400  # of one kind of curve, shared by all channels: an SVG stays small
 _FIT_POINTS_PER_PERIOD = 24

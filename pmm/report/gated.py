@@ -1,16 +1,14 @@
 """One gate of an analysis: its reading, its periods, and the curve that was fitted to it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import PeriodSums
 from analysis.resolver.template import template
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-
-FloatArray = NDArray[np.float64]
 
 
 def reading_of(analysis: Analysis, reading_index: int) -> Harmonics:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from pmm.labels import plain
 from pmm.report.style import PALETTE, TRACE, drawing
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
 
 BEFORE, AFTER = PALETTE[1], PALETTE[0]
 LEAST_U: Final = 0.05  # where a gap of nothing is drawn on a logarithmic axis

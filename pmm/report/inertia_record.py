@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
+from hardware.description.arrays import FloatArray
 from pmm.inertia.sources import PeriodRuns
 from pmm.labels import display, plain, shown_name
 from pmm.report.envelope import zigzag

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.inertia.beats import beat_period
-from analysis.inertia.numeric import FloatArray
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
+from hardware.description.arrays import FloatArray
 from pmm.inertia.sources import PeriodRuns
 from pmm.labels import display, plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin

@@ -9,7 +9,7 @@ from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import as_stated, remainder
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from pmm.gap.pendulum_document import ranking
 from pmm.labels import plain
 from pmm.report.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars

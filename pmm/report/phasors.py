@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
+from hardware.description.arrays import FloatArray
 from pmm.labels import Display, display, loads_first, shown_name
 from pmm.report.gated import caption, reading_of, single_periods
 from pmm.report.region import Ellipse, ellipses
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-FloatArray = NDArray[np.float64]
 
 _PANELS_ABREAST = 4
 _MARKERS = "os^Dv"  # the next one where the colours begin again

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.harmonics import Harmonics, IntervalSource
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.labels import display, shown_name
@@ -16,8 +17,7 @@ from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray, recorded
-from sim.solve.linear import ComplexArray
+from sim.signals import recorded
 from sim.solve.periodic import steady_run
 
 if TYPE_CHECKING:

@@ -3,13 +3,13 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights
+from hardware.description.arrays import FloatArray
 from pmm.labels import axis_label, display, loads_first, shown_name
 from pmm.report.envelope import tops
 from pmm.report.gated import caption, gate_sums, in_words, reading_of
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-FloatArray = NDArray[np.float64]
 
 _READ_SAMPLES = 200_000
 _FEW_LINES = 200

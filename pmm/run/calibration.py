@@ -5,14 +5,13 @@ from datetime import date, timedelta
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from pmm.calibration import Calibration
 from pmm.run.results import RunResult
 from pmm.toml_text import toml_table
 
-FloatArray = NDArray[np.float64]
 _LEAST_STEPS: Final = 3
 
 

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from pmm.run.results import RunResult
 
-FloatArray = NDArray[np.float64]
 _SIGMAS: Final = 3.0
 _MEDIAN_RANGE: Final = 0.9538725524  # median range of two normal values, in standard deviations
 # Of the largest of all places where a step may be: docs/run-control.md has the false alarms.

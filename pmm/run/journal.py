@@ -5,9 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from hardware.description.flags import Flag
 from hardware.errors import HardwareError
@@ -16,8 +14,6 @@ from hardware.roles import Pulse
 from pmm.recorder.lateness import CycleStatistics
 from pmm.recorder.run_recorder import Outcome, RunRecorder
 from pmm.run.errors import RecordingError
-
-FloatArray = NDArray[np.float64]
 
 
 class Journal(Protocol):

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import LiveResolver
 from analysis.resolver.weights import REACH
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -28,7 +28,6 @@ from pmm.run.readings import beside, far_text, needles, rows_at_rest, rows_of, w
 from pmm.run.sampler import Sampler, sampled_devices
 from pmm.run.status import HarmonicRow
 
-FloatArray = NDArray[np.float64]
 _COLLECT_S = 0.05  # samples are taken in blocks of so much
 _TRIES = 3  # gates of a run; the third void one ends it
 

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.known_loads import LoadStep
 from pmm.devices.push_test import PushError, faults, judge
 from pmm.run.errors import PushRefusedError
 
-FloatArray = NDArray[np.float64]
 _FORCE_UNITS = ("N", "N m")
 
 

@@ -5,15 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import Provisional
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from pmm.plan.force_estimate import Expected
 from pmm.run.status import HarmonicRow
-
-FloatArray = NDArray[np.float64]
 
 
 def rows_of(reading: Harmonics) -> tuple[HarmonicRow, ...]:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
@@ -18,7 +17,6 @@ from pmm.recorder.header import RunHeader
 from pmm.recorder.marker import read_marker
 from pmm.recorder.texts import read_lines
 
-FloatArray = NDArray[np.float64]
 _FORCE_UNITS = ("N", "N m")
 
 

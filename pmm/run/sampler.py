@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.rig import Rig
 from hardware.roles import Block, Sampled
 
-FloatArray = NDArray[np.float64]
 PATIENCE_CYCLES = 4  # how long a sample of a device is waited for
 
 

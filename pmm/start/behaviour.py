@@ -6,14 +6,12 @@ from functools import partial
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.readers.photocell import edges_of_level
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE
 from pmm.start.shared_line import NO_PART, SAME_TIME, Line, Part, parts_in, shared_line
-
-FloatArray = NDArray[np.float64]
 
 TURNS: Final[Mapping[str, float]] = {"deg": 360.0, "rad": 2.0 * np.pi, "rev": 1.0}
 _STRAIGHT: Final = 0.1  # turns, standard deviation about an even turn: a drive's ripple is less

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import (
     CARRIAGE_SPEED,
     DISPLACEMENT_AFT,
@@ -22,8 +22,6 @@ from hardware.description.channels import (
 from pmm.start import words
 from pmm.start.behaviour import Behaviour, Watched
 from pmm.start.found import CHANNELS
-
-FloatArray = NDArray[np.float64]
 
 # Powers of ten of odds, judged and tried on made-up laboratories
 # (tests/pmm/start/test_roles_against_made_up_laboratories.py counts what they get wrong).

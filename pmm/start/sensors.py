@@ -4,11 +4,9 @@ from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
-
-FloatArray = NDArray[np.float64]
+from hardware.description.arrays import FloatArray
 
 _FEWEST_LEVELS: Final = 4  # fewer tell nothing of a step
 _SAME: Final = 1e-9  # of what the signal covers: values nearer to each other are one

@@ -11,16 +11,14 @@ from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.signal_reference import from_signal
 from analysis.resolver.sums import period_sums
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
-
-FloatArray = NDArray[np.float64]
 
 HARMONICS: Final = 3
 SAME_TIME: Final = 0.02  # relative: two counts of one motion

@@ -8,9 +8,9 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray, Hold, LinearSystem, causal_hold
+from sim.solve.linear import Hold, LinearSystem, causal_hold
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 FILTER_DEGREE: Final = 5  # of the polynomial between samples; error 0.014 (w h)^6

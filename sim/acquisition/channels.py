@@ -12,12 +12,12 @@ from sim import signals
 from sim.acquisition.digitiser import Digitiser as Digitiser
 from sim.acquisition.digitiser import LineState, digitise
 from sim.acquisition.noise import start_stream
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
 if TYPE_CHECKING:
-    from sim.solve.linear import ComplexArray
+    from hardware.description.arrays import ComplexArray, FloatArray
 
 
 class Line(NamedTuple):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 
 _MOST_STEPS = 100
 

@@ -6,11 +6,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.amplifier import Carrier, LowPass, delay_weights
 from sim.acquisition.noise import NoiseState, draw_normal
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
 

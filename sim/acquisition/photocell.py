@@ -6,11 +6,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.acquisition.crossings import quintic, root
 from sim.acquisition.noise import NoiseState, draw_normal, start_stream
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.drive.prescribed import DriveSettings, Shaft
-from sim.signals import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,13 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive.gear import geared
 from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
 from sim.drive.prescribed import SHAFT, DriveSettings, Shaft, shaft_over
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.coupled_march import TORQUE_DEGREE, ShaftSystem
 from sim.solve.linear import Hold, LinearSystem, causal_hold
 from sim.solve.period import Period, Spectra

@@ -12,7 +12,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 from sim.solve.linear import LinearSystem, Rows, as_rows
 from sim.stage import UNKNOWN_KEYS_REFUSED
 

@@ -6,10 +6,11 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim import signals
 from sim.drive.gear import Gear
 from sim.drive.motor import Guides, Servo, ShuntMotor
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.mechanism.linkage import Mechanism
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 
 

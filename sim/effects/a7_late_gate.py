@@ -6,12 +6,12 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import MOST, of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 _TURN: Final = 2.0 * math.pi
 

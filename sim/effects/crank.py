@@ -8,7 +8,7 @@ from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 
 if TYPE_CHECKING:
-    from sim.solve.linear import ComplexArray
+    from hardware.description.arrays import ComplexArray
 
 
 def crank_harmonics(

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.drive.gear import Gear
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
@@ -12,7 +13,6 @@ from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
+from hardware.description.arrays import ComplexArray, FloatArray
 
 POINTS = 2048  # of a turn, for quadrature
 _TURNS = 3  # until the flights repeat

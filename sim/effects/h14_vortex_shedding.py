@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar, Final, Self
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
@@ -12,7 +13,6 @@ from sim.effects.hydrodynamic import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
 from sim.model.laws import Coulomb, ForceLaw, Tone
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
 
 if TYPE_CHECKING:
     from sim.model.acting import Point

@@ -5,12 +5,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.hydrodynamic import added_mass_at, load, with_more
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
 
 
 @dataclass(frozen=True)

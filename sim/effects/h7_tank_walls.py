@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -13,7 +14,6 @@ from sim.effects.hydrodynamic import damping_at, load, radiation_of
 from sim.effects.situation import Situation
 from sim.model.water.tank import Tank, echo_delay_s, with_walls
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 MODES = 4
 

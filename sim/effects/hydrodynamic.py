@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 from sim.effects.situation import at_struts as at_struts_of
@@ -17,8 +18,6 @@ from sim.model.coefficients import HullCoefficients, Matrix
 from sim.model.laws import ForceLaw
 from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)

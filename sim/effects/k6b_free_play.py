@@ -5,13 +5,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
 from sim.model.mounting import Joint, Mounting
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 HIGHEST = 3
 

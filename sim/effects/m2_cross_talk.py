@@ -3,13 +3,13 @@
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
 
 
 @dataclass(frozen=True)

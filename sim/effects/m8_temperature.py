@@ -5,6 +5,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
@@ -13,7 +14,6 @@ from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 SECONDS_AN_HOUR = 3600.0
 

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from sim.acquisition.channels import Digitiser
 from sim.effects.effect import Signature
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.gauges.dynamometer import Gauge
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 
 HIGHEST = 3  # order that a signature names
 MOST = 12  # order up to which the nominal force is known

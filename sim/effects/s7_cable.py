@@ -13,7 +13,7 @@ from sim.model.laws import Coulomb, ForceLaw, RubbingSpring, Spring
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
-    from sim.solve.linear import ComplexArray
+    from hardware.description.arrays import ComplexArray
 
 STANDS_M: Final = 1e-12
 

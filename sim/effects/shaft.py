@@ -13,7 +13,7 @@ from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 
 if TYPE_CHECKING:
-    from sim.solve.linear import ComplexArray
+    from hardware.description.arrays import ComplexArray
 
 HIGHEST = 12  # order that is carried on
 _NOMINAL = 4  # orders of the nominal motion that count

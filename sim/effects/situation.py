@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 
 from hardware.description import channels
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.model.system import HullSystem
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
 from sim.solve.periodic import SteadyState, steady_run
 from sim.solve.sampled import steady_of
 from sim.stage import Stage

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation, at_struts
-from sim.solve.linear import ComplexArray
 
 HIGHEST = 4  # order up to which the nominal force is carried on
 

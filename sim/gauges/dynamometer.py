@@ -5,9 +5,10 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim import signals
 from sim.model.hysteresis import LoopState, loop
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.solve.sampled import steady_by_samples
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block

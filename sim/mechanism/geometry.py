@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 
 # Rows, each with what stands in its columns.
 GEOMETRY: Final = 0  # those of the columns below

@@ -6,10 +6,11 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.mechanism.play import Motion, PlayState, follow_with_play
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 
 
 class PlayState(NamedTuple):

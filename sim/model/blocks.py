@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.model.acting import Acting
 from sim.model.forces import Instants, ModelMotion, law_forces
 from sim.model.law_table import has_number
 from sim.model.numbers import geometry_only
 from sim.model.system import LOAD_DEGREE, HullSystem
-from sim.signals import FloatArray
 from sim.solve.compiled import follow
 from sim.solve.linear import Hold
 from sim.solve.model_march import Marching, course_of, march_model

@@ -6,10 +6,10 @@ runs, because numba is. Without numba the functions are Python.
 
 import math
 
+from hardware.description.arrays import FloatArray
 from sim.mechanism import geometry
 from sim.mechanism.geometry import AT_REST, LINEAR, BodyMotion
 from sim.model.laws import CREEP_M_S
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 
 _FIRST_WITH_REFERENCE = 4

@@ -7,8 +7,8 @@ from typing import ClassVar, Final, NamedTuple, Self
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens

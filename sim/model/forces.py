@@ -6,6 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from sim.mechanism import geometry
 from sim.model.acting import Acting, Point
 from sim.model.laws import Motion
@@ -18,9 +19,8 @@ from sim.model.numbers import (
     without_corners,
 )
 from sim.model.system import HullSystem
-from sim.signals import FloatArray
 from sim.solve.corners import nodes_between
-from sim.solve.linear import ComplexArray, Rows, as_rows
+from sim.solve.linear import Rows, as_rows
 from sim.solve.period import Period
 from sim.stage import UNKNOWN_KEYS_REFUSED
 

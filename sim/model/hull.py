@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.arrangement import Arrangement
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
@@ -23,7 +24,7 @@ from sim.model.steady import HullSteady
 from sim.model.surge import SurgeForces
 from sim.model.system import HullSystem
 from sim.model.water.radiation import Radiation, constant
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.linear import Hold
 from sim.solve.model_march import Marching, marching_of
 from sim.solve.period import Period, Spectra

@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.model.acting import Acting, Point
 from sim.model.forces import arguments_of, direction
 from sim.model.laws import (
@@ -24,7 +25,6 @@ from sim.model.laws import (
 )
 from sim.model.numbers import has_corners
 from sim.model.system import HullSystem
-from sim.signals import FloatArray
 
 # The order is the law's number in :mod:`sim.model.compiled_laws`, a test holds the two together.
 LAWS: Final[tuple[type[ForceLaw], ...]] = (

@@ -17,8 +17,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.model.force_law import CREEP_M_S, TURNS, Argument, Corner, ForceLaw, Motion
-from sim.signals import FloatArray
 
 __all__ = ["CREEP_M_S", "ForceLaw", "Motion"]
 

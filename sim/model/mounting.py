@@ -6,8 +6,8 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 

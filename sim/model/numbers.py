@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hardware.description.arrangement import DriftBy, Gauges, Joint, Pivot
+from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.mechanism import geometry
 from sim.mechanism.geometry import BodyMotion, body_loads, body_motion, gauge_readings
-from sim.signals import FloatArray
 
 if TYPE_CHECKING:
     from sim.model.hull import Hull

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from sim.model.forces import law_harmonics
 from sim.model.system import HullSystem
-from sim.solve.linear import ComplexArray
 from sim.solve.model_march import periodic_laws
 from sim.solve.period import Period
 from sim.solve.relaxation import relax

@@ -18,10 +18,10 @@ from functools import cached_property
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.mounting import Elastic, Joint
 from sim.model.water.radiation import Radiation
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray, Hold, LinearSystem, causal_hold, hermite_hold
+from sim.solve.linear import Hold, LinearSystem, causal_hold, hermite_hold
 
 LOAD_DEGREE = 3  # of the polynomial by which f and g go on between samples
 

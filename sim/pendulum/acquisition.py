@@ -5,10 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Digitiser
 from sim.acquisition.noise import NoiseState, draw_normal, start_stream
 from sim.pendulum.sensors import Sensor
-from sim.signals import FloatArray, Signal, Signals, recorded
+from sim.signals import Signal, Signals, recorded
 from sim.stage import Block
 
 

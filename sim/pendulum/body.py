@@ -6,10 +6,11 @@ from typing import ClassVar, Final, Protocol
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.pendulum.coordinates import RELEASE_HOLD, Coordinate
 from sim.pendulum.propagators import propagators
 from sim.pendulum.resistance import Resistance
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.linear import as_rows
 from sim.stage import Block
 

@@ -5,11 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.body import LINEAR
 from sim.pendulum.coordinates import ROLL, Coordinate
 from sim.pendulum.resistance import Resistance
-from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 

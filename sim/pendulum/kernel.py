@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.pendulum.vectors import cross, times
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2

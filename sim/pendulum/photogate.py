@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.crossings import quintic, root
 from sim.acquisition.noise import NoiseState, draw_normal, start_stream
 from sim.pendulum.coordinates import Coordinate
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.stage import Block
 
 
@@ -140,7 +140,7 @@ class Photogate:
 
     def _seen(
         self, state: PhotogateState, blocked: FloatArray
-    ) -> tuple[NoiseState, NDArray[np.bool_], bool]:
+    ) -> tuple[NoiseState, BoolArray, bool]:
         """Draw for each entry whether the passage is seen; its exit follows it."""
         entries = np.flatnonzero(blocked == 1.0)
         chance, draws = draw_normal(state.chance, entries.size)
@@ -152,7 +152,7 @@ class Photogate:
 
 def crossings(
     moved: FloatArray, level: float, sample_rate_hz: float
-) -> tuple[FloatArray, NDArray[np.bool_]]:
+) -> tuple[FloatArray, BoolArray]:
     """Return where a motion crosses a level, in samples from the first, and whether upwards.
 
     Between samples it is the polynomial of fifth degree that has value, rate and acceleration of

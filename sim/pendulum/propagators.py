@@ -5,9 +5,8 @@ from functools import lru_cache
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sim.signals import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray, IntArray
 from sim.solve.linear import Rows
 
 # A reversal is found to 2^-32 of a step, about a picosecond.
@@ -29,14 +28,14 @@ class Propagators:
         and ``(sets, levels, 2n, n)``.
     """
 
-    index: NDArray[np.int64]
+    index: IntArray
     A: FloatArray
     B: FloatArray
     E: FloatArray
     G: FloatArray
 
     @property
-    def arrays(self) -> tuple[NDArray[np.int64], FloatArray, FloatArray, FloatArray, FloatArray]:
+    def arrays(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
         """The five arrays as the compiled loop takes them."""
         return self.index, self.A, self.B, self.E, self.G
 
@@ -68,7 +67,7 @@ def propagators(
 
 
 def _first_order(
-    mass: Rows, damping: Rows, stiffness: Rows, stuck: NDArray[np.bool_]
+    mass: Rows, damping: Rows, stiffness: Rows, stuck: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return A and B with the stuck coordinates at rest."""
     n = len(mass)

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hardware.description import dataset as schema
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from sim import signals
 from sim.pendulum.bench import PendulumBench
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ class GateEdges:
 
     label: str
     time_s: FloatArray
-    blocked: NDArray[np.bool_]
+    blocked: BoolArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.coordinates import RELEASE_HOLD, Coordinate
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.stage import Block
 
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 

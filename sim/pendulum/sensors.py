@@ -6,12 +6,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.coordinates import ANGLE, PITCH, SWAY, YAW, Coordinate
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.linear import LinearSystem, causal_hold
 from sim.stage import Block
 

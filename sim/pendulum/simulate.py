@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.bench import PendulumBench
@@ -26,7 +27,6 @@ from sim.pendulum.photogate import crossings
 from sim.pendulum.pivot import HangingWeight, Pendulum
 from sim.pendulum.record import PendulumRecord, record
 from sim.pendulum.suspension import Suspension
-from sim.signals import FloatArray
 
 
 def simulate_swing(

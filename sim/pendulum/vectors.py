@@ -6,7 +6,7 @@ changes one of these removes ``__pycache__``.
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 from sim.solve.compiled import available, compile_loop
 
 

@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.compiled_laws import law_force, law_value, motion_at
 from sim.model.force_law import CREEP_M_S
 from sim.model.law_table import LawTable
 from sim.model.numbers import corners_only, geometry_only, without_corners
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 from sim.solve.corners import find_corners, gauss, multiples, pieces_between, value_at
-from sim.solve.linear import ComplexArray
 from sim.solve.mixing import mix
 from sim.solve.period import Period
 from sim.solve.relaxation import MOST_SWEEPS, ROUNDING, STALLED, TOLERANCE

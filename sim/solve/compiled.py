@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 

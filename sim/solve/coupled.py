@@ -11,11 +11,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive.loaded import LoadedDrive, LoadedState
 from sim.drive.prescribed import SHAFT
-from sim.signals import FloatArray, Signal, Signals
+from sim.signals import Signal, Signals
 from sim.solve.coupled_march import TORQUE_DEGREE, coupled_march
 from sim.solve.coupled_steady import CoupledSteady
 from sim.solve.period import Period, Spectra

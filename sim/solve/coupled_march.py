@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive.prescribed import SHAFT, DriveSettings, Shaft
@@ -13,7 +14,7 @@ from sim.mechanism.linkage import Mechanism
 from sim.model.blocks import HullState, marched_state
 from sim.model.hull import Hull
 from sim.model.law_table import has_number
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 from sim.solve.linear import LinearSystem, causal_hold
 from sim.solve.model_march import OUTPUTS, Marching, marching_of
 from sim.stage import Block, Stage

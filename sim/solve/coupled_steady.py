@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from sim import signals
 from sim.model.hull import Hull
 from sim.model.steady import HullSteady
-from sim.solve.linear import ComplexArray
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import relax
 from sim.solve.sampled import steady_of

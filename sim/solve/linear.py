@@ -16,12 +16,9 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sim.signals import FloatArray
+from hardware.description.arrays import ComplexArray, FloatArray
 from sim.solve.compiled import follow
-
-ComplexArray: TypeAlias = NDArray[np.complex128]
 
 # A matrix or vector as a value that can be hashed, kept in a state or read from a file.
 Rows: TypeAlias = tuple[tuple[float, ...], ...]

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.drive.shaft_loop import Linkages, ShaftLoop
 from sim.model.law_table import LawTable
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 from sim.solve.settling import add_struts, settle
 

@@ -1,16 +1,15 @@
 """Anderson's mixing of answers to a fixed point, compiled; the sweeps are the caller's."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sim.signals import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from sim.solve.compiled import compile_loop
 
 _DEPENDENT = 1e-12  # of a direction's square: what is left of it beside the others
 
 
 @compile_loop
-def _pivot(left: FloatArray, gram: FloatArray, free: NDArray[np.bool_]) -> int:
+def _pivot(left: FloatArray, gram: FloatArray, free: BoolArray) -> int:
     """Return the free direction of which most is left, or -1 where they all depend on others."""
     best, most = -1, _DEPENDENT
     for i in range(free.size):

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
-from sim.signals import FloatArray
 from sim.solve.compiled import available
 from sim.solve.linear import Hold
 

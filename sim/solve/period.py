@@ -11,8 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
+from hardware.description.arrays import ComplexArray, FloatArray
 
 # Harmonics by signal name, shape (orders + 1,) each. The shaft angle's are those of what it has
 # beyond w t; the photocell's edge time is one time within the period.

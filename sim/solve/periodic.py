@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.chain import Chain
 from sim.rig import SimulatedRig
-from sim.solve.linear import ComplexArray
 from sim.solve.period import Period, Spectra
 from sim.solve.sampled import steady_of
 

@@ -11,12 +11,11 @@ from itertools import pairwise
 from typing import Final, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 
-ArrayT = TypeVar("ArrayT", NDArray[np.float64], NDArray[np.complex128])
+ArrayT = TypeVar("ArrayT", FloatArray, ComplexArray)
 
 # The last samples of a signal, newest last: the part of a state that a hold needs.
 Tail: TypeAlias = tuple[tuple[float, ...], ...]

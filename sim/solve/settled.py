@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from sim.signals import FloatArray
+from hardware.description.arrays import FloatArray
 from sim.solve.period import Period
 
 _STEP_RAD: Final = 0.3  # of the fastest vibration, at most

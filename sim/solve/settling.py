@@ -13,9 +13,9 @@ import math
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from sim.drive.shaft_loop import strut_motion
 from sim.model.compiled_laws import law_force
-from sim.signals import FloatArray
 from sim.solve.compiled import compile_loop
 
 _TOLERANCE = 1e-13

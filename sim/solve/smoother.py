@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from sim.signals import FloatArray
-from sim.solve.linear import ComplexArray
 
 
 class MeasuredMotion(NamedTuple):

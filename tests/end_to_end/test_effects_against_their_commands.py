@@ -9,9 +9,9 @@ from click.testing import CliRunner, Result
 
 from analysis.readers import read_recording
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from pmm.cli import cli
 from sim.effects.catalogue import catalogue
-from sim.signals import FloatArray
 
 CAMPAIGN = """
 [oscillator]

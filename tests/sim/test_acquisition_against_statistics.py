@@ -6,17 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
+from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.chain import Chain
 from sim.gauges.dynamometer import Dynamometers, Gauge
-from sim.signals import (
-    DYNAMOMETER_FORCE_AFT,
-    DYNAMOMETER_FORCE_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    FloatArray,
-)
+from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 
 COUNT = 200_000
 READINGS = (DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
@@ -15,13 +16,7 @@ from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
 from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometers, Gauge
 from sim.mechanism.linkage import Mechanism, Setting
-from sim.signals import (
-    DYNAMOMETER_FORCE_AFT,
-    DYNAMOMETER_FORCE_FORE,
-    FORCE_AFT,
-    FORCE_FORE,
-    FloatArray,
-)
+from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 from sim.solve.period import Period
 from sim.solve.periodic import steady_state
 from sim.solve.smoother import Smoother, from_harmonics

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hardware.description.arrangement import Gauges
+from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import Servo, ShuntMotor, SpeedLoop, droop
@@ -18,7 +19,7 @@ from sim.model.coefficients import HullCoefficients
 from sim.model.laws import Coulomb, Cubic, Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, vertical_rig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 from sim.solve.compiled import follow_interpreted, follow_loop
 from sim.solve.periodic import steady_run
 from tests.exact.forces import state

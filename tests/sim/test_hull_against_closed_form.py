@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from hardware.description.arrangement import Gauges
+from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
@@ -18,7 +19,7 @@ from hardware.description.struts import to_motion
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.model.hull import HullCoefficients
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 from tests.exact.forces import state
 from tests.exact.rig import ExactRig
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import dawsn, iv
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.model.acting import Acting, Point
 from sim.model.forces import CrossFlow
@@ -24,7 +25,6 @@ from sim.model.laws import (
     Viscous,
 )
 from sim.rig import vertical_rig
-from sim.solve.linear import ComplexArray
 from sim.solve.periodic import steady_run
 
 RIG = vertical_rig().ideal()

@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.struts import to_motion
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.rig import horizontal_rig, vertical_rig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 from sim.stage import Block
 
 E, L = 0.12, 0.6

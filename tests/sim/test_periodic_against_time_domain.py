@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hardware.description.arrays import ComplexArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
@@ -21,7 +22,6 @@ from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import Signals
-from sim.solve.linear import ComplexArray
 from sim.solve.period import Period
 from sim.solve.periodic import steady_run, steady_state
 

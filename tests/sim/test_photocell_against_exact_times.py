@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.photocell import Photocell
 from sim.chain import Chain, join
 from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
-from sim.signals import SHAFT_ACCELERATION, SHAFT_ANGLE, SHAFT_SPEED, FloatArray
+from sim.signals import SHAFT_ACCELERATION, SHAFT_ANGLE, SHAFT_SPEED
 
 TURN = 2.0 * math.pi
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from analysis.gap.pendulum.problem import Tolerance
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects import CATALOGUE, by_name
 from sim.pendulum.effects.base import PendulumEffect, Plausible, plausible

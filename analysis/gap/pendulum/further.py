@@ -12,7 +12,7 @@ from analysis.gap.pendulum.hypothesis import Hypothesis, held
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects.base import small_swing, suspension_of
 

@@ -9,7 +9,7 @@ from analysis.gap.gaussian import Posterior, misfit, posterior
 from analysis.gap.pendulum.causes import Cause
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.effects.base import PendulumEffect
 

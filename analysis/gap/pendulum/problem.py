@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import FURTHER, TURNED, Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import PendulumEffect
 from sim.pendulum.suspension import Suspension
@@ -74,7 +74,7 @@ class Problem:
         return all(one.scaled and isinstance(one.bench.body, Suspension) for one in self.trials)
 
     @cached_property
-    def _seen(self) -> tuple[NDArray[np.bool_], ...]:
+    def _seen(self) -> tuple[BoolArray, ...]:
         counts = np.array([name in self.kinds for name in KINDS])[:, None]
         return tuple(
             counts & np.isfinite(one.observed) & np.isfinite(one.uncertainty) for one in self.trials
@@ -181,7 +181,7 @@ class Problem:
     def _stacked(self, columns: Sequence[FloatArray]) -> FloatArray:
         return np.column_stack(columns) if columns else np.empty((self.uncertainty.size, 0))
 
-    def smooth(self, rows: NDArray[np.bool_]) -> FloatArray:
+    def smooth(self, rows: BoolArray) -> FloatArray:
         """Return columns whose random sum is a smooth curve of unit size over some windows.
 
         Parameters

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -11,11 +11,8 @@ from analysis.gap.gaussian import Nuisances, misfit
 from analysis.gap.pendulum.causes import Cause
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
 from analysis.gap.pendulum.problem import Problem
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 MOST_CAUSES: Final = 3
 _BEAM = 3
@@ -123,7 +120,7 @@ def _tried(problem: Problem, base: Hypothesis, one: Cause) -> Hypothesis | None:
 def unknown_evidence(problem: Problem) -> float:
     """Return the log evidence of a smooth deviation in any one kind of observable, or in all."""
     smooth = smooth_columns(problem)
-    kinds: list[NDArray[np.bool_]] = [np.isin(problem.kind, [k]) for k in np.unique(problem.kind)]
+    kinds: list[BoolArray] = [np.isin(problem.kind, [k]) for k in np.unique(problem.kind)]
     kinds.append(np.ones(problem.kind.size, dtype=bool))
     scores = []
     for rows in kinds:

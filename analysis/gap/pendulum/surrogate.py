@@ -15,7 +15,7 @@ from analysis.gap.pendulum.hypothesis import Hypothesis, effects_at, fit, null
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects import body as effects

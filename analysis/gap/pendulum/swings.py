@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from analysis.inertia.gates import Passages
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 
 KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadrature")
 _DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3

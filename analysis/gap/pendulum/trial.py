@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.gap.pendulum.swings import Windows, swings_of_samples
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import PendulumEffect

@@ -14,7 +14,7 @@ from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import Searched
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError, PmmError
 from sim.pendulum.effects import body
 

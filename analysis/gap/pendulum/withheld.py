@@ -10,13 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.hypothesis import Hypothesis, fit, held, null
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.trial import Trial
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 
 _DRAWS = 400
 _SEED = 20261
@@ -87,13 +86,13 @@ def foretell(problem: Problem, sets: Sequence[Hypothesis]) -> tuple[Regime, ...]
     return tuple(found)
 
 
-def _hidden(trial: Trial, *, large: bool) -> NDArray[np.bool_]:
+def _hidden(trial: Trial, *, large: bool) -> BoolArray:
     size = trial.observed[_DECAY]
     middle = 0.5 * (np.nanmin(size) + np.nanmax(size))
     return np.asarray(size > middle if large else size <= middle)
 
 
-def _fewest(hidden: NDArray[np.bool_], trial: Trial) -> int:
+def _fewest(hidden: BoolArray, trial: Trial) -> int:
     good = np.isfinite(trial.observed[_DECAY])
     return int(min((good & hidden).sum(), (good & ~hidden).sum()))
 
@@ -101,7 +100,7 @@ def _fewest(hidden: NDArray[np.bool_], trial: Trial) -> int:
 def _regime(
     name: str,
     problem: Problem,
-    hidden: Sequence[NDArray[np.bool_]],
+    hidden: Sequence[BoolArray],
     sets: Sequence[Hypothesis],
 ) -> Regime:
     seen = _without(problem, hidden)
@@ -121,7 +120,7 @@ def _regime(
     return Regime(name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after))
 
 
-def _without(problem: Problem, hidden: Sequence[NDArray[np.bool_]]) -> Problem:
+def _without(problem: Problem, hidden: Sequence[BoolArray]) -> Problem:
     """Return the problem without some windows of each trial."""
     trials = [
         replace(trial, observed=np.where(rows, np.nan, trial.observed))
@@ -160,9 +159,7 @@ def _left_out(problem: Problem, sets: Sequence[Hypothesis]) -> Regime:
     )
 
 
-def _left(
-    problem: Problem, one: Hypothesis, rows: NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray]:
+def _left(problem: Problem, one: Hypothesis, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
     full = held(problem, one.causes, one.units)
     whole = problem.nuisances.columns
@@ -178,7 +175,7 @@ def _left(
 
 def _foretold(
     problem: Problem,
-    rows: NDArray[np.bool_],
+    rows: BoolArray,
     causes: tuple[str, ...],
     plain: tuple[FloatArray, FloatArray],
     left: tuple[FloatArray, FloatArray],

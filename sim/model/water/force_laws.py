@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 
 # Columns of the coefficients, v the translation's velocity and r the rotation's.
 CUBIC_TERMS: Final = ("v^3", "v^2 r", "v r^2", "r^3")

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
-from sim.model.water.ladder import ComplexArray, Ladder
-from sim.signals import FloatArray
+from sim.model.water.ladder import Ladder
 
 _EVALUATIONS: Final = 300
 # Rate, relative to the lowest frequency, at which every state has to fade at least.

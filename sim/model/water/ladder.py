@@ -17,14 +17,10 @@ function of degree N with a zero at the origin.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sim.signals import FloatArray
-
-ComplexArray: TypeAlias = NDArray[np.complexfloating[Any, Any]]
+from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -73,7 +69,7 @@ class Ladder:
         return np.array(skew), np.array(lower), np.array(inner), np.array(symmetric)
 
     @cached_property
-    def cuts(self) -> NDArray[np.int64]:
+    def cuts(self) -> IntArray:
         """Where the numbers of L, of X and of the added mass begin."""
         return np.cumsum([len(basis) for basis in self.bases[:-1]])
 
@@ -134,7 +130,5 @@ class Ladder:
 def _solve(omega: FloatArray, state: FloatArray, gain: FloatArray) -> ComplexArray:
     """Return (i w - state)^-1 gain, shape ``(k, n, m)``."""
     shifted = 1j * omega[:, None, None] * np.eye(len(state)) - state
-    solved: ComplexArray = np.linalg.solve(
-        shifted, np.broadcast_to(gain, (omega.size, *gain.shape))
-    )
-    return solved
+    loads = np.broadcast_to(gain, (omega.size, *gain.shape))
+    return np.asarray(np.linalg.solve(shifted, loads), dtype=np.complex128)

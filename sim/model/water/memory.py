@@ -12,12 +12,12 @@ from typing import Final
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from sim.model.water.identification import Target, best_joint_ladder, best_ladder
 from sim.model.water.ladder import Ladder
 from sim.model.water.radiation import Radiation, constant
 from sim.model.water.tables import RadiationTable
-from sim.signals import FloatArray
 
 # Relative to the diagonal: below it a table's coupling is rounding, and the two degrees of freedom
 # are fitted one by one.

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.signals import FloatArray
 
 
 class _RowsOrArray:
@@ -111,12 +111,12 @@ class Radiation:
         """Number n of states of the memory."""
         return int(self.state_matrix.shape[0])
 
-    def memory(self, omega_rad_s: ArrayLike) -> NDArray[np.complex128]:
+    def memory(self, omega_rad_s: ArrayLike) -> ComplexArray:
         """Return K(i w) = B(w) + i w (A(w) - A_inf), shape ``(*omega.shape, 2, 2)``."""
         omega = np.asarray(omega_rad_s, dtype=np.float64)
         resolvent = 1j * omega[..., None, None] * np.eye(self.states) - self.state_matrix
         inputs = np.broadcast_to(self.input_matrix, (*omega.shape, self.states, 2))
-        memory: NDArray[np.complex128] = self.output_matrix @ np.linalg.solve(resolvent, inputs)
+        memory: ComplexArray = self.output_matrix @ np.linalg.solve(resolvent, inputs)
         return memory
 
     def added_mass(self, omega_rad_s: ArrayLike) -> FloatArray:

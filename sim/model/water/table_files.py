@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 from sim.model.water.tables import RadiationTable
-from sim.signals import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
-from sim.signals import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,15 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analysis.gap.noise import ENCODER_RAD, encoder_floor_rad
+from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Digitiser
 
 STEP = 1e-4
 SAMPLES = 20_000
-
-FloatArray = NDArray[np.float64]
 
 
 @pytest.mark.parametrize("dither", [0.0, 0.1, 0.3])

@@ -2,16 +2,14 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from analysis.gap.components import GapRun, Observation
 from analysis.gap.sensors import heard_rms
 from analysis.gap.spectrum import Lines, loudness, quiet_lines
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-
-FloatArray = NDArray[np.float64]
 
 RATE_HZ, PERIODS = 150.0, 7
 FREQUENCIES_HZ = (0.45, 0.45, 0.63, 0.63, 0.63, 0.89, 0.89, 0.89, 1.25, 1.25)

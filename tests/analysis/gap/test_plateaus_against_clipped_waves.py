@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.gap.plateau import plateau
-from analysis.recording import FloatArray
+from hardware.description.arrays import FloatArray
 
 COUNT, PERIODS = 1600, 10
 ANGLE = 2.0 * math.pi * PERIODS * np.arange(COUNT) / COUNT

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from analysis.gap.candidate import candidates
 from analysis.gap.components import GapRun
@@ -15,13 +14,13 @@ from analysis.gap.free import free_numbers
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, proposals, set_points
 from analysis.gap.worth import ENOUGH, Worth, by_itself, gained
+from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.catalogue import find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
 
-FloatArray = NDArray[np.float64]
 Pairs = dict[tuple[int, int], float]
 
 NAMES = ("zero-drift", "coulomb-friction")

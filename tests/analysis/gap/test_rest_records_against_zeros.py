@@ -16,6 +16,7 @@ from analysis.gap.forecast import planned
 from analysis.gap.forward import Simulator
 from analysis.gap.regimes import regimes
 from analysis.readers.dataset import from_dataset
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.applied import switch_on
@@ -32,7 +33,6 @@ from sim.model.acting import Acting, Point
 from sim.model.force_law import ForceLaw, Motion
 from sim.rig import SimulatedRig
 from sim.run import simulate
-from sim.signals import FloatArray
 from sim.standing import standing
 from tests.analysis.gap.small import problem_of, record
 

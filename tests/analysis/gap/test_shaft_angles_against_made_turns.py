@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from analysis.gap.shaft_angle import turns_per_period, unwrapped
-from analysis.recording import FloatArray, Recording
+from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCE_AFT, SHAFT_ANGLE
 
 RATE_HZ, FREQUENCY_HZ = 50.0, 0.8

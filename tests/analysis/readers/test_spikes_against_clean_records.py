@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from analysis.readers import read_recording
-from analysis.recording import FloatArray
 from analysis.spikes import find_spikes
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.effects.applied import switch_on

@@ -11,9 +11,10 @@ from scipy.io import savemat
 
 from analysis.readers import read_recording, write_recording
 from analysis.readers.conditioning import without_spikes
-from analysis.recording import FloatArray, Recording
+from analysis.recording import Recording
 from analysis.resolver.analyse import Settings, analyse
 from analysis.resolver.choice import ReferenceChoice
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.flags import Severity
 

@@ -3,12 +3,10 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
-
-FloatArray = NDArray[np.float64]
 
 
 def recording(values: FloatArray, sample_rate_hz: float = 100.0, **fields: object) -> Recording:

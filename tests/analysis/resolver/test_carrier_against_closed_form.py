@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.carrier import LowPass, demodulate, design_low_pass
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Severity
 
-FloatArray = NDArray[np.float64]
 RATE_HZ = 10_000.0
 CARRIER_HZ = 1000.0
 START_S = 12.3456

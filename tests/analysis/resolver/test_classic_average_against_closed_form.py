@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic import ClassicMode, mode_for
 from analysis.resolver.classic_average import AverageState, Needles, RunningAverage
 from analysis.resolver.classic_recording import running_average
 from analysis.resolver.reference import PhaseReference, from_frequency
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.resolver.classic_errors import (
@@ -21,7 +21,6 @@ from tests.analysis.resolver.classic_errors import (
     average_variance_ratio,
 )
 
-FloatArray = NDArray[np.float64]
 RATE_HZ = 400.0
 PHASES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
 

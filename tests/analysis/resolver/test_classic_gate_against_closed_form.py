@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic_gate_state import GateReading
 from analysis.resolver.classic_recording import gated_readings, rounded_gate
 from analysis.resolver.reference import PhaseReference, from_frequency
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from tests.analysis.resolver.classic_errors import (
@@ -17,7 +17,6 @@ from tests.analysis.resolver.classic_errors import (
     rounded_gate_error,
 )
 
-FloatArray = NDArray[np.float64]
 PHASES = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
 
 

@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from analysis.recording import Recording
 from analysis.resolver.classic_gate import GatedIntegrator
 from analysis.resolver.classic_gate_state import GateState, IntegratorState
 from analysis.resolver.classic_recording import gated_readings
 from analysis.resolver.reference import from_frequency
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Severity
 
-FloatArray = NDArray[np.float64]
 RATE_HZ = 50.0
 REFERENCE = from_frequency(1.0, 0.0, 100.0)
 

@@ -20,11 +20,10 @@ from analysis.gap.forward import Simulator
 from analysis.gap.free import columns, free_numbers
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
+from hardware.description.arrays import FloatArray
 from pmm.gap.answer import harmonics
 from pmm.gap.case import read_case
 from pmm.gap.load import load_campaign
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.components import Part
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from tests.sealed.peers.scene import Remainder, Scene
 from tests.sealed.peers.sheet import COEFFICIENTS
 
-FloatArray = NDArray[np.float64]
 Law = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 FORCES = ("force_aft", "force_fore")
 _POINTS = 128

@@ -5,9 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.rig import SimulatedRig
-from sim.signals import FloatArray, Signals
+from sim.signals import Signals
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.drive.motor import Cogging, Guides
@@ -20,8 +20,6 @@ from sim.effects.effect import Effect
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
-
-FloatArray = NDArray[np.float64]
 
 PHASES = (0.0, np.pi / 3.0, np.pi)
 IN_WATER = [SetPoint(f, a, p) for f in (0.4, 0.9) for a in (0.01, 0.03) for p in PHASES]

@@ -5,6 +5,7 @@ from dataclasses import MISSING, fields, replace
 import numpy as np
 import pytest
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.applied import switch_on
@@ -26,7 +27,6 @@ from sim.model.forces import CrossFlow
 from sim.model.law_table import LAWS
 from sim.model.laws import Coulomb, ForceLaw, Motion
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.signals import FloatArray
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 from tests.sim.effects.in_time import by_cycles, in_time

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from hardware.description.arrays import FloatArray
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import (
     KVLCC2_ROLL,
@@ -22,7 +23,6 @@ from sim.pendulum.effects import make_effect
 from sim.pendulum.floating import Floating
 from sim.pendulum.photogate import crossings
 from sim.pendulum.pivot import Pendulum
-from sim.signals import FloatArray
 
 ROLL = Floating(inertia=2.0, added_inertia=0.5, restoring=2.5 * (2.0 * math.pi) ** 2)  # T = 1 s
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
+from hardware.description.arrays import FloatArray
 from sim.pendulum.benches import MODEL_HULL_2014, bifilar_bench, compound_bench, decay_bench
 from sim.pendulum.effects import make_effect
 from sim.pendulum.floating import Floating
@@ -16,7 +17,6 @@ from sim.pendulum.photogate import crossings
 from sim.pendulum.pivot import HangingWeight, Pendulum, RigidPart
 from sim.pendulum.resistance import Resistance
 from sim.pendulum.suspension import Suspension
-from sim.signals import FloatArray
 
 G = 9.80665
 ROD = RigidPart(mass_kg=2.0, lever_m=0.3, inertia_kg_m2=0.06)

@@ -13,7 +13,7 @@ from analysis.gap.pendulum.swings import cut_into_windows, scatter, swings_of_sa
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.pendulum.verdict import judge
 from analysis.gap.pendulum.withheld import foretell
-from analysis.inertia.numeric import FloatArray
+from hardware.description.arrays import FloatArray
 from sim.pendulum.benches import decay_bench
 from sim.pendulum.effects import body
 from sim.pendulum.floating import Floating

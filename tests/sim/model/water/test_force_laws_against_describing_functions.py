@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.model.water.force_laws import (
     cubic_describing_function,
@@ -12,7 +13,6 @@ from sim.model.water.force_laws import (
     quadratic_describing_function,
     quadratic_loads,
 )
-from sim.signals import FloatArray
 
 PHASE = 2.0 * math.pi * (np.arange(200_000) + 0.5) / 200_000
 

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import simpson
 
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.model.water.ladder import Ladder
 from sim.model.water.radiation import Radiation, constant
-from sim.signals import FloatArray
 
 
 def random_passive(seed: int, blocks: int = 3, size: int = 2) -> Radiation:
