@@ -17,7 +17,7 @@ from numpy.random import Generator
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.phasors import Phasors, Source, from_interleaved, interleaved
+from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.stated import Stated
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.terms import term_of
@@ -27,6 +27,7 @@ from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
+from tests.analysis.coefficients.sources import of_draws
 
 HALF_M = 0.5
 BODY = Body(mass_kg=70.0, inertia_kg_m2=27.5, cg_x_m=-0.02, cg_z_m=0.02)
@@ -224,8 +225,7 @@ def scattered(struts: StrutCycle, generator: Generator, scatter: Scatter = SCATT
     own = generator.standard_normal((scatter.periods, 2 * count))
     draws = spread * (math.sqrt(tied) * common + math.sqrt(1.0 - tied) * own)
     values = from_interleaved(interleaved(phasors.values) + draws.mean(axis=0))
-    covariance = np.cov(draws, rowvar=False) / scatter.periods
-    source = Source(f"scatter of {struts.name}", covariance, scatter.periods - 1.0)
+    source = of_draws(f"scatter of {struts.name}", draws)
     return replace(struts, phasors=replace(phasors, values=values, sources=(source,)))
 
 

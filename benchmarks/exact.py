@@ -12,12 +12,13 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles
-from analysis.coefficients.phasors import Source, from_interleaved, interleaved
+from analysis.coefficients.phasors import from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import HULLS, borne, struts_of
+from tests.analysis.coefficients.sources import of_draws
 from tests.analysis.kinematics.exact import body_of
 from tests.exact.hull import polynomial
 from tests.exact.rig import ExactRig
@@ -92,8 +93,7 @@ def _scattered(struts: StrutCycle, generator: Generator, *, noisy: bool = True) 
     exact = interleaved(struts.phasors.values)
     spread = _spread(struts, len(exact))
     draws = spread * generator.standard_normal((_PERIODS, len(exact)))
-    deviates = ((draws - draws.mean(axis=0)) / math.sqrt(_PERIODS * (_PERIODS - 1.0))).T
-    source = Source(f"scatter of {struts.name}", deviates @ deviates.T, _PERIODS - 1.0, deviates)
+    source = of_draws(f"scatter of {struts.name}", draws)
     values = exact + draws.mean(axis=0) if noisy else exact
     phasors = replace(struts.phasors, values=from_interleaved(values), sources=(source,))
     return replace(struts, phasors=phasors)

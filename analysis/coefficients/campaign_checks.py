@@ -19,7 +19,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
 from analysis.coefficients.zero_frequency import extrapolate
 from analysis.motion import mass_matrix, weight_matrix
-from analysis.uncertainty import Contribution, UncertainValues, stacked
+from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.oscillator import Plane
 
 TWO_TESTS = "two tests"
@@ -197,12 +197,4 @@ def _stiffness(cycle: Cycle, row: int, column: int) -> UncertainValues:
     value = np.array([ratio.real - taken[row, column]])
     slope = np.array([-ratio / own, -beside / own, 1.0 / own])
     real = np.array([part for z in slope for part in (z.real, -z.imag)])
-    parts = []
-    for source in chosen.sources:
-        size = float(real @ source.covariance @ real)
-        parts.append(
-            Contribution(
-                source.label, source.degrees_of_freedom, np.arange(1), np.array([[size**0.5]])
-            )
-        )
-    return UncertainValues(value, tuple(parts))
+    return UncertainValues(value, chosen.real.mapped(real[None]).contributions)

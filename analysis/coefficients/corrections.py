@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.phasors import Phasors, Source
+from analysis.coefficients.phasors import Phasors
 from analysis.recording import Recording
+from analysis.uncertainty import Contribution
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError, DataError
@@ -151,15 +152,13 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
         )
     length = values.shape[1] // ZERO_BLOCKS
     blocks = values[:, : length * ZERO_BLOCKS].reshape(len(names), ZERO_BLOCKS, length).mean(axis=2)
-    covariance = np.zeros((len(names), 2, len(names), 2))
-    covariance[:, 0, :, 0] = np.cov(blocks) / ZERO_BLOCKS
-    size = 2 * len(names)
-    source = Source(
-        f"zero run {recording.name}", covariance.reshape(size, size), float(ZERO_BLOCKS - 1)
-    )
+    left = blocks - blocks.mean(axis=1, keepdims=True)
+    parts = left / np.sqrt(ZERO_BLOCKS * (ZERO_BLOCKS - 1.0))
+    rows = 2 * np.arange(len(names))  # a mean has no quadrature
+    source = Contribution(f"zero run {recording.name}", ZERO_BLOCKS - 1.0, rows, parts)
     units = tuple(recording.channels[recording.index(name)].unit for name in names)
     means: ComplexArray = values.mean(axis=1).astype(np.complex128)
-    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)).shared)
+    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)))
 
 
 def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:

@@ -218,7 +218,7 @@ class Cycle:
             ):
                 place = self.phasors.index(at_order(name, n))
                 scale[place, dry.phasors.index(at_order(name, n))] = turn
-        taken = dry.phasors.shared.mapped(scale, self.phasors.names, self.phasors.units)
+        taken = dry.phasors.mapped(scale, self.phasors.names, self.phasors.units)
         text = f"the loads of dry run {dry.name} were taken off"
         flag = Flag("dry_run_taken_off", Severity.NOTE, text)
         return replace(self, phasors=self.phasors.minus(taken), flags=(*self.flags, flag))

@@ -197,7 +197,7 @@ def _variance(problem: CycleProblem, cycle: Cycle, slope: FloatArray) -> FloatAr
     """Of one load's residuals by a cycle's scatter: the mean of both parts of each order."""
     found = np.zeros(len(slope))
     for source in cycle.hull.phasors.sources:
-        found += ((slope @ problem.filled(cycle, source.root)) ** 2).sum(axis=1)
+        found += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
     numbers = problem.real.reshape(-1, 2)
     return np.asarray((found.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
 
@@ -230,7 +230,7 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     by_stated = np.zeros((len(everywhere), len(STATED)))
     for slope, cycle in zip(slopes, problem.cycles, strict=True):
         for source in cycle.hull.phasors.sources:
-            parts = slope @ problem.filled(cycle, source.root)
+            parts = slope @ problem.scatter(cycle, source)
             found.append(Contribution(source.label, source.degrees_of_freedom, everywhere, parts))
         by_stated += slope @ problem.sensitivity(cycle)
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):

@@ -23,6 +23,7 @@ from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
 from analysis.coefficients.terms import Term
 from analysis.kinematics.averaged import CHANNELS
 from analysis.kinematics.cycle import basis, mean
+from analysis.uncertainty import Contribution
 from hardware.description.arrays import FloatArray
 
 DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB
@@ -84,6 +85,10 @@ class CycleProblem:
         found = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
         found[:, : len(cycle.channels)] = shaped[:count]
         return np.concatenate((found.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:]))))
+
+    def scatter(self, cycle: Cycle, source: Contribution) -> FloatArray:
+        """Return how a cycle's numbers follow the deviates of a source, ``(numbers, k)``."""
+        return self.filled(cycle, source.dense(2 * len(cycle.phasors.names)))
 
     def sensitivity(self, cycle: Cycle) -> FloatArray:
         """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""

@@ -6,7 +6,7 @@ from numpy.random import Generator
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
-from analysis.coefficients.phasors import Source
+from analysis.uncertainty import Contribution
 from hardware.description.arrays import FloatArray
 
 TRIALS_AT_ONCE = 5_000
@@ -49,7 +49,7 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     ways = []
     for cycle in problem.cycles:
         own = [
-            (scatter.of(source), problem.filled(cycle, source.root).T)
+            (scatter.of(source), problem.scatter(cycle, source).T)
             for source in cycle.hull.phasors.sources
         ]
         ways.append([*own, (deviations, problem.sensitivity(cycle).T)])
@@ -71,14 +71,14 @@ class Scatter:
         self._count, self._generator = count, generator
         self._deviates: dict[str, FloatArray] = {}
 
-    def of(self, source: Source) -> FloatArray:
+    def of(self, source: Contribution) -> FloatArray:
         """Return the deviates, shape ``(count, k)``: Student's t where that is known."""
         if source.label not in self._deviates:
             self._deviates[source.label] = self._drawn(source)
         return self._deviates[source.label]
 
-    def _drawn(self, source: Source) -> FloatArray:
-        normal = self._generator.standard_normal((self._count, source.root.shape[1]))
+    def _drawn(self, source: Contribution) -> FloatArray:
+        normal = self._generator.standard_normal((self._count, source.parts.shape[1]))
         nu = source.degrees_of_freedom
         if np.isfinite(nu) and nu > 0.0:
             normal *= np.sqrt(nu / self._generator.chisquare(nu, self._count))[:, None]

@@ -1,63 +1,17 @@
-"""Phasors with their covariance, and linear maps of them.
+"""Phasors with all that is uncertain in them, and linear maps of them.
 
-A phasor ``S + iC`` counts as two real numbers. A covariance has the order S1, C1, S2, C2, ... and
-is kept by source, because each source has its own degrees of freedom.
+A phasor ``S + iC`` counts as two real numbers, in the order S1, C1, S2, C2, ...
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from analysis.uncertainty import Contribution, UncertainValues, stacked
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-
-
-@dataclass(frozen=True, eq=False)
-class Source:
-    """One independent source of scatter.
-
-    Attributes
-    ----------
-    covariance
-        Shape ``(2 n, 2 n)``; NaN where no interval can be given.
-    degrees_of_freedom
-        For Student's t.
-    deviates
-        How the phasors follow the source's own deviates, shape ``(2 n, deviates)``: where one
-        source acts on several runs (a zero run, a dry run), so that they know what they share.
-    """
-
-    label: str
-    covariance: FloatArray
-    degrees_of_freedom: float
-    deviates: FloatArray | None = None
-
-    @cached_property
-    def root(self) -> FloatArray:
-        """A square root of the covariance, ``root @ root.T``; NaN where there is none."""
-        if self.deviates is not None:
-            return self.deviates
-        if not np.isfinite(self.covariance).all():
-            return np.full_like(self.covariance, np.nan)
-        values, vectors = np.linalg.eigh(self.covariance)
-        return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
-
-    @property
-    def shared(self) -> "Source":
-        """The same with deviates of its own, for several runs to take."""
-        return replace(self, deviates=self.root)
-
-    def carried(self, slope: FloatArray) -> "Source":
-        """Return what the source does to values that follow the phasors with ``slope``."""
-        deviates = None if self.deviates is None else slope @ self.deviates
-        return replace(self, covariance=slope @ self.covariance @ slope.T, deviates=deviates)
-
-    def taken(self, parts: Sequence[int]) -> "Source":
-        """Return the source of some of the real numbers."""
-        deviates = None if self.deviates is None else self.deviates[parts]
-        return replace(self, covariance=self.covariance[np.ix_(parts, parts)], deviates=deviates)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +23,18 @@ class Phasors:
     values
         ``S + iC`` each, shape ``(n,)``.
     sources
-        What their scatter comes from; none where they are known exactly.
+        What the scatter of their real numbers comes from; none where they are known exactly.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     values: ComplexArray
-    sources: tuple[Source, ...] = ()
+    sources: tuple[Contribution, ...] = ()
+
+    @cached_property
+    def real(self) -> UncertainValues:
+        """The real numbers S1, C1, S2, C2, ..., shape ``(2 n,)``."""
+        return UncertainValues(interleaved(self.values), self.sources)
 
     def __getitem__(self, name: str) -> complex:
         """Return one of the phasors."""
@@ -95,15 +54,13 @@ class Phasors:
 
     @property
     def covariance(self) -> FloatArray:
-        """Of all sources together, shape ``(2 n, 2 n)``."""
-        size = 2 * len(self.values)
-        return np.asarray(sum((s.covariance for s in self.sources), np.zeros((size, size))))
+        """Of the real numbers, shape ``(2 n, 2 n)``."""
+        return self.real.covariance()
 
     @property
     def standard_uncertainty(self) -> ComplexArray:
         """One standard deviation of each, in phase as real and quadrature as imaginary part."""
-        spread = np.sqrt(np.diagonal(self.covariance))
-        return np.asarray(spread[0::2] + 1j * spread[1::2])
+        return from_interleaved(self.real.standard_uncertainty)
 
     def mapped(
         self,
@@ -131,9 +88,9 @@ class Phasors:
     def select(self, names: Sequence[str]) -> "Phasors":
         """Return some of the phasors, in this order."""
         rows = [self.index(name) for name in names]
-        sources = tuple(source.taken(parts_of(rows)) for source in self.sources)
         units = tuple(self.units[row] for row in rows)
-        return Phasors(tuple(names), units, self.values[rows], sources)
+        found = self.real.taken(parts_of(rows))
+        return Phasors(tuple(names), units, self.values[rows], found.contributions)
 
     def referred_to(self, name: str) -> "Phasors":
         """Turn all phases so that this phasor's own is zero (fundamentals only).
@@ -159,7 +116,7 @@ class Phasors:
         return self.carried(values, slope, self.names, self.units)
 
     def minus(self, other: "Phasors") -> "Phasors":
-        """Return the difference of independent phasors of the same names.
+        """Return the difference of phasors of the same names; what they share, cancels.
 
         Raises
         ------
@@ -170,14 +127,10 @@ class Phasors:
             raise ConfigurationError(
                 f"{', '.join(other.names)} cannot be taken off {', '.join(self.names)}"
             )
-        opposite = -np.eye(2 * len(other.values))
-        taken = tuple(source.carried(opposite) for source in other.sources)
-        return Phasors(self.names, self.units, self.values - other.values, self.sources + taken)
-
-    @property
-    def shared(self) -> "Phasors":
-        """The same for several runs to take: what they have of its scatter is one and the same."""
-        return replace(self, sources=tuple(source.shared for source in self.sources))
+        own = np.eye(2 * len(self.values))
+        apart = stacked([self.real, other.real]).mapped(np.hstack([own, -own]))
+        values = self.values - other.values
+        return Phasors(self.names, self.units, values, apart.contributions)
 
     def carried(
         self,
@@ -187,25 +140,16 @@ class Phasors:
         units: tuple[str, ...],
     ) -> "Phasors":
         """Return values that follow these phasors' real numbers with a slope."""
-        sources = tuple(source.carried(slope) for source in self.sources)
-        return Phasors(names, units, values, sources)
+        return Phasors(names, units, values, self.real.mapped(slope).contributions)
 
 
 def joined(first: Phasors, second: Phasors) -> Phasors:
-    """Put independent phasors side by side."""
-    one, two = 2 * len(first.values), 2 * len(second.values)
-    before = np.eye(one + two)[:, :one]
-    after = np.eye(one + two)[:, one:]
-    sources = [
-        source.carried(place)
-        for place, part in ((before, first), (after, second))
-        for source in part.sources
-    ]
+    """Put phasors side by side."""
     return Phasors(
         first.names + second.names,
         first.units + second.units,
         np.concatenate((first.values, second.values)),
-        tuple(sources),
+        stacked([first.real, second.real]).contributions,
     )
 
 

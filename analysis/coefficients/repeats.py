@@ -13,7 +13,8 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.cycle import LOADS, Cycle, at_order
-from analysis.coefficients.phasors import Phasors, Source
+from analysis.coefficients.phasors import Phasors, parts_of
+from analysis.uncertainty import Contribution
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3
@@ -81,13 +82,11 @@ def with_repeats(cycle: Cycle, found: Repeatability) -> Cycle:
     """Return the cycle with what repeating adds as a source of its own."""
     if not (found.relative > 0.0).any():
         return cycle
-    size = 2 * len(cycle.phasors.names)
-    covariance = np.zeros((size, size))
-    spread = found.relative * _size(cycle)
-    for name, part in zip(LOADS, spread, strict=True):
-        place = 2 * cycle.phasors.index(at_order(name, 1))
-        covariance[place, place] = covariance[place + 1, place + 1] = part**2
-    source = Source(f"repeats: {cycle.name}", covariance, found.degrees_of_freedom)
+    places = [cycle.phasors.index(at_order(name, 1)) for name in LOADS]
+    spread = np.repeat(found.relative * _size(cycle), 2)
+    rows = np.array(parts_of(places))
+    label = f"repeats: {cycle.name}"
+    source = Contribution(label, found.degrees_of_freedom, rows, np.diag(spread))
     return replace(cycle, phasors=replace(cycle.phasors, sources=(*cycle.phasors.sources, source)))
 
 

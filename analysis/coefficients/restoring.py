@@ -8,7 +8,6 @@ import numpy as np
 from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
 from analysis.coefficients.phasors import Phasors
 from analysis.motion import mass_matrix, weight_matrix
-from analysis.uncertainty import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import DataError
@@ -180,10 +179,7 @@ def _stiffness(first: Phasors, motion: str) -> tuple[FloatArray, FloatArray]:
         slope = np.zeros(2 * len(first.names))
         slope[2 * first.index(load)] = 1.0 / amplitude
         slope[at] -= values[k] / amplitude
-        for source in first.sources:
-            factor = float(student_factor(np.array([source.degrees_of_freedom]), _LEVEL)[0])
-            variance = max(float(slope @ source.covariance @ slope), 0.0)
-            widths[k] = math.hypot(widths[k], factor * math.sqrt(variance))
+        widths[k] = float(first.real.mapped(slope[None]).half_width(_LEVEL)[0])
     return values, widths
 
 

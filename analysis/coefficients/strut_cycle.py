@@ -17,11 +17,12 @@ from analysis.coefficients.corrections import (
     response_factors,
 )
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.measured import MOTION_ASKED, joint_of, reading_phasors
-from analysis.coefficients.phasors import Phasors, Source, joined
+from analysis.coefficients.measured import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
+from analysis.coefficients.phasors import Phasors, joined
 from analysis.kinematics.geometry import Geometry
 from analysis.motion import strut_displacements
 from analysis.resolver.analyse import Analysis
+from analysis.resolver.harmonics import IntervalSource
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
 from hardware.description.errors import DataError
@@ -102,7 +103,7 @@ class StrutCycle:
         geometry = self.geometry(drift_rad)
         surge = at_order(FORCE_X.name, 0) in self.phasors.names
         inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
-        ordered = self.phasors.select(labels(inputs, self.orders)).shared
+        ordered = self.phasors.select(labels(inputs, self.orders))
         asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
         found = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
         return Cycle(
@@ -142,62 +143,19 @@ def measured_cycle(
         raise DataError(
             f"{reading.run}: no set-point; give frequency, eccentricity, strut phase and speed"
         )
-    joint, flags = joint_of(analysis, reading_index)
     has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
     channels = (*(DISPLACEMENTS if has_sensors else ()), *FORCES)
     channels += (FORCE_X.name,) if FORCE_X.name in reading.channel_names else ()
     count = reading.order
-    single = [reading_phasors(reading, channels, n, joint) for n in range(count + 1)]
-    if joint is None:
-        phasors = _side_by_side(single, channels)
-    else:
-        rows = [reading.channel_names.index(name) for name in channels]
-        phasors = _together(single, channels, reading.run, joint[0][rows][:, :, rows], joint[1])
-    flags = (*reading.flags, *flags)
+    phasors = reading_phasors(reading, channels, count)
+    tapered = reading.interval_source is IntervalSource.BINS
+    flags = (*reading.flags, CHANNELS_INDEPENDENT) if tapered else reading.flags
     if not has_sensors:
         phasors = joined(_asked_motion(oscillator, set_point, count), phasors)
         flags = (*flags, MOTION_ASKED)
     return StrutCycle(
         reading.run, oscillator, set_point, reading.frequency_hz, phasors, count, flags=flags
     )
-
-
-def _labels(single: list[Phasors], channels: tuple[str, ...]) -> tuple[list[str], list[str]]:
-    names = [at_order(name, n) for n in range(len(single)) for name in channels]
-    return names, [unit for one in single for unit in one.units]
-
-
-def _side_by_side(single: list[Phasors], channels: tuple[str, ...]) -> Phasors:
-    """Orders that scatter independently of each other: a reading without its periods."""
-    names, units = _labels(single, channels)
-    size = 2 * len(channels)
-    whole = np.zeros((len(single) * size, len(single) * size))
-    for n, one in enumerate(single):
-        whole[n * size : (n + 1) * size, n * size : (n + 1) * size] = one.covariance
-    source = single[-1].sources[0]
-    values = np.concatenate([one.values for one in single])
-    return Phasors(tuple(names), tuple(units), values, (replace(source, covariance=whole),))
-
-
-def _together(
-    single: list[Phasors],
-    channels: tuple[str, ...],
-    run: str,
-    covariance: FloatArray,
-    freedom: FloatArray,
-) -> Phasors:
-    """All orders with their joint covariance, (channel, A0 S1 C1 S2 ...) twice."""
-    names, units = _labels(single, channels)
-    count, size = len(channels), covariance.shape[1]
-    place = np.zeros((len(single), 2, size))
-    place[0, 0, 0] = 1.0
-    for n in range(1, len(single)):
-        place[n, 0, 2 * n - 1] = place[n, 1, 2 * n] = 1.0
-    spread = np.einsum("nai,cidj,mbj->ncamdb", place, covariance, place)
-    spread = spread.reshape(2 * count * len(single), -1)
-    source = Source(f"scatter of {run}", spread, float(freedom[1]))
-    values = np.concatenate([one.values for one in single])
-    return Phasors(tuple(names), tuple(units), values, (source,))
 
 
 def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> Phasors:

@@ -126,7 +126,6 @@ def resolve(
     drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
     coefficients, ramp = _solve_gate(gate, drift.slope)
     scatter = scatter_of(gate, stretch, drift)
-    covariance = np.einsum("pci,pcj->cij", scatter.deviations, scatter.deviations)
     return Harmonics(
         run=recording.name,
         channel_names=gate.channel_names,
@@ -135,7 +134,7 @@ def resolve(
         closed_s=float(closed_s),
         periods=count,
         coefficients=coefficients,
-        covariance=covariance + _drift_covariance(drift, ramp),
+        deviations=_deviations(scatter, drift, ramp),
         degrees_of_freedom=scatter.degrees_of_freedom,
         widening=scatter.widening,
         drift_per_s=drift.slope,
@@ -227,6 +226,33 @@ def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> Scatter:
     return Scatter(wider / np.sqrt(known), freedom, np.sqrt(ratio))
 
 
-def _drift_covariance(drift: Drift, ramp: FloatArray) -> FloatArray:
-    """What the drift's own uncertainty adds, shape ``(channels, K, K)``."""
-    return np.asarray(drift.variance[:, None, None] * np.outer(ramp, ramp))
+def _deviations(scatter: Scatter, drift: Drift, ramp: FloatArray) -> FloatArray:
+    """Return what moves all channels' coefficients: the periods' scatter, and the drift's slopes.
+
+    The slopes are correlated between channels as their means are.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(channels, K, k)``, with no more deviates than there are coefficients.
+    """
+    periods, channels, size = scatter.deviations.shape
+    flat = scatter.deviations.reshape(periods, -1)
+    if drift.source is not DriftSource.NONE:
+        slopes = np.sqrt(drift.variance)[:, None] * directions(scatter.deviations[:, :, 0])
+        by_slope = np.einsum("cd,i->dci", slopes, ramp).reshape(-1, channels * size)
+        flat = np.concatenate((flat, by_slope))
+    if len(flat) > flat.shape[1]:
+        flat = np.asarray(np.linalg.qr(flat, mode="r"))
+    return np.asarray(flat.reshape(-1, channels, size).transpose(1, 2, 0))
+
+
+def directions(means: FloatArray) -> FloatArray:
+    """Return channels' shares in deviates that correlate as some means do, ``(channels, k)``.
+
+    A channel whose means show no scatter has a deviate of its own.
+    """
+    spread = np.linalg.norm(means, axis=0)
+    seen = spread > 0.0
+    shares = np.divide(means, spread, out=np.zeros_like(means), where=seen)
+    return np.concatenate((shares, np.diag(~seen))).T

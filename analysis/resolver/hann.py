@@ -61,7 +61,7 @@ def resolve_hann(
     size = 2 * harmonics + 1
     coefficients = np.linalg.solve(gram[:size, :size], moment[:, :size].T).T
     left = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
-    covariance, freedom = _from_bins(left[:, size:], harmonics, len(bins), len(low))
+    deviations, freedom = _from_bins(left[:, size:], harmonics, len(bins), len(low))
     return Harmonics(
         run=recording.name,
         channel_names=recording.channel_names,
@@ -70,7 +70,7 @@ def resolve_hann(
         closed_s=float(plain.closed_s[-1]),
         periods=periods,
         coefficients=coefficients,
-        covariance=covariance,
+        deviations=deviations,
         degrees_of_freedom=freedom,
         widening=np.ones_like(coefficients),
         drift_per_s=drift.slope,
@@ -94,7 +94,7 @@ def noise_bins(periods: int) -> FloatArray:
 def _from_bins(
     lines: FloatArray, harmonics: int, bins: int, low: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Covariance and degrees of freedom from the sine and cosine parts of the noise lines."""
+    """Deviations and degrees of freedom from the sine and cosine parts of the noise lines."""
     power = (lines**2).reshape(len(lines), -1, 2).mean(axis=2)
     beside = power[:, : harmonics * bins].reshape(len(lines), harmonics, bins).mean(axis=2)
     variance = np.empty((len(lines), 2 * harmonics + 1))
@@ -103,7 +103,5 @@ def _from_bins(
     variance[:, 1::2] = variance[:, 2::2] = beside
     freedom = np.full(2 * harmonics + 1, 2.0 * bins)
     freedom[0] = 2.0 * low
-    covariance = np.zeros((*variance.shape, variance.shape[1]))
-    diagonal = np.arange(variance.shape[1])
-    covariance[:, diagonal, diagonal] = variance
-    return covariance, freedom
+    own = np.diag(np.sqrt(variance).ravel())
+    return own.reshape(*variance.shape, -1), freedom

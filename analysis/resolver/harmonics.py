@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -40,8 +41,10 @@ class Harmonics:
     coefficients
         ``[A0, S1, C1, S2, C2, ...]``, shape ``(channels, K)`` with ``K = 2 N + 1``; the mean is
         that at the gate's middle where a drift was taken out.
-    covariance
-        Of the coefficients, shape ``(channels, K, K)``; NaN where no interval can be given.
+    deviations
+        Change of each coefficient per standard deviation of each of k deviates that are independent
+        of each other and common to all channels, shape ``(channels, K, k)``; NaN where no interval
+        can be given.
     degrees_of_freedom
         Shape ``(K,)``, for Student's t.
     widening
@@ -58,7 +61,7 @@ class Harmonics:
     closed_s: float
     periods: int
     coefficients: FloatArray
-    covariance: FloatArray
+    deviations: FloatArray
     degrees_of_freedom: FloatArray
     widening: FloatArray
     drift_per_s: FloatArray
@@ -102,10 +105,15 @@ class Harmonics:
         """``phi_n`` in (-pi, pi], shape ``(channels, N)``."""
         return np.asarray(np.arctan2(self.quadrature, self.in_phase))
 
+    @cached_property
+    def covariance(self) -> FloatArray:
+        """Of each channel's coefficients, shape ``(channels, K, K)``."""
+        return np.asarray(self.deviations @ self.deviations.transpose(0, 2, 1))
+
     @property
     def standard_uncertainty(self) -> FloatArray:
         """One standard deviation of each coefficient, shape ``(channels, K)``."""
-        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+        return np.asarray(np.linalg.norm(self.deviations, axis=2))
 
     def coverage_factor(self, level: float = 0.95) -> FloatArray:
         """Return Student's t of a two-sided interval for each coefficient, shape ``(K,)``."""

@@ -54,29 +54,32 @@ def _tried(task: Task, work: Callable[[Task, Recording], Done]) -> Done | Failed
     """Read a recording and do the work; if that fails, what is damaged of the file is named."""
     damaged: list[str] = []
     try:
-        recording = _recording(task)
+        recording = _opened(task)
         damaged += [flag.message for flag in recording.flags if flag.damaged]
+        _check(recording, task)
         return work(task, recording)
     except PmmError as error:
         message = "; ".join([str(error), *damaged])
         return Failed(task.name, str(task.source.path), message, error.exit_status)
 
 
-def _recording(task: Task) -> Recording:
-    """Read a recording, in newtons by its own calibration unless the settings give another."""
+def _opened(task: Task) -> Recording:
+    """Open a recording, in newtons by its own calibration unless the settings give another."""
     chain = task.chain
     given = chain.calibration if chain.matrix is None else RAW
-    recording = open_recording(replace(task.source, calibration=given))
+    return open_recording(replace(task.source, calibration=given))
+
+
+def _check(recording: Recording, task: Task) -> None:
+    """Refuse a recording that lacks a channel, or whose numbers are not in its unit."""
     _check_channels(recording, task)
-    if chain.matrix is None:
+    if task.chain.matrix is None:
         _check_units(recording, task.oscillator.joint)
-        return recording
-    if applied(recording) is not None:
+    elif applied(recording) is not None:
         raise DataError(
             f"{task.name}: a calibration was applied to it already; take calibration_matrix out of "
             "the settings, or the recording that pmm run made"
         )
-    return recording
 
 
 def _check_channels(recording: Recording, task: Task) -> None:

@@ -159,7 +159,7 @@ def test_compiled_loops_are_kept_apart_for_every_change_of_their_sources(
     """A loop keeps what it calls, of which numba does not see that it has changed."""
     package = tmp_path / "sim"
     package.mkdir()
-    monkeypatch.setattr(compiled, "__file__", str(package / "compiled.py"))
+    monkeypatch.setattr(compiled, "__file__", str(package / "solve" / "compiled.py"))
     folders = []
     for called, other in (("1.0", "a"), ("2.0", "a"), ("2.0", "b")):
         (package / "law.py").write_text(f"@compile_loop\ndef law(): return {called}\n")

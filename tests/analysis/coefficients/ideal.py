@@ -11,13 +11,14 @@ import numpy as np
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.phasors import Phasors, Source, from_interleaved, interleaved
+from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.motion import LinearHull, ideal_run
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
+from tests.analysis.coefficients.sources import of_draws
 
 SMALL = 1e-4
 ECCENTRICITY_M = 0.02 * SMALL
@@ -53,9 +54,9 @@ def scattered(
     draws = generator.standard_normal((periods, len(root))) @ root.T
     values = interleaved(run.phasors.values)
     values[_FIRST] += draws.mean(axis=0)
-    estimated = np.zeros((len(values), len(values)))
-    estimated[_FIRST, _FIRST] = np.cov(draws, rowvar=False) / periods
-    source = Source(f"scatter of {run.name}", estimated, periods - 1.0)
+    every = np.zeros((periods, len(values)))
+    every[:, _FIRST] = draws
+    source = of_draws(f"scatter of {run.name}", every)
     phasors = replace(run.phasors, values=from_interleaved(values), sources=(source,))
     return replace(run, phasors=phasors)
 

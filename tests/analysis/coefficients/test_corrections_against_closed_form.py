@@ -21,7 +21,7 @@ from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.in_place import in_place
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import Phasors, Source
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated import Stated
 from analysis.recording import Recording
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCES
@@ -202,7 +202,6 @@ def test_a_phasor_at_rest_has_no_phase() -> None:
         still.referred_to("a")
     with pytest.raises(ConfigurationError, match="cannot be taken off"):
         still.minus(still.select(["b"]))
-    assert Source("x", np.eye(4), 3.0).degrees_of_freedom == 3.0
 
 
 def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
@@ -212,13 +211,13 @@ def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
     offsets = zero_reading(rest, 0.0).offsets
     few = Phasors(FORCES, ("N", "N"), np.array([5.0, 6.0]))
     more = Phasors(("a", *FORCES), ("m", "N", "N"), np.array([1.0, 5.0, 6.0]))
-    first = few.minus(offsets).sources[-1].root
+    first = few.minus(offsets).sources[-1].dense(4)
     place = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     taken = offsets.mapped(place, more.names, more.units)
-    other = more.minus(taken).select(FORCES).sources[-1].root
+    other = more.minus(taken).select(FORCES).sources[-1].dense(4)
     np.testing.assert_allclose(first, other, atol=1e-15)
     np.testing.assert_allclose(first @ other.T, offsets.covariance, atol=1e-15)
-    np.testing.assert_allclose(first, -offsets.sources[0].root, atol=1e-15)
+    np.testing.assert_allclose(first, -offsets.sources[0].dense(4), atol=1e-15)
 
 
 @pytest.mark.parametrize("angle", [0.7, -2.0])

@@ -20,6 +20,7 @@ from tests.analysis.coefficients.ideal import (
     pair,
     scattered,
 )
+from tests.analysis.coefficients.sources import of_covariance
 
 TRUTH = {
     "Z_wdot": -75.0, "Z_qdot": -3.0, "M_wdot": -3.0, "M_qdot": -22.0,
@@ -74,16 +75,9 @@ def test_joint_covariance_matters() -> None:
     generator = np.random.default_rng(3)
     run = scattered(ideal_struts(pair()[0]), covariance(0.9), 5000, generator)
     joint = run.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
-    alone = replace(
-        run,
-        phasors=replace(
-            run.phasors,
-            sources=tuple(
-                replace(s, covariance=np.diag(np.diagonal(s.covariance)))
-                for s in run.phasors.sources
-            ),
-        ),
-    )
+    variance = np.diag(np.diagonal(run.phasors.covariance))
+    source = of_covariance("each by itself", variance, np.inf)
+    alone = replace(run, phasors=replace(run.phasors, sources=(source,)))
     independent = alone.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
     # force: 1 + rho, moment: 1 - rho
     assert joint[0].real / independent[0].real == pytest.approx(1.9**0.5, rel=0.03)

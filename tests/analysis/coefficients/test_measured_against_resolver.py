@@ -1,11 +1,12 @@
-"""The covariance of all channels together holds the resolver's own, channel by channel."""
+"""What channels share of their scatter, against the periods that they were read from."""
 
 import numpy as np
 import pytest
 
-from analysis.coefficients.measured import joint_covariance, reading_phasors
+from analysis.coefficients.measured import reading_phasors
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
+from analysis.resolver import estimate
 from analysis.resolver.analyse import Analysis, Settings, analyse
 from hardware.description.channels import FORCES
 from hardware.description.errors import DataError
@@ -23,24 +24,32 @@ def resolved(**options: object) -> Analysis:
     return analyse(from_dataset(record), settings=Settings(channels=CHANNELS, **options))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("options", [{}, {"take_out_drift": False}, {"gate_periods": 3},
-                                     {"gate_periods": 1}])  # fmt: skip
-def test_blocks_are_the_resolvers_covariance(options: dict[str, object]) -> None:
-    analysis = resolved(**options)
-    size = analysis.readings[0].periods
-    steady = analysis.steady_sums
-    for k, reading in enumerate(analysis.readings):
-        gate = steady[k * size : (k + 1) * size]
-        drifting = bool(options.get("take_out_drift", True))
-        joint, freedom = joint_covariance(gate, steady, take_out_drift=drifting)
-        scale = np.abs(reading.covariance).max(axis=(1, 2))
-        for row in range(len(reading.channel_names)):
-            np.testing.assert_allclose(
-                joint[row, :, row], reading.covariance[row], rtol=1e-6, atol=1e-9 * scale[row]
-            )
-        np.testing.assert_allclose(freedom, reading.degrees_of_freedom)
-        flat = joint[:, 1:, :, 1:].reshape(4 * 6, 4 * 6)
-        np.testing.assert_allclose(flat, flat.T, atol=1e-12 * np.abs(flat).max())
+def test_what_channels_share_is_what_their_periods_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the covariance of the periods' own coefficients, each period solved alone."""
+    monkeypatch.setattr(estimate, "widened", lambda left, *_: left)
+    analysis = resolved(take_out_drift=False)
+    alone = estimate.solve_periods(analysis.steady_sums).coefficients
+    count, channels, size = alone.shape
+    expected = np.cov(alone.reshape(count, -1), rowvar=False) / count
+    parts = analysis.readings[0].deviations.reshape(channels * size, -1)
+    spread = np.sqrt(np.diagonal(expected))
+    np.testing.assert_allclose((parts @ parts.T) / np.outer(spread, spread),
+                               expected / np.outer(spread, spread), atol=1e-9)  # fmt: skip
+
+
+@pytest.mark.parametrize("periods", [2, 9, 60])
+def test_a_drift_is_shared_as_the_means_are(periods: int) -> None:
+    """Two channels that wander as one have slopes that are off as one; a third has its own."""
+    generator = np.random.default_rng(7)
+    common, own = generator.standard_normal((2, periods, 1))
+    means = np.concatenate((common, 2.0 * common, own), axis=1)
+    shares = estimate.directions(means)
+    correlation = shares @ shares.T
+    np.testing.assert_allclose(np.diagonal(correlation), 1.0)
+    assert correlation[0, 1] == pytest.approx(1.0)
+    np.testing.assert_allclose(
+        estimate.directions(np.zeros((periods, 3))), np.eye(3, periods + 3, periods)
+    )
 
 
 def test_phasors_are_the_readings() -> None:
@@ -65,6 +74,6 @@ def test_a_tapered_reading_says_that_channels_count_as_independent() -> None:
 def test_what_is_missing_is_said() -> None:
     reading = resolved().readings[0]
     with pytest.raises(DataError, match="no harmonic 1 of force_x"):
-        reading_phasors(reading, ["force_x"])
+        reading_phasors(reading, ["force_x"], 1)
     with pytest.raises(DataError, match="no harmonic 4"):
         reading_phasors(reading, FORCES, 4)

@@ -11,12 +11,13 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.linear import LinearFit, lacking_places, linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.phasors import Phasors, Source
 from analysis.coefficients.stated import Stated
+from analysis.uncertainty import Contribution
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
 from tests.analysis.coefficients.ideal import BODY, ECCENTRICITY_M, SMALL, ideal_struts, net, pair
+from tests.analysis.coefficients.sources import of_covariance
 
 HEAVE = SetPoint(0.8, ECCENTRICITY_M, 0.0, 1.2)
 
@@ -112,8 +113,8 @@ def test_a_dry_run_that_is_not_one() -> None:
 def test_a_run_without_scatter_gives_values_and_no_interval() -> None:
     single = run()
     size = 2 * len(single.phasors.values)
-    source = Source("scatter", np.full((size, size), np.nan), 0.0)
-    phasors: Phasors = replace(single.phasors, sources=(source,))
+    source = Contribution("scatter", 0.0, np.arange(size), np.full((size, 1), np.nan))
+    phasors = replace(single.phasors, sources=(source,))
     result = solve([replace(single, phasors=phasors)])
     assert result.fit["a33"] == pytest.approx(75.0)
     assert np.isnan(result.fit.uncertain.half_width()).all()
@@ -126,7 +127,7 @@ def test_runs_that_disagree_are_flagged() -> None:
     for k, point in enumerate((*pair(), HEAVE)):
         one = run(point, f"{k}")
         size = [SMALL * spread.get(name.removesuffix(" 1"), 0.0) for name in one.phasors.names]
-        source = Source(f"scatter of {k}", np.diag(np.repeat(size, 2)) ** 2, 9.0)
+        source = of_covariance(f"scatter of {k}", np.diag(np.repeat(size, 2)) ** 2, 9.0)
         runs.append(replace(one, phasors=replace(one.phasors, sources=(source,))))
     good = solve(runs)
     assert good.misfit < 0.1

@@ -12,9 +12,10 @@ from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.form_choice import BOTH, CUBIC, LINEAR_FORM, QUADRATIC
-from analysis.coefficients.phasors import Phasors, Source
+from analysis.coefficients.phasors import Phasors
 from analysis.kinematics.averaged import CHANNELS, UNITS
 from hardware.description.oscillator import Plane
+from tests.analysis.coefficients.sources import of_covariance
 
 SPEED_M_S = 1.2
 Y_V, N_V = -120.0, -40.0
@@ -55,7 +56,7 @@ def towed(
             labels(CHANNELS[:-1], 0),
             UNITS[:-1],
             struts.astype(np.complex128),
-            (Source(f"run {k}", np.diag(spread**2), 50.0),),
+            (of_covariance(f"run {k}", np.diag(spread**2), 50.0),),
         )
         drifting = {"drift_rad": float(angle), "mean_known": True}
         cycles.append(

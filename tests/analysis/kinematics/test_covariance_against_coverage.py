@@ -62,7 +62,7 @@ def test_intervals_in_body_axes_cover_95_percent(arrangement: Arrangement) -> No
     for seed in range(DRAWS):
         found = resolved(rig, seed)
         factor = student_factor(np.array([found.sources[0].degrees_of_freedom]), 0.95)
-        width = factor * np.sqrt(np.diagonal(found.covariance))
+        width = factor * found.real.standard_uncertainty
         inside.append(np.abs(interleaved(found.values) - true) < width)
     uncertain = [k for k, name in enumerate(PARTS) if name not in KNOWN]
     assert np.mean(np.array(inside)[:, uncertain]) == pytest.approx(0.95, abs=0.02)

@@ -1,0 +1,19 @@
+"""Sources of scatter as tests state them: by covariance, or by the draws of some periods."""
+
+import numpy as np
+
+from analysis.uncertainty import Contribution
+
+
+def of_covariance(label: str, covariance: np.ndarray, degrees_of_freedom: float) -> Contribution:
+    """Return a source whose deviates make some covariance of all numbers."""
+    values, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(np.clip(values, 0.0, None))
+    return Contribution(label, degrees_of_freedom, np.arange(len(root)), root)
+
+
+def of_draws(label: str, draws: np.ndarray) -> Contribution:
+    """Return what the mean of draws, shape ``(count, numbers)``, scatters by their own account."""
+    count = len(draws)
+    parts = (draws - draws.mean(axis=0)).T / np.sqrt(count * (count - 1.0))
+    return Contribution(label, count - 1.0, np.arange(len(parts)), parts)
