@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 RAW = "none"  # readings stay as the gauges gave them
 COMPLETE = "complete"
-_OWN_FORMAT = ".nc"  # says its own channels: a column map is for the files of other systems
 # Relative: a NetCDF file keeps a set-point as it was typed, and units for people cost a rounding.
 _SAME = 1e-6
 _WITHIN = 3.0  # standard uncertainties of a reading
@@ -130,8 +129,10 @@ def open_recording(
 
 
 def _columns(source: RecordingSource) -> "ColumnMap | None":
-    if source.columns is None or source.path.suffix == _OWN_FORMAT:
-        return None
+    from analysis.readers.registry import find_reader
+
+    if source.columns is None or find_reader(source.path).own_channels:
+        return None  # a column map is for the files of other systems
     # A shaft that stands gives no pulses: neither a column nor a file of them is asked for.
     return replace(source.columns, photocell=None) if source.at_rest else source.columns
 

@@ -1,16 +1,17 @@
 """The process that reads: ``python -m analysis.foreign.child``, a request a line.
 
-A request is JSON: the path, the kind of file, memory in bytes and time in seconds. The answer is a
-line of JSON, the columns with their units and lengths or why there are none, and behind it the
-columns' numbers as they lie in memory. It ends when its parent closes the line, or dies.
+A request is JSON: the path, the function that reads it, memory in bytes and time in seconds. The
+answer is a line of JSON, the columns with their units and lengths or why there are none, and behind
+it the columns' numbers as they lie in memory. It ends when its parent closes the line, or dies.
 """
 
 import faulthandler
 import json
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any, BinaryIO, Final
 
 import numpy as np
@@ -22,30 +23,22 @@ from hardware.description.errors import DataError
 _GRACE_S: Final = 5.0  # after the parent's own deadline: it may be dead
 
 
-def _readers() -> Mapping[str, Callable[[Path], ForeignColumns]]:
-    from analysis.foreign.mat import read_mat
-    from analysis.foreign.tdms import read_tdms
-
-    return {"mat": read_mat, "tdms": read_tdms}
-
-
 def main() -> None:
     """Answer requests until there are no more."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
-    readers = _readers()
     for line in sys.stdin.buffer:
         request = json.loads(line)
         _limit_memory(int(request["memory_bytes"]))
         # A thread of C, not of Python: it ends the process whatever that is at.
         faulthandler.dump_traceback_later(request["seconds"] + _GRACE_S, exit=True)
-        _answer(readers[request["kind"]], Path(request["path"]), answers)
+        _answer(request["reader"], Path(request["path"]), answers)
         faulthandler.cancel_dump_traceback_later()
 
 
-def _answer(read: Callable[[Path], ForeignColumns], path: Path, answers: BinaryIO) -> None:
+def _answer(reader: str, path: Path, answers: BinaryIO) -> None:
     try:
-        found = read(path)
+        found: ForeignColumns = resolve_name(reader)(path)
     except DataError as error:
         _say({"refused": str(error)}, answers)
     except MemoryError:

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from analysis.foreign.found import ForeignColumns
+from analysis.readers.foreign import foreign_reader
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
@@ -33,6 +34,9 @@ def read_mat(path: Path) -> ForeignColumns:
     content = _version_73(path) if _is_hdf5(path) else _version_5(path)
     arrays = dict(_flat("", content, 0))
     return ForeignColumns(dict(_columns(arrays)), {}, _rate(arrays))
+
+
+READER: Final = foreign_reader("mat", read_mat)
 
 
 def _is_hdf5(path: Path) -> bool:

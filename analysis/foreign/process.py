@@ -22,7 +22,7 @@ _COMMAND: Final = (sys.executable, "-P", "-m", "analysis.foreign.child")
 _ROOT: Final = Path(__file__).parents[2]
 
 
-def read_foreign(path: Path, kind: str) -> ForeignColumns:
+def read_foreign(path: Path, kind: str, reader: str) -> ForeignColumns:
     """Return the columns of a binary file, read in a process that may die over it.
 
     A child is kept for the next file, so that its start is paid once.
@@ -30,7 +30,9 @@ def read_foreign(path: Path, kind: str) -> ForeignColumns:
     Parameters
     ----------
     kind
-        ``"mat"`` or ``"tdms"``.
+        As in messages: ``"mat"`` or ``"tdms"``, for example.
+    reader
+        The function that reads, ``module:name``; the child imports it.
 
     Raises
     ------
@@ -40,7 +42,7 @@ def read_foreign(path: Path, kind: str) -> ForeignColumns:
     allowed = limits()
     child = _idle.take() or _Child()
     try:
-        found = child.read(path, kind, allowed)
+        found = child.read(path, kind, reader, allowed)
     except BaseException:
         child.end()
         raise
@@ -109,7 +111,9 @@ class _Child:
         with self._process:  # closes the pipes, and waits
             pass
 
-    def read(self, path: Path, kind: str, allowed: Limits) -> ForeignColumns | DataError:
+    def read(
+        self, path: Path, kind: str, reader: str, allowed: Limits
+    ) -> ForeignColumns | DataError:
         """Return what it found, or why the file is refused.
 
         Raises
@@ -120,7 +124,7 @@ class _Child:
         late = Timer(allowed.seconds, self._end_late)
         late.start()
         try:
-            answer = self._ask({"path": str(path.absolute()), "kind": kind, **asdict(allowed)})
+            answer = self._ask({"path": str(path.absolute()), "reader": reader, **asdict(allowed)})
             if "columns" in answer:
                 return self._columns(answer, allowed, str(path))
         except (EOFError, BrokenPipeError, ValueError):

@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from analysis.foreign.found import ForeignColumns
+from analysis.readers.foreign import foreign_reader
 from hardware.description.errors import DataError
 
 _UNITS: Final = ("unit_string", "NI_UnitDescription")
@@ -34,6 +35,9 @@ def read_tdms(path: Path) -> ForeignColumns:
             return _columns(channels)
     except (OSError, ValueError, KeyError, IndexError, EOFError, struct.error) as error:
         raise DataError(f"not a sound TDMS file: {error}") from None
+
+
+READER: Final = foreign_reader("tdms", read_tdms, "nptdms")
 
 
 def _columns(channels: list[Any]) -> ForeignColumns:

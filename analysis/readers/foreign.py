@@ -1,41 +1,57 @@
 """A recording of what a binary file of another program holds: columns, units, perhaps a rate."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
+from analysis.foreign.found import ForeignColumns
 from analysis.foreign.process import read_foreign
 from analysis.readers.columns import ColumnMap
 from analysis.readers.headers import Header, parse_header
+from analysis.readers.registry import Reader
 from analysis.readers.text_plan import plan_columns
 from analysis.readers.text_recording import Origin, from_columns
+from analysis.readers.text_source import Progress
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 
 
-def recording_of(path: Path, columns: ColumnMap, name: str, kind: str) -> Recording:
-    """Return a recording of the columns that are as long as most of the file is.
+def foreign_reader(
+    kind: str, read: Callable[[Path], ForeignColumns], package: str | None = None
+) -> Reader:
+    """Return a reader of binary files that takes the columns as long as most of a file is.
+
+    It raises DataError if the file cannot be read, holds no column of numbers, or neither times nor
+    a rate; ConfigurationError if the column map names what is not there, or the package is missing.
 
     Parameters
     ----------
     kind
-        ``"mat"`` or ``"tdms"``.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read, holds no column of numbers, or neither times nor a rate.
-    ConfigurationError
-        If the column map names what is not there, or the extra that reads the file is missing.
+        As messages and the recording's provenance say it; also the extra that brings ``package``.
+    read
+        A function of a module, called in a process of its own, which imports that module.
+    package
+        What ``read`` imports that is not always there.
     """
-    if kind == "tdms" and find_spec("nptdms") is None:
-        raise ConfigurationError(
-            f"{path}: reading TDMS needs the extra 'tdms': pip install 'pmm[tdms]'"
-        )
-    found = read_foreign(path, kind)
+
+    def recording(path: Path, columns: ColumnMap, name: str, _: Progress) -> Recording:
+        if package is not None and find_spec(package) is None:
+            raise ConfigurationError(
+                f"{path}: reading {kind.upper()} needs the extra {kind!r}: "
+                f"pip install 'pmm[{kind}]'"
+            )
+        found = read_foreign(path, kind, f"{read.__module__}:{read.__qualname__}")
+        return _recording_of(found, path, columns, name, kind)
+
+    return Reader(recording)
+
+
+def _recording_of(
+    found: ForeignColumns, path: Path, columns: ColumnMap, name: str, kind: str
+) -> Recording:
     if not found.values:
         raise DataError(
             f"{path}: no vector of numbers in it; there is nothing to take for a channel"

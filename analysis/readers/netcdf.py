@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from analysis.readers.damage import Damage, find_damage
 from analysis.readers.declared import check_declared
 from analysis.readers.heaps import check_heaps
 from analysis.readers.missing import with_missing_said
+from analysis.readers.registry import Reader
 from analysis.readers.reserved import reserved
 from analysis.readers.stored_samples import StoredSamples, identity, reading
 from analysis.recording import Recording
@@ -64,6 +65,9 @@ def read_netcdf(path: Path) -> Recording:
         flags = damage.all_flags(recording, 0 if edges is None else int(edges.shape[0]))
         recording = replace(recording, flags=(*recording.flags, *flags))
     return without_spikes(with_missing_said(recording))
+
+
+READER: Final = Reader(lambda path, *_: read_netcdf(path), own_channels=True)
 
 
 def _edges_s(edges: Any, damage: Damage) -> FloatArray:

@@ -5,17 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from analysis.readers.columns import ColumnMap
-from analysis.readers.foreign import recording_of
-from analysis.readers.netcdf import read_netcdf
-from analysis.readers.text_recording import read_text_recording
+from analysis.readers.registry import find_reader, name_of
 from analysis.readers.text_source import Progress
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
-
-TEXT_SUFFIXES = (".csv", ".txt", ".dat", ".asc", ".tsv")
-NETCDF_SUFFIX = ".nc"
-MAT_SUFFIX = ".mat"
-TDMS_SUFFIX = ".tdms"
 
 
 def read_recording(
@@ -50,35 +43,19 @@ def read_recording(
     """
     path = Path(path)
     _check_there(path)
-    kind, name = _kind(path)
-    if kind == NETCDF_SUFFIX:
-        if columns is not None or sample_rate_hz is not None:
-            raise ConfigurationError(
-                f"{path}: a NetCDF recording says its own channels and rate; "
-                "leave out the column map and the sample rate"
-            )
-        return read_netcdf(path)
+    reader = find_reader(path)
+    if reader.own_channels and (columns is not None or sample_rate_hz is not None):
+        raise ConfigurationError(
+            f"{path}: a {path.suffix} recording says its own channels and rate; "
+            "leave out the column map and the sample rate"
+        )
     columns = columns or ColumnMap(origin="headers")
     if sample_rate_hz is not None:
         columns = replace(columns, sample_rate_hz=sample_rate_hz)
     rate = columns.sample_rate_hz
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise ConfigurationError(f"{path}: a sample rate of {rate:g} Hz; it should be above 0")
-    if kind in (MAT_SUFFIX, TDMS_SUFFIX):
-        return recording_of(path, columns, name, kind.removeprefix("."))
-    return read_text_recording(path, columns, name, progress)
-
-
-def _kind(path: Path) -> tuple[str, str]:
-    """Return the kind of a file, told from its name, and its name without endings."""
-    plain = path.with_suffix("") if path.suffix.lower() == ".gz" else path
-    kind = plain.suffix.lower()
-    others = (NETCDF_SUFFIX, MAT_SUFFIX, TDMS_SUFFIX)
-    known = (*TEXT_SUFFIXES, *others) if plain is path else TEXT_SUFFIXES
-    if kind not in known:
-        endings = ", ".join((*TEXT_SUFFIXES, ".csv.gz", *others))
-        raise DataError(f"{path}: the kind of file is not known; its name should end in {endings}")
-    return kind, plain.stem
+    return reader.read(path, columns, name_of(path), progress)
 
 
 def _check_there(path: Path) -> None:

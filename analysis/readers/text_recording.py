@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from analysis.readers.conditioning import repair_missing, saturation_flags, with
 from analysis.readers.headers import Header
 from analysis.readers.missing import without_beyond
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
+from analysis.readers.registry import Reader
 from analysis.readers.text_layout import find_layout
 from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, without_idle
 from analysis.readers.text_source import Progress, TextSource
@@ -19,8 +21,6 @@ from analysis.readers.time_base import TimeBase, fit_time_base
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
-
-READER = "csv"
 
 Table = Mapping[Header, FloatArray]
 
@@ -51,8 +51,11 @@ def read_text_recording(path: Path, columns: ColumnMap, name: str, progress: Pro
     layout = find_layout(source, columns.layout)
     plan = plan_columns(layout.headers, columns, str(path))
     numbers = read_numbers(source, layout, plan.wanted)
-    origin = Origin(path, name, READER, numbers.sha256)
+    origin = Origin(path, name, "csv", numbers.sha256)
     return from_columns(plan, numbers.columns, columns, origin, numbers.flags)
+
+
+READER: Final = Reader(read_text_recording, text=True)
 
 
 def from_columns(

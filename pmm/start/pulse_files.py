@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.photocell import read_edges
-from analysis.readers.reader import TEXT_SUFFIXES
+from analysis.readers.registry import text_endings
 from hardware.description.errors import PmmError
 from pmm.start.shared_line import SAME_TIME
 
@@ -61,8 +61,7 @@ def _tails(path: Path) -> Iterator[str]:
     stem = stem_of(path)
     for other in path.parent.glob(f"{_literal(stem)}?*"):
         tail = other.name[len(stem) :]
-        ends = tuple(f"{one}{packed}" for one in TEXT_SUFFIXES for packed in ("", ".gz"))
-        if other != path and tail[0] not in ".0123456789" and tail.endswith(ends):
+        if other != path and tail[0] not in ".0123456789" and tail.endswith(text_endings()):
             yield tail
 
 

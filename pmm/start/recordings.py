@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from analysis.readers import read_recording
-from analysis.readers.reader import NETCDF_SUFFIX
+from analysis.readers.registry import find_reader
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
@@ -85,7 +85,7 @@ def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
         columns=tuple(columns),
         others=tuple(name for name in everything if name not in taken),
         by_order=by_order_of_names(columns),
-        mapped=any(path.suffix.lower() != NETCDF_SUFFIX for path in paths),
+        mapped=not all(find_reader(path).own_channels for path in paths),
         reference=reference,
         sample_rate_hz=Counter(one.sample_rate_hz for one in looks).most_common(1)[0][0],
         sensors=dict(_sensors(looks, rests, sure)),
