@@ -2,16 +2,16 @@
 
 A budget of one number forgets what it shares with the next. Here every input (a run's scatter, the
 mass, the speed) keeps its own columns through all that follows, so that a difference of two
-coefficients, or a curve through many, knows what cancels. All is linear; GTC makes the same numbers
-of it (:meth:`UncertainValues.gtc_numbers`), and Monte Carlo stands beside it where it is made.
+coefficients, or a curve through many, knows what cancels. All is linear (GUM); Monte Carlo stands
+beside it where it is made.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import ConfigurationError
@@ -173,24 +173,6 @@ class UncertainValues:
         kept.append(Contribution(label, freedom, np.arange(len(self)), column))
         return replace(self, contributions=tuple(kept))
 
-    def gtc_numbers(self, rows: Sequence[int]) -> list[Any]:
-        """Return some of the values as GTC's uncertain numbers, correlated through their inputs."""
-        import GTC  # type: ignore[import-untyped]
-
-        chosen = self.taken(rows)
-        totals: list[Any] = [float(value) for value in chosen.values]
-        for one in chosen.contributions:
-            count, freedom = one.parts.shape[1], max(one.degrees_of_freedom, 1.0)
-            if count == 1:
-                deviates = [GTC.ureal(0.0, 1.0, freedom, label=one.label)]
-            else:
-                labels = [f"{one.label} {k + 1}" for k in range(count)]
-                deviates = GTC.multiple_ureal([0.0] * count, [1.0] * count, freedom, labels)
-            for row, parts in zip(one.rows, one.parts, strict=True):
-                for part, deviate in zip(parts, deviates, strict=True):
-                    totals[row] = totals[row] + float(part) * deviate
-        return totals
-
 
 def added(contributions: Iterable[Contribution]) -> tuple[Contribution, ...]:
     """Return what each input does in all: contributions of one label to the same rows added up."""
@@ -233,11 +215,19 @@ def _one_input(parts: Sequence[Contribution]) -> Contribution:
     return replace(first, rows=rows, parts=np.concatenate([part.parts for part in parts]))
 
 
-def student_factor(degrees_of_freedom: FloatArray, level: float) -> FloatArray:
-    """Return how many standard deviations make a half-width; normal for infinite freedom."""
+def student_factor(degrees_of_freedom: ArrayLike, level: float = 0.95) -> FloatArray:
+    """Return how many standard deviations make the half-width of a two-sided interval.
+
+    Parameters
+    ----------
+    degrees_of_freedom
+        Any shape; normal where they are infinite, NaN where there are none.
+    level
+        Probability within the interval.
+    """
     from scipy.special import ndtri, stdtrit
 
-    place = 0.5 + level / 2.0
-    endless = np.isinf(degrees_of_freedom)
-    finite = np.where(endless, 1.0, degrees_of_freedom)
-    return np.asarray(np.where(endless, ndtri(place), stdtrit(finite, place)))
+    place, freedom = 0.5 + level / 2.0, np.asarray(degrees_of_freedom, dtype=np.float64)
+    endless = np.isinf(freedom)
+    found = stdtrit(np.where(endless, 1.0, freedom), place)
+    return np.asarray(np.where(endless, ndtri(place), found))

@@ -1,8 +1,7 @@
-"""The budget of one coefficient, GUM style: what each input adds, through GTC's uncertain numbers.
+"""The budget of one coefficient, GUM style: what each input adds.
 
 Inputs of one kind stand in one line (the scatter of all runs, the repeats of all runs); what two
-coefficients have in common is kept (:func:`correlation`), because both are made of the same
-uncertain numbers.
+coefficients have in common is kept (:func:`correlation`), because both are made of the same inputs.
 """
 
 import math
@@ -71,7 +70,7 @@ class CoefficientBudget:
     Attributes
     ----------
     degrees_of_freedom
-        Effective, by Welch and Satterthwaite with correlated ensembles (GTC).
+        Effective, by Welch and Satterthwaite ; deviates of one input count as one term.
     coverage_factor, half_width
         Of the interval at the campaign's level.
     digits
@@ -91,15 +90,10 @@ class CoefficientBudget:
 
 def budget(found: CampaignCoefficients, row: int) -> CoefficientBudget:
     """Return the budget of one entry of a campaign's table."""
-    import GTC  # type: ignore[import-untyped]
-
     entry = found.entries[row]
-    (number,) = found.uncertain.gtc_numbers([row])
-    spread, freedom = 0.0, math.inf
-    if not isinstance(number, float):
-        spread, freedom = float(GTC.uncertainty(number)), float(GTC.dof(number))
-    freedom = math.inf if math.isnan(freedom) else freedom
-    factor = float(student_factor(found.uncertain.degrees_of_freedom[[row]], found.level)[0])
+    spread = float(found.uncertain.standard_uncertainty[row])
+    freedom = float(found.uncertain.degrees_of_freedom[row])
+    factor = float(student_factor(freedom, found.level))
     return CoefficientBudget(
         entry.name,
         entry.unit,
@@ -114,11 +108,10 @@ def budget(found: CampaignCoefficients, row: int) -> CoefficientBudget:
 
 
 def correlation(found: CampaignCoefficients, first: int, second: int) -> float:
-    """Return the correlation coefficient of two entries, by GTC."""
-    import GTC
-
-    one, other = found.uncertain.gtc_numbers([first, second])
-    return float(GTC.get_correlation(one, other))
+    """Return the correlation coefficient of two entries; 0 where one has no uncertainty."""
+    covariance = found.uncertain.covariance([first, second])
+    spread = math.sqrt(covariance[0, 0] * covariance[1, 1])
+    return float(covariance[0, 1]) / spread if spread else 0.0
 
 
 def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[Line, ...]:

@@ -14,7 +14,7 @@ import numpy as np
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.cycle import LOADS, Cycle, at_order
 from analysis.coefficients.phasors import Phasors, parts_of
-from analysis.uncertainty import Contribution
+from analysis.uncertainty import Contribution, student_factor
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3
@@ -137,10 +137,7 @@ def _distance(kinds: Sequence[Kind], kind: Kind, k: int, row: int) -> tuple[floa
 
 
 def _limit(freedom: float, tests: int) -> float:
-    from scipy.special import ndtri, stdtrit
-
-    place = 1.0 - _CHANCE / (2.0 * tests)
-    return float(stdtrit(freedom, place) if math.isfinite(freedom) else ndtri(place))
+    return float(student_factor(freedom, 1.0 - _CHANCE / tests))
 
 
 def _groups(cycles: Sequence[Cycle]) -> list[list[Cycle]]:

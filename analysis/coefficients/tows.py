@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from analysis.coefficients.cycle import SURGE_FORCE, Cycle, at_order
 from analysis.uncertainty import student_factor
 from hardware.description.oscillator import Plane
@@ -49,8 +47,7 @@ class Tow:
 
     def half_width(self, standard_uncertainty: float) -> float:
         """Return the half-width at 95 %."""
-        freedom = np.array([self.degrees_of_freedom])
-        return float(student_factor(freedom, _LEVEL)[0]) * standard_uncertainty
+        return float(student_factor(self.degrees_of_freedom, _LEVEL)) * standard_uncertainty
 
 
 def tow_of(kind: str, cycle: Cycle) -> Tow:

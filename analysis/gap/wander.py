@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
+from analysis.uncertainty import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from sim.rig import SimulatedRig
@@ -82,10 +83,9 @@ def _widened(freedom: int) -> float:
 
     A median deviation tells as much as a mean square of 37 in 100 of the values does.
     """
-    from scipy.special import ndtri, stdtrit
-
+    level = 2.0 * _COVERED - 1.0
     known = max(_EFFICIENCY * freedom, 1.0)
-    return float(stdtrit(known, _COVERED) / ndtri(_COVERED))
+    return float(student_factor(known, level) / student_factor(np.inf, level))
 
 
 def _component(run: GapRun, values: FloatArray, channel: str) -> float:

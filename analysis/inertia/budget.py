@@ -1,7 +1,8 @@
-"""GUM budgets: sensitivities, shares, degrees of freedom and correlations, by GTC.
+"""GUM budgets: sensitivities, shares, degrees of freedom and correlations.
 
 A formula is any function of keyword arguments that takes floats and arrays alike. Its sensitivities
-are central differences of a hundredth of each uncertainty; GTC carries the uncertain numbers.
+are central differences of a hundredth of each uncertainty. Correlated inputs count as one input of
+several deviates, with the fewest degrees of freedom of the group.
 """
 
 import math
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
+from analysis.uncertainty import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 
@@ -101,15 +103,10 @@ def linear_budget(
     correlations = dict(correlations or {})
     matrix = correlation_matrix(tuple(inputs), correlations)
     value, slopes = sensitivities(name, formula, inputs)
-    numbers = _uncertain_numbers(inputs, correlations)
-    total = value + sum(
-        slope * (number - estimate.value)
-        for slope, number, estimate in zip(slopes, numbers, inputs.values(), strict=True)
-    )
     contributions = slopes * np.array([estimate.uncertainty for estimate in inputs.values()])
-    variance = float(contributions @ matrix @ contributions)
-    freedom = _degrees_of_freedom(total, contributions, matrix, inputs)
-    result = Estimate(value, math.sqrt(max(variance, 0.0)), unit, freedom)
+    found = UncertainValues(np.array([value]), _by_group(contributions, matrix, inputs))
+    freedom, spread = float(found.degrees_of_freedom[0]), float(found.standard_uncertainty[0])
+    result = Estimate(value, spread, unit, freedom)
     return Budget(name, result, _shares(inputs, slopes, contributions, matrix), correlations)
 
 
@@ -168,43 +165,18 @@ def correlation_matrix(names: tuple[str, ...], correlations: Correlations) -> Fl
     return matrix
 
 
-def _uncertain_numbers(inputs: Mapping[str, Estimate], correlations: Correlations) -> list[Any]:
-    """Return GTC's uncertain numbers; correlated ones carry no degrees of freedom of their own."""
-    import GTC  # type: ignore[import-untyped]
-
-    tied = {name for pair in correlations for name in pair}
-    numbers = {
-        key: GTC.ureal(
-            estimate.value,
-            estimate.uncertainty,
-            math.inf if key in tied else max(estimate.degrees_of_freedom, 1.0),
-            label=key,
-            independent=key not in tied,
-        )
-        for key, estimate in inputs.items()
-    }
-    for (first, second), coefficient in correlations.items():
-        if inputs[first].uncertainty and inputs[second].uncertainty:
-            GTC.set_correlation(coefficient, numbers[first], numbers[second])
-    return list(numbers.values())
-
-
-def _degrees_of_freedom(
-    total: Any, contributions: FloatArray, matrix: FloatArray, inputs: Mapping[str, Estimate]
-) -> float:
-    """Welch and Satterthwaite's; a correlated group counts as one term with its fewest."""
-    import GTC
-
-    freedom = np.array([estimate.degrees_of_freedom for estimate in inputs.values()])
-    if np.array_equal(matrix, np.eye(len(matrix))):
-        value = float(GTC.dof(total)) if not isinstance(total, float) else math.inf
-        return value if not math.isnan(value) else math.inf
-    variance = float(contributions @ matrix @ contributions)
-    loss = 0.0
+def _by_group(
+    contributions: FloatArray, matrix: FloatArray, inputs: Mapping[str, Estimate]
+) -> tuple[Contribution, ...]:
+    names, found = tuple(inputs), []
     for group in _groups(matrix):
-        part = contributions[group]
-        loss += float(part @ matrix[np.ix_(group, group)] @ part) ** 2 / freedom[group].min()
-    return variance**2 / loss if loss > 0.0 else math.inf
+        values, vectors = np.linalg.eigh(matrix[np.ix_(group, group)])
+        root = vectors * np.sqrt(np.clip(values, 0.0, None))
+        label = " and ".join(names[k] for k in group)
+        freedom = min(inputs[names[k]].degrees_of_freedom for k in group)
+        parts = (contributions[group] @ root)[None]
+        found.append(Contribution(label, freedom, np.zeros(1, dtype=np.int64), parts))
+    return tuple(found)
 
 
 def _groups(matrix: FloatArray) -> list[list[int]]:

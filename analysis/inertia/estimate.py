@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from analysis.uncertainty import student_factor
 from hardware.description.errors import ConfigurationError
 
 
@@ -51,12 +52,7 @@ class Estimate:
 
     def coverage_factor(self, level: float = 0.95) -> float:
         """Return Student's t for a two-sided interval of this level."""
-        from scipy.special import ndtri, stdtrit
-
-        place = 0.5 + level / 2.0
-        if math.isinf(self.degrees_of_freedom):
-            return float(ndtri(place))
-        return float(stdtrit(self.degrees_of_freedom, place))
+        return float(student_factor(self.degrees_of_freedom, level))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the ends of the two-sided interval of this level."""

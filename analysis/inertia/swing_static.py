@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.estimate import Estimate, require_positive
+from analysis.uncertainty import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -162,8 +163,6 @@ def _disagreeing(
     series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], with_offset: bool
 ) -> tuple[str, ...]:
     """Name the series whose moment differs from that of all the others together."""
-    from scipy.stats import t as student
-
     if len(series) < 2:
         return ()
     found = []
@@ -174,7 +173,7 @@ def _disagreeing(
         spread = float(np.hypot(own.uncertainty, rest.uncertainty))
         freedom = own.degrees_of_freedom + rest.degrees_of_freedom
         apart = abs(own.value - rest.value)
-        if apart > float(student.isf(DISAGREE / 2.0 / len(series), freedom)) * spread:
+        if apart > float(student_factor(freedom, 1.0 - DISAGREE / len(series))) * spread:
             found.append((apart / spread, one.name))
     return tuple(name for _, name in sorted(found, reverse=True))
 

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from analysis.uncertainty import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 
@@ -117,9 +118,7 @@ class Harmonics:
 
     def coverage_factor(self, level: float = 0.95) -> FloatArray:
         """Return Student's t of a two-sided interval for each coefficient, shape ``(K,)``."""
-        from scipy.special import stdtrit
-
-        return np.asarray(stdtrit(self.degrees_of_freedom, 0.5 + level / 2.0))
+        return student_factor(self.degrees_of_freedom, level)
 
     def half_width(self, level: float = 0.95) -> FloatArray:
         """Return the half-width of each coefficient's interval, shape ``(channels, K)``."""

@@ -5,7 +5,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from pmm.version import version_line
 
-_PACKAGES = ("numpy", "scipy", "GTC", "h5netcdf", "matplotlib")
+_PACKAGES = ("numpy", "scipy", "h5netcdf", "matplotlib")
 
 
 def provenance() -> tuple[tuple[str, str], ...]:

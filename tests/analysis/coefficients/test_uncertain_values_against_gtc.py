@@ -1,6 +1,7 @@
 """Values with common inputs against GTC and against matrices written out."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,12 +25,30 @@ def example(parts: list[float], freedom: float = 5.0) -> UncertainValues:
     )
 
 
+def gtc_numbers(values: UncertainValues) -> list[Any]:
+    """The same values as GTC's uncertain numbers, correlated through their inputs."""
+    import GTC
+
+    totals: list[Any] = [float(value) for value in values.values]
+    for one in values.contributions:
+        count, freedom = one.parts.shape[1], max(one.degrees_of_freedom, 1.0)
+        if count == 1:
+            deviates = [GTC.ureal(0.0, 1.0, freedom, label=one.label)]
+        else:
+            labels = [f"{one.label} {k + 1}" for k in range(count)]
+            deviates = GTC.multiple_ureal([0.0] * count, [1.0] * count, freedom, labels)
+        for row, parts in zip(one.rows, one.parts, strict=True):
+            for part, deviate in zip(parts, deviates, strict=True):
+                totals[row] = totals[row] + float(part) * deviate
+    return totals
+
+
 @given(st.lists(SMALL, min_size=9, max_size=9), st.integers(2, 40))
 def test_uncertainty_freedom_and_correlation_are_gtcs(parts: list[float], freedom: int) -> None:
     import GTC
 
     values = example(parts, float(freedom))
-    numbers = values.gtc_numbers([0, 1, 2])
+    numbers = gtc_numbers(values)
     for k, number in enumerate(numbers):
         assert GTC.value(number) == pytest.approx(values.values[k])
         spread = values.standard_uncertainty[k]
