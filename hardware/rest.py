@@ -1,18 +1,33 @@
 """How a rig is left: at rest and without power, as far as its bus still carries anything."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
 from hardware.errors import HardwareError, Reaction
 from hardware.limits import REST_DEADLINE_S
-
-if TYPE_CHECKING:
-    from hardware.rig import Rig
+from hardware.rig_configuration import RigConfiguration
+from hardware.roles import Powered
 
 _PROFILE_STOP_S: Final = 30.0  # for devices without a deadline of their own
 _LAST_CYCLES: Final = 5  # for the drives to show that they have obeyed
 
 
-def come_to_rest(rig: "Rig") -> None:
+class Moving(Protocol):
+    """A rig in operation, as far as it takes to bring it to rest."""
+
+    configuration: RigConfiguration
+    faults: list[HardwareError]
+
+    def powered(self) -> tuple[Powered, ...]:
+        """Return the devices with power that are to be without it."""
+
+    def stop(self) -> None:
+        """Stop the axes along their profile."""
+
+    def cycle(self) -> object:
+        """Run one cycle of the loop."""
+
+
+def come_to_rest(rig: Moving) -> None:
     """Stop the axes along their profile, take their power off, and wait for both.
 
     A severe fault on the way, or a profile that does not come to its end, makes it a quick stop,
@@ -36,7 +51,7 @@ def come_to_rest(rig: "Rig") -> None:
         _cycle(rig)
 
 
-def _wait(rig: "Rig", cycles: int, *, gently: bool = False) -> None:
+def _wait(rig: Moving, cycles: int, *, gently: bool = False) -> None:
     """Wait until nothing moves, or the bus is lost; ``gently`` no longer than to the next fault."""
     for _ in range(cycles):
         moves = any(one.moving for one in rig.powered())
@@ -44,7 +59,7 @@ def _wait(rig: "Rig", cycles: int, *, gently: bool = False) -> None:
             return
 
 
-def _cycle(rig: "Rig") -> bool:
+def _cycle(rig: Moving) -> bool:
     """Run a cycle; tell whether it went without a fault that asks for a quick stop."""
     try:
         rig.cycle()
@@ -53,5 +68,5 @@ def _cycle(rig: "Rig") -> bool:
     return True
 
 
-def _is_lost(rig: "Rig") -> bool:
+def _is_lost(rig: Moving) -> bool:
     return any(one.reaction is Reaction.END_RUN for one in rig.faults)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from analysis.readers import ColumnMap
+from analysis.readers.columns_toml import parse_column_map
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
@@ -75,7 +76,7 @@ def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> Col
         return None
     origin = f"{path.name} [columns]"
     try:
-        return ColumnMap.from_table(columns, origin)
+        return parse_column_map(columns, origin)
     except ConfigurationError as error:
         faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
         return None

@@ -1,9 +1,7 @@
 """The coefficients of a whole campaign, with all that was found on the way; kept as data."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,9 +23,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,39 +160,6 @@ class CampaignCoefficients:
         own = set(runs)
         return tuple(one for one in self.choices if one.load == load and own & set(one.runs))
 
-    @cached_property
-    def recommended(self) -> tuple[int, ...]:
-        """Places of the values to be used first; :mod:`analysis.coefficients.recommended`."""
-        from analysis.coefficients.recommended import recommended
-
-        return recommended(self)
-
-    def table(self) -> Iterator[Mapping[str, Any]]:
-        """Yield a row per entry: its own, value, uncertainty, interval, trials, whether first."""
-        first = set(self.recommended)
-        spread, freedom = self.uncertain.standard_uncertainty, self.uncertain.degrees_of_freedom
-        half = self.half_widths
-        for k, entry in enumerate(self.entries):
-            yield {
-                "name": entry.name,
-                "unit": entry.unit,
-                "method": entry.method,
-                "frequency_hz": entry.frequency_hz,
-                "speed_m_s": entry.speed_m_s,
-                "translation_amplitude_m": entry.translation_amplitude_m,
-                "rotation_amplitude_rad": entry.rotation_amplitude_rad,
-                "runs": entry.runs,
-                "value": float(self.values[k]),
-                "standard_uncertainty": float(spread[k]),
-                "half_width": float(half[k]),
-                "degrees_of_freedom": float(freedom[k]),
-                "trials_low": float(self.trials.low[k]),
-                "trials_high": float(self.trials.high[k]),
-                "retained": entry.retained,
-                "misfit": entry.misfit,
-                "recommended": k in first,
-            }
-
     def shares(self, row: int) -> Mapping[str, float]:
         """Return what part of one value's variance each input has, largest first."""
         return self.uncertain.shares(row)
@@ -217,18 +179,6 @@ class CampaignCoefficients:
                 trials.high[chosen],
             ),
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it as JSON can hold it (see :mod:`analysis.coefficients.exchange`)."""
-        from analysis.coefficients.exchange import to_dict
-
-        return to_dict(self)
-
-    def to_dataset(self) -> "xr.Dataset":
-        """Return all of it as NetCDF can hold it (see :mod:`analysis.coefficients.exchange`)."""
-        from analysis.coefficients.exchange import to_dataset
-
-        return to_dataset(self)
 
 
 def _order(entry: Entry) -> tuple[float, float, float]:

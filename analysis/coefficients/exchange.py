@@ -23,6 +23,7 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form
+from analysis.coefficients.recommended import table
 from analysis.uncertainty import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
@@ -58,7 +59,7 @@ def to_dict(result: CampaignCoefficients) -> dict[str, Any]:
     ]
     content = {
         **_head(result),
-        "table": list(result.table()),
+        "table": list(table(result)),
         "contributions": contributions,
         "trials": {
             "count": result.trials.count,
@@ -107,7 +108,7 @@ def to_dataset(result: CampaignCoefficients) -> "xr.Dataset":
     """Return a campaign's coefficients as a dataset with the dimensions entry and contribution."""
     import xarray as xr
 
-    rows = list(result.table())
+    rows = list(table(result))
     columns: dict[str, Any] = {
         key: ("entry", np.array([row[key] for row in rows], dtype=None if key in _TEXTS else float))
         for key in (rows[0] if rows else {})

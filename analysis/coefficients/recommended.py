@@ -6,6 +6,9 @@ coefficient of the seakeeping form belongs to its frequency, so that there is on
 non-linear term is recommended only where the evidence for its form decides.
 """
 
+from collections.abc import Iterator, Mapping
+from typing import Any
+
 from analysis.coefficients.campaign_nonlinear import (
     FIRST_HARMONICS,
     QUASI,
@@ -52,6 +55,33 @@ def recommended(found: CampaignCoefficients) -> tuple[int, ...]:
             key = (entry.name, entry.speed_m_s, _own_frequency(entry))
             best[key] = min(best.get(key, k), k, key=order)
     return tuple(best.values())
+
+
+def table(found: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
+    """Yield a row per entry: its own, value, uncertainty, interval, trials, whether first."""
+    first = set(recommended(found))
+    spread, freedom = found.uncertain.standard_uncertainty, found.uncertain.degrees_of_freedom
+    half = found.half_widths
+    for k, entry in enumerate(found.entries):
+        yield {
+            "name": entry.name,
+            "unit": entry.unit,
+            "method": entry.method,
+            "frequency_hz": entry.frequency_hz,
+            "speed_m_s": entry.speed_m_s,
+            "translation_amplitude_m": entry.translation_amplitude_m,
+            "rotation_amplitude_rad": entry.rotation_amplitude_rad,
+            "runs": entry.runs,
+            "value": float(found.values[k]),
+            "standard_uncertainty": float(spread[k]),
+            "half_width": float(half[k]),
+            "degrees_of_freedom": float(freedom[k]),
+            "trials_low": float(found.trials.low[k]),
+            "trials_high": float(found.trials.high[k]),
+            "retained": entry.retained,
+            "misfit": entry.misfit,
+            "recommended": k in first,
+        }
 
 
 def _own_frequency(entry: Entry) -> float:

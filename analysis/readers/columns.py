@@ -1,9 +1,7 @@
 """Which column of a text file is what: the column map."""
 
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from pathlib import Path
 
 
 class Edge(StrEnum):
@@ -117,47 +115,3 @@ class ColumnMap:
     layout: TextLayout = field(default_factory=TextLayout)
     keep_others: bool = False
     origin: str = "column map"
-
-    @classmethod
-    def from_toml(cls, path: str | Path) -> "ColumnMap":
-        """Read a column map from a TOML file; ``docs/formats.md`` documents the keys.
-
-        Raises
-        ------
-        ConfigurationError
-            If the file cannot be read, or for unknown keys (with a suggestion), wrong types,
-            unknown units and impossible values: all errors of the file in one message.
-        """
-        from analysis.readers.columns_toml import read_column_map
-
-        return read_column_map(Path(path))
-
-    @classmethod
-    def from_table(cls, table: Mapping[str, object], origin: str) -> "ColumnMap":
-        """Build a column map from a TOML table already read, such as one of a campaign file.
-
-        Raises
-        ------
-        ConfigurationError
-            As for :meth:`from_toml`; ``origin`` names the file and table in the message.
-        """
-        from analysis.readers.columns_toml import parse_column_map
-
-        return parse_column_map(table, origin)
-
-    @classmethod
-    def from_options(cls, pairs: Iterable[str]) -> "ColumnMap":
-        """Build a column map from command-line text such as ``force_aft=-F1:kN``.
-
-        Each is ``NAME=SOURCE``: ``SOURCE`` is a column's header, with ``:UNIT`` after it where the
-        header does not say the unit (or another one), and ``-`` before it to turn the sign. The
-        names ``time`` and ``photocell`` are for the time stamps and the photocell's level.
-
-        Raises
-        ------
-        ConfigurationError
-            For text that is no such pair, unknown units and names given twice, all at once.
-        """
-        from analysis.readers.columns_options import parse_options
-
-        return parse_options(pairs)

@@ -63,7 +63,17 @@ def _check_unit(name: str) -> None:
 
 
 def parse_options(pairs: Iterable[str]) -> ColumnMap:
-    """Build a column map from ``NAME=SOURCE`` options; see :meth:`ColumnMap.from_options`."""
+    """Build a column map from command-line text such as ``force_aft=-F1:kN``.
+
+    Each is ``NAME=SOURCE``: ``SOURCE`` is a column's header, with ``:UNIT`` after it where the
+    header does not say the unit (or another one), and ``-`` before it to turn the sign. The names
+    ``time`` and ``photocell`` are for the time stamps and the photocell's level.
+
+    Raises
+    ------
+    ConfigurationError
+        For text that is no such pair, unknown units and names given twice, all at once.
+    """
     parsed: dict[str, ChannelColumn] = {}
     faults = []
     for pair in pairs:

@@ -18,8 +18,16 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.toml import parse_toml
 
 
-def read_column_map(path: Path) -> ColumnMap:
-    """Read a column map from a TOML file; see :meth:`ColumnMap.from_toml`."""
+def read_column_map(path: str | Path) -> ColumnMap:
+    """Read a column map from a TOML file; ``docs/formats.md`` documents the keys.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file cannot be read, or for unknown keys (with a suggestion), wrong types, unknown
+        units and impossible values: all errors of the file in one message.
+    """
+    path = Path(path)
     try:
         table = parse_toml(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
@@ -33,7 +41,13 @@ def read_column_map(path: Path) -> ColumnMap:
 
 
 def parse_column_map(table: Mapping[str, object], origin: str) -> ColumnMap:
-    """Build a column map from a table already read; see :meth:`ColumnMap.from_table`."""
+    """Build a column map from a TOML table already read, such as one of a campaign file.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`read_column_map`; ``origin`` names the file and table in the message.
+    """
     faults: list[str] = []
     top = TomlTable(table, "", faults)
     column_map = ColumnMap(

@@ -10,7 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import sleep
 
-from analysis.readers import ColumnMap, read_recording
+from analysis.readers import read_recording
+from analysis.readers.columns_toml import read_column_map
 from analysis.resolver.analyse import Settings, analyse
 from pmm.report.plots import FIGURES
 from pmm.report.style import drawing
@@ -34,9 +35,7 @@ speeds_m_s = 1.2
 
 def main() -> None:
     """Draw the gate and the phasors of the example."""
-    recording = read_recording(
-        EXAMPLE / "heave.csv.gz", ColumnMap.from_toml(EXAMPLE / "heave.toml")
-    )
+    recording = read_recording(EXAMPLE / "heave.csv.gz", read_column_map(EXAMPLE / "heave.toml"))
     analysis = analyse(recording, settings=Settings(channels=("force_aft", "force_fore")))
     for name in ("gate", "phasors"):
         with drawing():

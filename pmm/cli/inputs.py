@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign import CAMPAIGN_FILE, RUN_FILE, Campaign
 from pmm.campaign_file import read_campaign
@@ -122,13 +124,11 @@ def chosen_columns(column_map: str | None, columns: Sequence[str]) -> "ColumnMap
     ConfigurationError
         If both kinds are given, or one is wrong.
     """
-    from analysis.readers import ColumnMap
-
     if column_map and columns:
         raise ConfigurationError("give --map or --column, not both")
     if column_map:
-        return ColumnMap.from_toml(column_map)
-    return ColumnMap.from_options(columns) if columns else None
+        return read_column_map(column_map)
+    return parse_options(columns) if columns else None
 
 
 def read_source(

@@ -11,6 +11,8 @@ from typing import Any, Final
 
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.exchange import to_dataset, to_dict
+from analysis.coefficients.recommended import table
 from pmm.coefficients.workflow import Outcome
 from pmm.whole_file import write_whole
 
@@ -25,8 +27,8 @@ def document(outcome: Outcome, *, with_budgets: bool = True) -> dict[str, Any]:
         {
             "schema": JSON_SCHEMA,
             "campaigns": list(outcome.names),
-            "recommended": [row for row in found.table() if row["recommended"]],
-            "coefficients": found.to_dict(),
+            "recommended": [row for row in table(found) if row["recommended"]],
+            "coefficients": to_dict(found),
             "budgets": [asdict(budget(found, k)) for k in budgets],
             "stated": asdict(outcome.stated),
             "body": None if outcome.body is None else asdict(outcome.body),
@@ -53,17 +55,17 @@ def csv_text(found: CampaignCoefficients) -> str:
     """Return the table as CSV: the system in a comment, then a row for each value."""
     written = io.StringIO()
     written.write(f"# system = {found.normalisation}\n# level = {found.level:g}\n")
-    rows = list(found.table())
-    table = csv.writer(written, lineterminator="\n")
-    table.writerow(rows[0] if rows else ())
+    rows = list(table(found))
+    lines = csv.writer(written, lineterminator="\n")
+    lines.writerow(rows[0] if rows else ())
     for row in rows:
-        table.writerow([_cell(value) for value in row.values()])
+        lines.writerow([_cell(value) for value in row.values()])
     return written.getvalue()
 
 
 def write_netcdf(outcome: Outcome, path: Path, provenance: Mapping[str, str]) -> None:
     """Write the table, every input's contribution and all findings as NetCDF4."""
-    dataset = outcome.result.to_dataset()
+    dataset = to_dataset(outcome.result)
     dataset.attrs["provenance"] = json.dumps(dict(provenance))
     # By way of memory: HDF5 does not outlive a disk that fills up under it.
     write_whole(path, bytes(dataset.to_netcdf(engine="h5netcdf")))

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pmm.console.encoding import Made, encode
-from pmm.console.packing import PackedPlan, pack
+from pmm.console.messages import PackedPlan
+from pmm.console.packing import pack
 from pmm.console.pages import pages_in
 from pmm.console.plans import Plans, plan_picture
 

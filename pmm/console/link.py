@@ -7,8 +7,8 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Final
 
-from pmm.console.messages import Frame, Order, Told
-from pmm.console.packing import PackedPlan, unpack
+from pmm.console.messages import Frame, Order, PackedPlan, Told
+from pmm.console.packing import unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped

@@ -8,8 +8,7 @@ from multiprocessing.connection import Connection
 from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
-from pmm.console.messages import Order, OrderKind, Reply, Told
-from pmm.console.packing import PackedPlan
+from pmm.console.messages import Order, OrderKind, PackedPlan, Reply, Told
 from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
@@ -12,9 +12,6 @@ from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.status import RunOutcome, Status
-
-if TYPE_CHECKING:
-    from pmm.console.packing import PackedPlan
 
 WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
 
@@ -49,6 +46,16 @@ class QueuedPlan:
 
 
 @dataclass(frozen=True)
+class PackedPlan:
+    """A queued plan on its way: ``plan`` without its runs, which are in the pieces."""
+
+    number: int
+    plan: Plan
+    folder: Path
+    pieces: tuple[bytes, ...]
+
+
+@dataclass(frozen=True)
 class Order:
     """A wish of the server; each gets one :class:`Reply`.
 
@@ -67,7 +74,7 @@ class Order:
     kind: OrderKind
     text: str = ""
     question: str = ""
-    plan: "QueuedPlan | PackedPlan | None" = None
+    plan: QueuedPlan | PackedPlan | None = None
     quick_stops: int = 0
 
 

@@ -6,25 +6,13 @@ the loop's heartbeat is missed. So they come in pieces of a few milliseconds.
 
 import pickle
 import time
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Final
 
-from pmm.console.messages import QueuedPlan
-from pmm.plan.plan import Plan
+from pmm.console.messages import PackedPlan, QueuedPlan
 
 _PIECE: Final = 50  # runs: 2 ms
 _PAUSE_S: Final = 5e-4  # between pieces: the loop's thread goes first
-
-
-@dataclass(frozen=True)
-class PackedPlan:
-    """A queued plan: ``plan`` without its runs, which are in the pieces."""
-
-    number: int
-    plan: Plan
-    folder: Path
-    pieces: tuple[bytes, ...]
 
 
 def pack(plan: QueuedPlan) -> PackedPlan:

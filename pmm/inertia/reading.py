@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar, get_args, get_type_hints
 
 from analysis.readers import ColumnMap
+from analysis.readers.columns_toml import parse_column_map
 from hardware.description.errors import ConfigurationError
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 
@@ -104,7 +105,7 @@ def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> Col
         faults.append(Fault(("columns",), "should be a table"))
         return None
     try:
-        return ColumnMap.from_table(columns, origin)
+        return parse_column_map(columns, origin)
     except ConfigurationError as error:
         faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
         return None

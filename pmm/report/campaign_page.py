@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.coefficients.recommended import recommended
 from pmm.coefficients.provenance import provenance
 from pmm.coefficients.reading import sha256_of
 from pmm.coefficients.workflow import Outcome
@@ -84,7 +85,7 @@ def _summary(outcome: Outcome) -> list[tuple[str, str]]:
         ("runs", f"{len(outcome.cycles)} used, {len(outcome.failed)} could not be"),
         ("plane and form", f"{found.plane}, {found.form}"),
         ("system", found.normalisation),
-        ("values", f"{len(found.recommended)} recommended, of {len(found.entries)} in all"),
+        ("values", f"{len(recommended(found))} recommended, of {len(found.entries)} in all"),
         ("repeats that stand off", str(len(found.outliers))),
         ("kinds of flags", str(len(flag_lines(outcome.all_flags)))),
     ]

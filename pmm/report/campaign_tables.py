@@ -9,6 +9,7 @@ from string import ascii_uppercase
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import BEYOND_DOUBT
+from analysis.coefficients.recommended import recommended
 from analysis.coefficients.stated import STATED
 from pmm.coefficients.workflow import Outcome
 from pmm.report.rounding import rounded
@@ -46,7 +47,7 @@ class Grid:
 
 def recommended_table(found: CampaignCoefficients) -> Grid:
     """Return the values to be used first: one a coefficient, with the runs that it rests on."""
-    rows = found.recommended
+    rows = recommended(found)
     groups = dict.fromkeys(found.entries[k].runs for k in rows)
     letters = dict(zip(groups, _letters(), strict=False))
     half = found.half_widths
@@ -94,7 +95,7 @@ def _misfit(found: CampaignCoefficients, k: int) -> str:
 
 def value_tables(found: CampaignCoefficients) -> Iterator[Grid]:
     """Yield what else there is of each method: other amplitudes, frequencies and ways."""
-    half, first = found.half_widths, set(found.recommended)
+    half, first = found.half_widths, set(recommended(found))
     for method in dict.fromkeys(entry.method for entry in found.entries):
         rows = [k for k in found.rows(method=method) if k not in first]
         if not rows:

@@ -8,6 +8,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.recommended import recommended
 from pmm.labels import plain
 from pmm.report.rounding import rounded
 from pmm.report.style import PALETTE, drawing
@@ -28,7 +29,7 @@ def budget_rows(found: CampaignCoefficients, speed_m_s: float) -> list[int]:
     """Return the rows that are drawn: recommended ones with an uncertainty, of many a choice."""
     spread = found.uncertain.standard_uncertainty
     rows = [
-        k for k in found.recommended if spread[k] > 0.0 and found.entries[k].speed_m_s == speed_m_s
+        k for k in recommended(found) if spread[k] > 0.0 and found.entries[k].speed_m_s == speed_m_s
     ]
     if len(rows) <= MOST_BARS:
         return rows

@@ -8,6 +8,7 @@ import numpy as np
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
+from analysis.coefficients.recommended import recommended
 from pmm.report.campaign_tables import amplitudes
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
@@ -85,7 +86,8 @@ def _series(
 ) -> Iterator[tuple[str, list[int]]]:
     """Yield the recommended values, then those of each frequency, then a static test's."""
     every = found.rows(name, speed_m_s=speed_m_s)
-    first = [k for k in every if k in found.recommended]
+    chosen = recommended(found)
+    first = [k for k in every if k in chosen]
     if first:
         yield RECOMMENDED, first
     own = [k for k in found.at_each_frequency(name, speed_m_s) if k not in first]

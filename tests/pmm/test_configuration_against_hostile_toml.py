@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from analysis.readers import ColumnMap
+from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError
 from pmm.calibration import read_calibration
 from pmm.campaign_file import read_campaign
@@ -38,7 +38,7 @@ READERS: tuple[Callable[[Path], object], ...] = (
     read_rig_file,
     read_bench,
     read_calibration,
-    ColumnMap.from_toml,
+    read_column_map,
 )
 EVERYWHERE = (
     "a = " + "[" * 5000 + "]" * 5000,

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.readers import ColumnMap, read_recording
+from analysis.readers import read_recording
+from analysis.readers.columns_toml import read_column_map
 from analysis.recording import Recording
 from tests.sealed.board import generate, jobs_of, nulls_of
 from tests.sealed.generator import catalogue, outside
@@ -62,7 +63,7 @@ def _read(folder: Path, run: dict[str, object], campaign: dict[str, object]) -> 
         lines = (folder / "campaign.toml").read_text().split("\n[columns]\n")[1]
         columns = lines.split("[[runs]]")[0].replace("[columns.", "[")
         text.write_text(columns)
-        read = read_recording(folder / str(run["file"]), ColumnMap.from_toml(text))
+        read = read_recording(folder / str(run["file"]), read_column_map(text))
         text.unlink()
         return read
     return read_recording(folder / f"{run['name']}.nc")

@@ -7,6 +7,7 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import DECIDES, LINEAR_FORM, NOT_SEPARABLE, choose_form
 from analysis.coefficients.names import Form
+from analysis.coefficients.recommended import recommended
 from benchmarks.coefficients_campaigns import (
     CUBIC,
     HORIZONTAL,
@@ -37,11 +38,11 @@ def test_each_coefficient_has_one_value_and_it_is_the_one_put_in(truth: dict[str
     inside = []
     for seed in (1, 2):
         found = campaign(truth, seed)
-        names = [found.entries[k].name for k in found.recommended]
+        names = [found.entries[k].name for k in recommended(found)]
         assert len(names) == len(set(names))
         assert set(HORIZONTAL) <= set(names) <= set(truth)  # nothing that was not put in
-        assert all(found.entries[k].runs for k in found.recommended)
-        for k in found.recommended:
+        assert all(found.entries[k].runs for k in recommended(found))
+        for k in recommended(found):
             off = abs(found.values[k] - truth[found.entries[k].name])
             inside.append(off <= found.half_widths[k])
     assert np.mean(inside) > 0.85  # intervals of 95 %
@@ -83,9 +84,9 @@ def test_what_an_undecided_form_leaves_open_is_in_the_intervals() -> None:
         if len(open_ones) == len(choices):
             break
     assert open_ones
-    names = [found.entries[k].name for k in found.recommended]
+    names = [found.entries[k].name for k in recommended(found)]
     assert not [name for name in names if name not in HORIZONTAL]  # no term of a form in doubt
-    k = next(k for k in found.recommended if found.entries[k].name == "Y_v")
+    k = next(k for k in recommended(found) if found.entries[k].name == "Y_v")
     assert any(source.startswith("form of the force") for source in found.shares(k))
     assert abs(found.values[k] - HORIZONTAL["Y_v"]) <= found.half_widths[k]
 
@@ -99,7 +100,7 @@ def test_a_coefficient_of_the_seakeeping_form_belongs_to_its_frequency() -> None
         for kind, point in zip(("heave", "pitch"), pure_pair(f, 0.02, 0.0), strict=True)
     ]
     found = campaign_coefficients(cycles, Request(Form.SEAKEEPING))
-    told = [(found.entries[k].name, found.entries[k].frequency_hz) for k in found.recommended]
+    told = [(found.entries[k].name, found.entries[k].frequency_hz) for k in recommended(found)]
     assert sorted(told) == sorted(
         (letter + place, f) for letter in "ab" for place in ("33", "35", "53", "55")
         for f in (0.4, 0.8)

@@ -14,6 +14,8 @@ from analysis.readers import (
     TimeColumn,
     read_recording,
 )
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError
 
 FULL = """
@@ -40,7 +42,7 @@ edge = "falling"
 def test_every_key(tmp_path: Path) -> None:
     path = tmp_path / "map.toml"
     path.write_text(FULL)
-    assert ColumnMap.from_toml(path) == ColumnMap(
+    assert read_column_map(path) == ColumnMap(
         channels=(
             ChannelColumn("force_fore", "F2 [N]", sign=-1),
             ChannelColumn("displacement_aft", "S1", "mm"),
@@ -56,7 +58,7 @@ def test_every_key(tmp_path: Path) -> None:
 
 
 def test_options() -> None:
-    found = ColumnMap.from_options(
+    found = parse_options(
         ["Fy=Fy [N]", "force_aft=-F1:kN", "Fz", "time=T:ms", "photocell=PC", "a=AI:0 [V]"]
     )
     assert found.channels == (
@@ -112,7 +114,7 @@ def test_each_fault_names_file_and_key(tmp_path: Path, text: str, message: str) 
     path = tmp_path / "map.toml"
     path.write_text(text)
     with pytest.raises(ConfigurationError, match=message) as caught:
-        ColumnMap.from_toml(path)
+        read_column_map(path)
     assert str(caught.value).startswith(f"{path}: ")
 
 
@@ -120,18 +122,18 @@ def test_all_faults_of_a_file_come_at_once(tmp_path: Path) -> None:
     path = tmp_path / "map.toml"
     path.write_text("tme = 't'\nskip_rows = -1\n[channels]\nF = { colum = 'F', unit = 'lb' }\n")
     with pytest.raises(ConfigurationError) as caught:
-        ColumnMap.from_toml(path)
+        read_column_map(path)
     for key in ("tme is", "skip_rows =", "F.colum is", "F.unit =", "F needs"):
         assert key in str(caught.value)
 
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match="no such column map"):
-        ColumnMap.from_toml(tmp_path / "none.toml")
+        read_column_map(tmp_path / "none.toml")
     path = tmp_path / "map.toml"
     path.write_text("time = ")
     with pytest.raises(ConfigurationError, match="not a readable TOML file: Invalid value"):
-        ColumnMap.from_toml(path)
+        read_column_map(path)
 
 
 @pytest.mark.parametrize(
@@ -147,17 +149,17 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
 )
 def test_faults_of_options(pairs: list[str], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
-        ColumnMap.from_options(pairs)
+        parse_options(pairs)
 
 
 def test_all_faults_of_options_come_at_once() -> None:
     with pytest.raises(ConfigurationError, match=r"'a='.*unknown unit 'q'"):
-        ColumnMap.from_options(["a=", "b=c:q"])
+        parse_options(["a=", "b=c:q"])
 
 
 @pytest.mark.parametrize("option", ["Tijd=Tijd:ms", "time=Tijd:ms", "t=klok:ms", "a=Time:ms"])
 def test_a_column_called_time_in_a_unit_of_time_is_the_time(option: str) -> None:
-    found = ColumnMap.from_options([option, "force_aft=F1:N"])
+    found = parse_options([option, "force_aft=F1:N"])
     assert found.time == TimeColumn(option.split("=")[1].removesuffix(":ms"), "ms")
     assert [channel.name for channel in found.channels] == ["force_aft"]
 
@@ -173,25 +175,25 @@ def test_a_column_called_time_in_a_unit_of_time_is_the_time(option: str) -> None
 )
 def test_an_option_without_a_name_shows_the_form(option: str, message: str) -> None:
     with pytest.raises(ConfigurationError, match=re.escape(message)):
-        ColumnMap.from_options([option])
+        parse_options([option])
 
 
 def test_a_plain_name_that_is_no_column_shows_the_form(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text("Time [s],F [N]\n0,1\n1,2\n")
     with pytest.raises(ConfigurationError, match=r"no column 'force'.*write NAME=COLUMN or"):
-        read_recording(path, ColumnMap.from_options(["force"]))
+        read_recording(path, parse_options(["force"]))
 
 
 def test_a_mark_before_a_map_does_not_matter(tmp_path: Path) -> None:
     path = tmp_path / "map.toml"
     path.write_bytes(b"\xef\xbb\xbftime = 'T:ms'\n")
-    assert ColumnMap.from_toml(path).time == TimeColumn("T", "ms")
+    assert read_column_map(path).time == TimeColumn("T", "ms")
 
 
 @pytest.mark.parametrize(("wrong", "right"), [("kNN", "kN"), ("KN", "kN"), ("MM", "mm")])
 def test_a_misspelt_unit_is_corrected(wrong: str, right: str) -> None:
     with pytest.raises(ConfigurationError, match=f"'{wrong}'; did you mean '{right}'"):
-        ColumnMap.from_options([f"force_aft=F1:{wrong}"])
+        parse_options([f"force_aft=F1:{wrong}"])
     with pytest.raises(ConfigurationError, match="known units: "):
-        ColumnMap.from_options(["force_aft=F1:furlong"])
+        parse_options(["force_aft=F1:furlong"])

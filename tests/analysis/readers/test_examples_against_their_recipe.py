@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.readers import ColumnMap, read_recording
+from analysis.readers import read_recording
+from analysis.readers.columns_toml import read_column_map
 
 FOLDER = Path(__file__).parents[3] / "examples" / "recordings"
 
@@ -30,7 +31,7 @@ def test_the_script_writes_it_again(recipe: dict[str, Any], tmp_path: Path) -> N
 
 
 def test_the_map_gives_the_harmonics_of_the_recipe(recipe: dict[str, Any]) -> None:
-    columns = ColumnMap.from_toml(FOLDER / "heave.toml")
+    columns = read_column_map(FOLDER / "heave.toml")
     recording = read_recording(FOLDER / "heave.csv.gz", columns)
     assert recording.channel_names == ("displacement_aft", "force_aft", "force_fore")
     assert recording.flags == ()

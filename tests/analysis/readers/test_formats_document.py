@@ -10,7 +10,9 @@ import pytest
 import xarray as xr
 
 from analysis.coefficients.campaign_plan import OWN_MODEL
-from analysis.readers import ColumnMap, from_dataset, read_recording
+from analysis.readers import from_dataset, read_recording
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import read_column_map
 from analysis.readers.photocell import read_edges
 from hardware.description import dataset as schema
 from hardware.description.channels import Channel
@@ -59,12 +61,12 @@ def test_text_examples_are_read(tmp_path: Path, text: str) -> None:
 def test_column_maps_are_read(tmp_path: Path, text: str) -> None:
     path = tmp_path / "map.toml"
     path.write_text(text, encoding="utf-8")
-    assert ColumnMap.from_toml(path).photocell is not None
+    assert read_column_map(path).photocell is not None
 
 
 @pytest.mark.parametrize("text", blocks("options"))
 def test_options_are_read(text: str) -> None:
-    assert ColumnMap.from_options(text.splitlines()).channels
+    assert parse_options(text.splitlines()).channels
 
 
 @pytest.mark.parametrize("text", blocks("json"))
@@ -125,7 +127,7 @@ def test_keys_of_the_map_are_documented(tmp_path: Path) -> None:
     path = tmp_path / "map.toml"
     path.write_text("zzzzzz = 1\n", encoding="utf-8")
     with pytest.raises(Exception, match="known: ") as caught:
-        ColumnMap.from_toml(path)
+        read_column_map(path)
     known = str(caught.value).split("known: ")[1].split(", ")
     documented = {row[0].strip("`").split(".")[0] for row in cells("Column map")}
     assert set(known) == documented

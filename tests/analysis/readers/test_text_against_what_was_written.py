@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from analysis.readers import ColumnMap, read_recording
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import parse_column_map
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.flags import Severity
@@ -216,7 +218,7 @@ def test_missing_cells_and_own_marks_of_missing(tmp_path: Path) -> None:
     lines = text.splitlines()
     for row, mark in ((30, "NaN"), (50, ""), (70, "-9999"), (80, " nan ")):
         lines[row + 1] = f"{lines[row + 1].split(',')[0]},{mark}"
-    columns = ColumnMap.from_table({"missing": ["-9999"]}, "map")
+    columns = parse_column_map({"missing": ["-9999"]}, "map")
     recording = read(tmp_path, "\n".join([*lines, ""]), columns)
     assert codes(recording) == ["repaired"]
     assert "4 missing sample(s)" in recording.flags[0].message
@@ -243,7 +245,7 @@ def test_infinite_values_count_as_missing(tmp_path: Path) -> None:
 def test_map_renames_turns_scales_and_converts(tmp_path: Path) -> None:
     text = table("Time [s],U [V]")
     channel = {"column": "U", "unit": "kN", "sign": -1, "scale": 0.2, "full_scale": 0.5}
-    columns = ColumnMap.from_table({"channels": {"force_aft": channel}}, "map.toml")
+    columns = parse_column_map({"channels": {"force_aft": channel}}, "map.toml")
     recording = read(tmp_path, text, columns)
     assert recording.channels == (Channel("force_aft", "N", 500.0),)
     assert recording.values("force_aft") == pytest.approx(-0.2 * 1e3 * signal(), rel=1e-15)
@@ -254,25 +256,25 @@ def test_map_renames_turns_scales_and_converts(tmp_path: Path) -> None:
 def test_unmapped_text_columns_do_no_harm(tmp_path: Path) -> None:
     rows = [f"{n / 100},{f},note {n}" for n, f in enumerate(signal())]
     text = "\n".join(["Time [s],F [N],Comment", *rows, ""])
-    recording = read(tmp_path, text, ColumnMap.from_options(["force_aft=F"]))
+    recording = read(tmp_path, text, parse_options(["force_aft=F"]))
     assert np.array_equal(recording.values("force_aft"), signal())
 
 
 def test_other_columns_are_kept_on_request(tmp_path: Path) -> None:
     text = "Time [s],A [N],B [mm]\n0,1,2\n1,2,3\n2,3,4\n"
-    columns = ColumnMap.from_table({"keep_others": True, "channels": {"x": "A"}}, "map")
+    columns = parse_column_map({"keep_others": True, "channels": {"x": "A"}}, "map")
     assert read(tmp_path, text, columns).channels == (Channel("x", "N"), Channel("B", "m"))
 
 
 def test_columns_can_be_asked_for_by_number(tmp_path: Path) -> None:
     text = "Time [s],F,F\n0,1,2\n1,2,3\n"
-    recording = read(tmp_path, text, ColumnMap.from_options(["b=column_3:N"]))
+    recording = read(tmp_path, text, parse_options(["b=column_3:N"]))
     assert recording.values("b").tolist() == [2.0, 3.0]
 
 
 def test_mapped_time_in_milliseconds(tmp_path: Path) -> None:
     text = "clock,F [N]\n" + "".join(f"{1000 + 5 * n},{n}\n" for n in range(50))
-    recording = read(tmp_path, text, ColumnMap.from_options(["time=clock:ms", "F"]))
+    recording = read(tmp_path, text, parse_options(["time=clock:ms", "F"]))
     assert (recording.sample_rate_hz, recording.start_s) == (200.0, 1.0)
 
 
@@ -280,7 +282,7 @@ def test_photocell_level_becomes_edges(tmp_path: Path) -> None:
     level = [5.0 if (n + 20) % 50 < 10 else 0.0 for n in range(200)]
     rows = [f"{2 + n / 100:.2f},{n},{value}" for n, value in enumerate(level)]
     text = "\n".join(["Time [s],F [N],PC [V]", *rows, ""])
-    recording = read(tmp_path, text, ColumnMap.from_options(["F", "photocell=PC"]))
+    recording = read(tmp_path, text, parse_options(["F", "photocell=PC"]))
     assert recording.channel_names == ("F",)
     assert recording.photocell_edges_s == pytest.approx([2.295, 2.795, 3.295, 3.795])
     assert codes(recording) == ["photocell_sampled"]
@@ -288,13 +290,13 @@ def test_photocell_level_becomes_edges(tmp_path: Path) -> None:
 
 def test_photocell_times_from_a_file_beside(tmp_path: Path) -> None:
     (tmp_path / "run_edges.csv").write_text("edge [ms]\n100.25\n500.5\n")
-    columns = ColumnMap.from_table({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
+    columns = parse_column_map({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
     recording = read(tmp_path, table("Time [s],F [N]"), columns)
     assert recording.photocell_edges_s == pytest.approx([0.10025, 0.5005], abs=1e-15)
 
 
 def test_photocell_times_from_the_map(tmp_path: Path) -> None:
-    columns = ColumnMap.from_table({"photocell": {"edges_s": [0.1, 0.6]}}, "map")
+    columns = parse_column_map({"photocell": {"edges_s": [0.1, 0.6]}}, "map")
     recording = read(tmp_path, table("Time [s],F [N]"), columns)
     assert recording.photocell_edges_s is not None
     assert recording.photocell_edges_s.tolist() == [0.1, 0.6]
@@ -302,7 +304,7 @@ def test_photocell_times_from_the_map(tmp_path: Path) -> None:
 
 def test_photocell_without_an_edge_is_said(tmp_path: Path) -> None:
     text = "Time [s],F [N],PC [V]\n" + "".join(f"{n},{n},0\n" for n in range(50))
-    recording = read(tmp_path, text, ColumnMap.from_options(["F", "photocell=PC"]))
+    recording = read(tmp_path, text, parse_options(["F", "photocell=PC"]))
     assert recording.photocell_edges_s is not None
     assert recording.photocell_edges_s.size == 0
     assert codes(recording) == ["no_photocell_edges"]

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import ColumnMap, read_recording
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import parse_column_map
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 
 GOOD = "Time [s],F [N]\n" + "".join(f"{n / 100:.2f},{n % 7}.5\n" for n in range(200))
@@ -119,7 +121,7 @@ def test_header_alone(tmp_path: Path) -> None:
 
 
 def test_nothing_after_the_skipped_lines(tmp_path: Path) -> None:
-    columns = ColumnMap.from_table({"skip_rows": 500}, "map")
+    columns = parse_column_map({"skip_rows": 500}, "map")
     refused(written(tmp_path, GOOD), "no data in the file after the 500 skipped lines", columns)
 
 
@@ -200,14 +202,14 @@ def test_two_channels_of_one_name(tmp_path: Path) -> None:
 
 
 def test_mapped_column_is_not_there(tmp_path: Path) -> None:
-    columns = ColumnMap.from_options(["force_aft=Fx:N"])
+    columns = parse_options(["force_aft=Fx:N"])
     message = r"no column 'Fx'.*did you mean 'F \[N\]'"
     refused(written(tmp_path, GOOD), message, columns, ConfigurationError)
 
 
 def test_mapped_column_is_there_twice(tmp_path: Path) -> None:
     text = "Time [s],F,F\n0,1,2\n1,2,3\n"
-    columns = ColumnMap.from_options(["force_aft=F:N"])
+    columns = parse_options(["force_aft=F:N"])
     message = "2 columns are 'F'; ask for column_2 or column_3"
     refused(written(tmp_path, text), message, columns, ConfigurationError)
 
@@ -219,25 +221,25 @@ def test_impossible_sample_rate(tmp_path: Path, rate: float) -> None:
 
 
 def test_edges_that_do_not_increase(tmp_path: Path) -> None:
-    columns = ColumnMap.from_table({"photocell": {"edges_s": [0.1, 0.9, 0.8]}}, "map")
+    columns = parse_column_map({"photocell": {"edges_s": [0.1, 0.9, 0.8]}}, "map")
     refused(written(tmp_path, GOOD), "photocell edge 3 does not come after", columns)
 
 
 def test_missing_edges_file(tmp_path: Path) -> None:
-    columns = ColumnMap.from_table({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
+    columns = parse_column_map({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
     with pytest.raises(DataError, match=r"run_edges\.csv: cannot be read: No such file"):
         read_recording(written(tmp_path, GOOD), columns)
 
 
 def test_edges_file_without_a_time_column(tmp_path: Path) -> None:
     written(tmp_path, "A [s],B [s]\n0.1,0.2\n", "edges.csv")
-    columns = ColumnMap.from_table({"photocell": {"edges_file": "edges.csv"}}, "map")
+    columns = parse_column_map({"photocell": {"edges_file": "edges.csv"}}, "map")
     with pytest.raises(DataError, match="name the column of edge times 'time'"):
         read_recording(written(tmp_path, GOOD), columns)
 
 
 def test_edges_file_in_a_unit_of_length(tmp_path: Path) -> None:
     written(tmp_path, "edge [mm]\n0.1\n", "edges.csv")
-    columns = ColumnMap.from_table({"photocell": {"edges_file": "edges.csv"}}, "map")
+    columns = parse_column_map({"photocell": {"edges_file": "edges.csv"}}, "map")
     with pytest.raises(DataError, match="edge times in 'mm'; give them in seconds"):
         read_recording(written(tmp_path, GOOD), columns)

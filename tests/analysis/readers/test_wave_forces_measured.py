@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.readers import ColumnMap, read_recording, write_recording
+from analysis.readers import read_recording, write_recording
+from analysis.readers.columns_options import parse_options
 from hardware.description.channels import Channel
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "wave_forces"
@@ -33,7 +34,7 @@ def test_everything_by_the_headers(name: str) -> None:
 
 @pytest.mark.parametrize("name", RUNS)
 def test_mapped_and_kept_as_netcdf(name: str, tmp_path: Path) -> None:
-    columns = ColumnMap.from_options(["stroke=WM_Position", "Fy"])
+    columns = parse_options(["stroke=WM_Position", "Fy"])
     recording = read_recording(DATA / f"{name}.csv.gz", columns)
     assert recording.channels == (Channel("stroke", "m"), Channel("Fy", "N"))
     stored = read_recording(write_recording(recording, tmp_path / "run.nc"))

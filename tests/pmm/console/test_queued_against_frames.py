@@ -10,7 +10,7 @@ import pytest
 from pmm.console.checking import ReadyPlan
 from pmm.console.encoding import Made
 from pmm.console.limits import MOST_WAITING
-from pmm.console.packing import PackedPlan
+from pmm.console.messages import PackedPlan
 from pmm.console.queued import Queued
 from pmm.plan.plan import Plan
 from tests.pmm.console.serving import OWN, SESSION, served
