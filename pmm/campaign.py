@@ -56,7 +56,31 @@ class RecordedWith:
 
 
 @dataclass(frozen=True)
-class Run:
+class Asked:
+    """What a run of the oscillator was told to do, and what it is called."""
+
+    name: str
+    frequency_hz: float
+    eccentricity_m: float
+    strut_phase_rad: float = 0.0
+    carriage_speed_m_s: float = 0.0
+    medium: Medium = Medium.WATER
+    periods: int = 10
+
+    @property
+    def set_point(self) -> SetPoint:
+        """What the run was told to do."""
+        return SetPoint(
+            self.frequency_hz,
+            self.eccentricity_m,
+            self.strut_phase_rad,
+            self.carriage_speed_m_s,
+            self.medium,
+        )
+
+
+@dataclass(frozen=True)
+class Run(Asked):
     """One run: its set-point, how long it is, and where its recording lies.
 
     Attributes
@@ -88,13 +112,6 @@ class Run:
         Tables of the campaign that were others for it.
     """
 
-    name: str
-    frequency_hz: float
-    eccentricity_m: float
-    strut_phase_rad: float = 0.0
-    carriage_speed_m_s: float = 0.0
-    medium: Medium = Medium.WATER
-    periods: int = 10
     file: str | None = None
     kind: RunKind = RunKind.OSCILLATION
     motion: Motion | None = None
@@ -109,17 +126,6 @@ class Run:
     outcome: str = "complete"
     differs: tuple[str, ...] = ()
     recorded_with: RecordedWith | None = None
-
-    @property
-    def set_point(self) -> SetPoint:
-        """What the run was told to do."""
-        return SetPoint(
-            self.frequency_hz,
-            self.eccentricity_m,
-            self.strut_phase_rad,
-            self.carriage_speed_m_s,
-            self.medium,
-        )
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the run's recording lies: ``<name>.nc`` if it is there, else ``file``."""

@@ -16,7 +16,7 @@ from typing import (
 )
 
 from hardware.description.errors import ConfigurationError
-from hardware.description.toml import parse_toml
+from hardware.description.toml import is_number, parse_toml
 from pmm.places import Place as Place
 from pmm.places import find
 
@@ -190,7 +190,7 @@ def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
         here: Place = (*place, key)
         if isinstance(value, dict | list):
             yield from limit_faults(value, here)
-        elif isinstance(value, int | float) and not isinstance(value, bool):
+        elif is_number(value):
             fault = _number_fault(str(key), value)
             if fault is not None:
                 yield Fault(here, f"= {value:g} {fault}")

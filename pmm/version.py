@@ -3,9 +3,10 @@
 import platform
 import shutil
 import subprocess
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
+
+from hardware.description.version import version_of
 
 _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 
@@ -13,17 +14,10 @@ _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 def version_line() -> str:
     """Return version, commit where it is known, Python, the system, and the libraries' versions."""
     commit = _commit()
-    built = f"pmm {_version('pmm')}" + (f" ({commit})" if commit else "")
-    libraries = ", ".join(f"{name} {_version(name)}" for name in _BESIDE)
+    built = f"pmm {version_of('pmm')}" + (f" ({commit})" if commit else "")
+    libraries = ", ".join(f"{name} {version_of(name)}" for name in _BESIDE)
     system = f"{platform.system()} {platform.machine()}"
     return f"{built}, Python {platform.python_version()}, {system}, {libraries}"
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "from a source tree" if package == "pmm" else "not installed"
 
 
 def _commit() -> str | None:

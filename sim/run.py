@@ -3,7 +3,6 @@
 import json
 import math
 from dataclasses import asdict, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
+from hardware.description.version import version_of
 from sim import signals
 from sim.rig import SimulatedRig
 from sim.signals import Signals
@@ -208,7 +208,7 @@ def _provenance(rig: SimulatedRig, seed: int, settling_periods: int) -> dict[str
     """Return what it takes to simulate the same run again, text to text."""
     return {
         "origin": "simulated",
-        "simulator": f"pmm {_version()}",
+        "simulator": f"pmm {version_of('pmm')}",
         "seed": str(seed),
         "settling_periods": str(settling_periods),
         "rig": json.dumps(asdict(rig), default=_as_list),
@@ -218,16 +218,6 @@ def _provenance(rig: SimulatedRig, seed: int, settling_periods: int) -> dict[str
 def _as_list(matrix: FloatArray) -> list[Any]:
     """Return a matrix as JSON can hold it."""
     return list(matrix.tolist())
-
-
-@cache
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("pmm")
-    except PackageNotFoundError:
-        return "from a source tree"
 
 
 def _peak(values: FloatArray) -> float:

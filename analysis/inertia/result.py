@@ -101,12 +101,7 @@ class InertiaResult:
             "correlations": [
                 {"between": list(pair), "coefficient": r} for pair, r in self.correlations.items()
             ],
-            "budgets": {
-                budget.name: [
-                    {key: _finite(value) for key, value in row.items()} for row in budget.table()
-                ]
-                for budget in self.budgets
-            },
+            "budgets": {budget.name: budget_rows(budget) for budget in self.budgets},
             "flags": [
                 {"code": flag.code, "severity": str(flag.severity), "message": flag.message}
                 for flag in self.flags
@@ -120,13 +115,19 @@ def estimate_numbers(estimate: Estimate) -> dict[str, object]:
     return {
         "value": estimate.value,
         "standard_uncertainty": estimate.uncertainty,
-        "degrees_of_freedom": _finite(estimate.degrees_of_freedom),
+        "degrees_of_freedom": finite_or_none(estimate.degrees_of_freedom),
         "interval_95": [low, high],
         "unit": estimate.unit,
     }
 
 
-def _finite(value: float | str) -> float | str | None:
+def budget_rows(budget: Budget) -> list[dict[str, object]]:
+    """Return the rows of a budget as JSON takes them."""
+    return [{key: finite_or_none(value) for key, value in row.items()} for row in budget.table()]
+
+
+def finite_or_none(value: float | str) -> float | str | None:
+    """Return a value as JSON takes it: ``None`` for a number that is infinite or not one."""
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -4,7 +4,7 @@ import datetime
 import math
 import tomllib
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
 from hardware.description.errors import ConfigurationError
 
@@ -72,3 +72,8 @@ def _values(tables: dict[str, Any]) -> Iterator[tuple[Any, Any, Any, Place]]:
             yield holder, key, value, (*at, key)
             if isinstance(value, dict | list):
                 waiting.append((value, (*at, key)))
+
+
+def is_number(value: object) -> TypeGuard[int | float]:
+    """Tell whether a TOML value is a number; true and false are none."""
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,8 +1,8 @@
 """What made the numbers: program, commit, Python and the libraries that were used."""
 
 import platform
-from importlib.metadata import PackageNotFoundError, version
 
+from hardware.description.version import version_of
 from pmm.version import version_line
 
 _PACKAGES = ("numpy", "scipy", "h5netcdf", "matplotlib")
@@ -13,12 +13,5 @@ def provenance() -> tuple[tuple[str, str], ...]:
     return (
         ("program", version_line()),
         ("system", f"{platform.system()} {platform.machine()}"),
-        *((name, _version(name)) for name in _PACKAGES),
+        *((name, version_of(name)) for name in _PACKAGES),
     )
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed"

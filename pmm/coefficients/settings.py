@@ -4,11 +4,12 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, ClassVar, Final, TypeGuard
+from typing import Any, ClassVar, Final
 
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated import Stated
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 
@@ -179,28 +180,24 @@ def _value_faults(table: dict[str, Any]) -> list[Fault]:
     ship = table.get("ship")
     for key in _ABOVE_0 if isinstance(ship, dict) else ():
         value = ship.get(key) if isinstance(ship, dict) else None
-        if _is_number(value) and not value > 0.0:
+        if is_number(value) and not value > 0.0:
             faults.append(Fault(("ship", key), f"= {value:g} should be above 0"))
     stated = table.get("uncertainty")
     for key, value in stated.items() if isinstance(stated, dict) else ():
-        if _is_number(value) and value < 0.0:
+        if is_number(value) and value < 0.0:
             faults.append(Fault(("uncertainty", key), f"= {value:g} should be 0 or more"))
     pairs = ("restoring", "calibration_matrix")
     faults += [Fault((key,), _PAIR) for key in pairs if key in table and not _is_pair(table[key])]
     level = table.get("level")
-    if _is_number(level) and not 0.0 < level < 1.0:
+    if is_number(level) and not 0.0 < level < 1.0:
         faults.append(Fault(("level",), f"= {level:g} is no probability between 0 and 1"))
     return faults
-
-
-def _is_number(value: Any) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _is_pair(value: Any) -> bool:
     rows = value if isinstance(value, list) else []
     return len(rows) == 2 and all(
-        isinstance(row, list) and len(row) == 2 and all(map(_is_number, row)) for row in rows
+        isinstance(row, list) and len(row) == 2 and all(map(is_number, row)) for row in rows
     )
 
 

@@ -2,7 +2,6 @@
 
 import ctypes
 import os
-import shutil
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -13,6 +12,7 @@ from typing import Final
 
 from hardware.serial_port import PluggedPort, plugged_ports
 from pmm.real_time import may_lock_memory
+from pmm.recorder.disk import free_bytes
 
 _NAPS: Final = 40
 _NAP_S: Final = 0.002
@@ -46,13 +46,6 @@ def may_write(folder: Path) -> bool:
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     return folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)
-
-
-def free_bytes(folder: Path) -> int:
-    """Return the space that is left on the disk that a folder lies on, or will lie on."""
-    while not folder.exists() and folder != folder.parent:
-        folder = folder.parent
-    return shutil.disk_usage(folder).free
 
 
 def highest_priority() -> int | None:

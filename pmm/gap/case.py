@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices
 from hardware.description.oscillator import Range
-from hardware.description.setpoint import Medium, SetPoint
-from pmm.campaign import Campaign
+from hardware.description.setpoint import Medium
+from pmm.campaign import Asked, Campaign
 from pmm.configuration import Fault, as_error, read_toml, validate
 from sim.effects.effect import Measurement
 
@@ -19,28 +19,10 @@ CASE_FILE = "case.toml"
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class HeldOut(Asked):
     """A run whose outcome is to be foretold; keys as those of a campaign's runs."""
 
-    name: str
-    frequency_hz: float
-    eccentricity_m: float
-    strut_phase_rad: float = 0.0
-    carriage_speed_m_s: float = 0.0
-    medium: Medium = Medium.WATER
-    periods: int = 10
     regime: str = ""
-
-    @property
-    def set_point(self) -> SetPoint:
-        """What the run would be told to do."""
-        return SetPoint(
-            self.frequency_hz,
-            self.eccentricity_m,
-            self.strut_phase_rad,
-            self.carriage_speed_m_s,
-            self.medium,
-        )
 
 
 @dataclass(frozen=True)

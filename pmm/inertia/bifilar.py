@@ -198,7 +198,7 @@ def _tilts(
             share = line_share(at, given(table.model, "mass_kg"))
             own = yaw_off_lines(one if one.half_spacing_m else at, share, own)
         gyradius = without_air(table, own).result
-        angle = given(one, "angle_deg" if one.angle_deg is not None else "angle_rad")
+        angle = one.angle
         tests.append((angle, gyradius))
     found, axes = plane_axes(level, gyradii.get("roll"), tests, table.monte_carlo_seed + 30)
     findings += found

@@ -1,9 +1,8 @@
 """Roll from tilted yaw tests, and the principal axes in the centre plane."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from analysis.inertia.budget import Formula
 from analysis.inertia.estimate import Estimate
@@ -18,8 +17,7 @@ from analysis.inertia.principal import (
 )
 from hardware.description.errors import ConfigurationError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
-from pmm.inertia.reading import one_of
-from pmm.inertia.sources import PeriodSource
+from pmm.inertia.sources import AngledPeriod
 
 _WORDS = {
     "psi_rad": "principal x axis, from body x",
@@ -29,26 +27,16 @@ _WORDS = {
 
 
 @dataclass(frozen=True)
-class TiltedTable(PeriodSource):
+class TiltedTable(AngledPeriod):
     """A yaw test of the tilted body: the axis' angle to body z, and the period.
 
     Lines and spacing are those of the level test unless given.
     """
 
-    angle_deg: float | None = None
-    u_angle_deg: float = 0.0
-    angle_rad: float | None = None
-    u_angle_rad: float = 0.0
     half_spacing_m: float | None = None
     u_half_spacing_m: float = 0.0
     line_m: float | None = None
     u_line_m: float = 0.0
-
-    @staticmethod
-    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """One angle, one way to the period."""
-        yield from PeriodSource.rules(table)
-        yield from one_of(table, "angle_deg", "angle_rad")
 
 
 def plane_axes(

@@ -1,13 +1,12 @@
 """An outcome as JSON takes it: the same numbers as in the tables."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 from analysis.inertia.amplitude import PowerDecay
 from analysis.inertia.monte_carlo import Assessment
-from analysis.inertia.result import estimate_numbers
+from analysis.inertia.result import budget_rows, estimate_numbers, finite_or_none
 from pmm.inertia.fits import FormFit
 from pmm.inertia.outcome import Finding, Outcome
 from pmm.inertia.sources import PeriodRuns
@@ -65,9 +64,7 @@ def _finding(one: Finding) -> dict[str, Any]:
 def _assessment(one: Assessment) -> dict[str, Any]:
     trial = one.monte_carlo
     return {
-        "budget": [
-            {key: _finite(value) for key, value in row.items()} for row in one.budget.table()
-        ],
+        "budget": budget_rows(one.budget),
         "linear": {
             "value": one.budget.result.value,
             "standard_uncertainty": one.budget.result.uncertainty,
@@ -97,11 +94,7 @@ def _period(one: PeriodRuns) -> dict[str, Any]:
 def _decay(one: PowerDecay) -> dict[str, Any]:
     return {
         "amplitude": one.amplitude,
-        "time_constant_s": _finite(one.time_constant_s),
+        "time_constant_s": finite_or_none(one.time_constant_s),
         "beta": one.beta,
         "beta_uncertainty": one.beta_uncertainty,
     }
-
-
-def _finite(value: float | str) -> float | str | None:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar, get_args, get_type_hints
 from analysis.readers import ColumnMap
 from analysis.readers.columns_toml import parse_column_map
 from hardware.description.errors import ConfigurationError
+from hardware.description.toml import is_number
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 
 Table = TypeVar("Table")
@@ -123,7 +124,7 @@ def _own_limits(table: Any, place: Place = ()) -> Iterator[Fault]:
         here: Place = (*place, key)
         if isinstance(value, dict | list):
             yield from _own_limits(value, here)
-        elif isinstance(value, int | float) and not isinstance(value, bool):
+        elif is_number(value):
             if key in _ABOVE_0 and value <= 0:
                 yield Fault(here, f"= {value:g} should be above 0")
             elif _never_below_0(key) and value < 0:

@@ -18,6 +18,7 @@ from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from pmm.inertia.channels import chosen_series, true_angles
+from pmm.inertia.given import given
 from pmm.inertia.reading import Job, one_of
 
 _PARTS = 6  # of a single light gates' run
@@ -82,6 +83,27 @@ class PeriodSource:
             return None
         freedom = self.known_scatter_degrees_of_freedom or float("inf")
         return Estimate(self.known_scatter_s, 0.0, "s", freedom)
+
+
+@dataclass(frozen=True)
+class AngledPeriod(PeriodSource):
+    """The period of a body that hangs turned, and its angle."""
+
+    angle_deg: float | None = None
+    u_angle_deg: float = 0.0
+    angle_rad: float | None = None
+    u_angle_rad: float = 0.0
+
+    @staticmethod
+    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+        """One angle, one way to the period."""
+        yield from PeriodSource.rules(table)
+        yield from one_of(table, "angle_deg", "angle_rad")
+
+    @property
+    def angle(self) -> Estimate:
+        """The angle in radians."""
+        return given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
 
 
 @dataclass(frozen=True)

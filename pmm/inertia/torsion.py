@@ -14,7 +14,7 @@ from hardware.description.errors import DataError
 from pmm.inertia.given import given
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.reading import Job, one_of
-from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
+from pmm.inertia.sources import AngledPeriod, PeriodRuns, PeriodSource, read_period
 
 
 @dataclass(frozen=True)
@@ -31,24 +31,8 @@ class BarTable:
 
 
 @dataclass(frozen=True)
-class TorsionAxis(PeriodSource):
+class TorsionAxis(AngledPeriod):
     """The body hung with the rod at an angle to its z axis, towards x."""
-
-    angle_deg: float | None = None
-    u_angle_deg: float = 0.0
-    angle_rad: float | None = None
-    u_angle_rad: float = 0.0
-
-    @staticmethod
-    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """One angle, one way to the period."""
-        yield from PeriodSource.rules(table)
-        yield from one_of(table, "angle_deg", "angle_rad")
-
-    @property
-    def angle(self) -> Estimate:
-        """The angle in radians."""
-        return given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
 
 
 @dataclass(frozen=True)

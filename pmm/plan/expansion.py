@@ -3,16 +3,15 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
-from typing import Any, TypeVar
+from typing import Any
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import LoadDirection, LoadStep
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.plan.plan_tables import Defaults, Entry
+from pmm.plan.plan_tables import Defaults, Entry, first_of
 from pmm.plan.run_plan import RunPlan
 
-T = TypeVar("T")
 Lists = Sequence[Sequence[Any]]
 Combine = Callable[[Lists], Iterator[tuple[Any, ...]]]
 # Of a plan: six weeks of six-minute runs. Each takes some kilobytes, and a line on every page.
@@ -72,7 +71,7 @@ def expand(
     """
     if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
         return _loads(entry, defaults, channels)
-    repeats = range(1, 1 + _either(entry.repeats, defaults.repeats))
+    repeats = range(1, 1 + first_of(entry.repeats, defaults.repeats))
     if entry.kind is RunKind.RESTORING and not entry.frequencies_hz:
         frequencies: tuple[float, ...] = (oscillator.frequency_hz.low,)
     else:
@@ -90,7 +89,7 @@ def expand(
 
 def run_count(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> int:
     """Return how many runs :func:`expand` would make of an entry."""
-    repeats = _either(entry.repeats, defaults.repeats)
+    repeats = first_of(entry.repeats, defaults.repeats)
     if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
         return repeats * len(entry.channels or channels) * len(entry.loads_n)
     lists: Lists = (
@@ -101,10 +100,6 @@ def run_count(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> int:
         entry.frequencies_hz,
     )
     return repeats * math.prod(max(1, len(one)) for one in lists)
-
-
-def _either(value: T | None, default: T) -> T:
-    return default if value is None else value
 
 
 def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]) -> RunPlan:
@@ -131,7 +126,7 @@ def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[An
         known_mass=entry.known_mass,
         prompts=(entry.prompt,) if entry.prompt else (),
         entry=entry.name or _prefix(entry),
-        pause_before_s=_either(entry.pause_s, defaults.pause_s),
+        pause_before_s=first_of(entry.pause_s, defaults.pause_s),
         **_lengths(entry, defaults, oscillates=frequency > 0.0),
     )
 
@@ -139,13 +134,13 @@ def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[An
 def _lengths(entry: Entry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:
     """Return how long a run takes: its periods, or its duration."""
     if not oscillates:
-        return {"duration_s": _either(entry.duration_s, defaults.duration_s)}
-    periods = _either(entry.periods, defaults.periods)
-    target = _either(entry.target_relative, defaults.target_relative)
-    most = _either(entry.max_periods, defaults.max_periods)
+        return {"duration_s": first_of(entry.duration_s, defaults.duration_s)}
+    periods = first_of(entry.periods, defaults.periods)
+    target = first_of(entry.target_relative, defaults.target_relative)
+    most = first_of(entry.max_periods, defaults.max_periods)
     return {
         "periods": periods,
-        "settling_periods": _either(entry.settling_periods, defaults.settling_periods),
+        "settling_periods": first_of(entry.settling_periods, defaults.settling_periods),
         "target_relative": target,
         "max_periods": periods if target is None or most is None else most,
     }
@@ -183,7 +178,7 @@ def _loads(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> list[Ru
     if entry.kind is RunKind.CHECK_WEIGHT:
         steps += [(load, LoadDirection.DOWN) for load in entry.loads_n[-2::-1]]
     runs = []
-    for repeat in range(1, 1 + _either(entry.repeats, defaults.repeats)):
+    for repeat in range(1, 1 + first_of(entry.repeats, defaults.repeats)):
         for channel in entry.channels or channels:
             for number, (load, direction) in enumerate(steps, 1):
                 step = LoadStep(channel, load, direction)
@@ -202,8 +197,8 @@ def _loaded(entry: Entry, defaults: Defaults, step: LoadStep, repeat: int, numbe
         kind=entry.kind,
         motion=Motion.NONE,
         set_point=SetPoint(0.0, 0.0, medium=entry.medium or Medium.WATER),
-        duration_s=_either(entry.duration_s, defaults.duration_s),
-        pause_before_s=_either(entry.pause_s, defaults.pause_s),
+        duration_s=first_of(entry.duration_s, defaults.duration_s),
+        pause_before_s=first_of(entry.pause_s, defaults.pause_s),
         repeat=repeat,
         load=step,
         prompts=(entry.prompt,) if entry.prompt else (),

@@ -1,14 +1,12 @@
 """What an entry of each kind needs, and what is of no use to it."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator, Plane
 from pmm.configuration import Fault, Place, unknown
-from pmm.plan.plan_tables import Control, Defaults, Entry
-
-T = TypeVar("T")
+from pmm.plan.plan_tables import Control, Defaults, Entry, first_of
 
 _KEYS: Final = tuple(Entry.__dataclass_fields__)
 _ALWAYS: Final = {"kind", "name", "repeats", "pause_s", "prompt"}
@@ -126,19 +124,15 @@ def end_faults(entry: Entry, defaults: Defaults, place: Place) -> Iterator[Fault
     """Yield what is wrong with an end by target, defaults included."""
     if entry.motion is None:
         return
-    target = _first(entry.target_relative, defaults.target_relative)
+    target = first_of(entry.target_relative, defaults.target_relative)
     fewest = entry.periods or defaults.periods
-    most = _first(entry.max_periods, defaults.max_periods)
+    most = first_of(entry.max_periods, defaults.max_periods)
     if target is not None and most is None:
         yield Fault(place, "has a target_relative and needs max_periods, where it ends at last")
     elif target is None and most is not None:
         yield Fault(place, "has max_periods and needs target_relative, or periods alone")
     elif most is not None and most < fewest:
         yield Fault(place, f"has max_periods = {most}, which is below periods = {fewest}")
-
-
-def _first(value: T | None, default: T | None) -> T | None:
-    return default if value is None else value
 
 
 def _motion_faults(entry: Entry, place: Place) -> Iterator[Fault]:

@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium
+
+T = TypeVar("T")
 
 
 class Scheme(StrEnum):
@@ -167,3 +169,8 @@ class PlanTables:
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+
+
+def first_of(value: T | None, default: T) -> T:
+    """Return what an entry says, or the default where it says nothing."""
+    return default if value is None else value

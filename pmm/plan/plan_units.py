@@ -3,6 +3,7 @@
 import math
 from typing import Any, Final
 
+from hardware.description.toml import is_number
 from pmm.configuration import Fault, Place
 
 _DEGREE: Final = math.pi / 180.0
@@ -61,15 +62,11 @@ def _expand(
         value, (si_key, factor) = table.pop(key), units[key]
         if si_key in table:
             faults.append(Fault((*place, key), f"and {si_key} are both given; one is enough"))
-        elif isinstance(value, list) and units is _LISTS and all(map(_is_number, value)):
+        elif isinstance(value, list) and units is _LISTS and all(map(is_number, value)):
             table[si_key] = [one * factor for one in value]
-        elif _is_number(value):
+        elif is_number(value):
             table[si_key] = value * factor
         else:
             many = " or a list of numbers" if units is _LISTS else ""
             faults.append(Fault((*place, key), f"= {value!r} should be a number{many}"))
             table[si_key] = [1.0] if units is _LISTS else 1.0  # not reported as missing too
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

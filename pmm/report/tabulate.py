@@ -2,12 +2,12 @@
 
 import platform
 from dataclasses import dataclass, fields
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
 from analysis.resolver.analyse import Analysis
 from analysis.resolver.harmonics import Harmonics
+from hardware.description.version import version_of
 from pmm.flag_lines import FlagLine, flag_lines
 from pmm.labels import display, loads_first, plain
 from pmm.report.gated import caption
@@ -131,11 +131,7 @@ def _plain(value: object) -> str:
 
 def versions() -> list[tuple[str, str]]:
     """Return the versions of what made the numbers."""
-    return [("Python", platform.python_version()), *((name, _version(name)) for name in _PACKAGES)]
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed, run from its sources"
+    return [
+        ("Python", platform.python_version()),
+        *((name, version_of(name)) for name in _PACKAGES),
+    ]

@@ -12,6 +12,7 @@ from hardware.description import dataset as schema
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
+from hardware.description.version import version_of
 from sim import signals
 from sim.pendulum.bench import PendulumBench
 from sim.signals import Signals
@@ -118,7 +119,7 @@ def record(
     truth = bench.body.truth
     provenance = {
         "origin": "simulated",
-        "simulator": f"pmm {_version()}",
+        "simulator": f"pmm {version_of('pmm')}",
         "test": test,
         "seed": str(seed),
         "truth": json.dumps(truth),
@@ -193,12 +194,3 @@ def _dataset(
         variables[schema.EDGE_TIME] = (schema.EDGE, gates[0].time_s, {schema.UNITS: "s"})
     time_s = (schema.TIME, np.arange(count) / sample_rate_hz, {schema.UNITS: "s"})
     return xr.Dataset(variables, coords={schema.TIME: time_s})
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("pmm")
-    except PackageNotFoundError:
-        return "from a source tree"
