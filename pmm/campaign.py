@@ -27,10 +27,10 @@ from sim.effects.effect import Effect
 from sim.gauges.dynamometer import Dynamometers
 from sim.mechanism.linkage import Setting
 from sim.model.acting import Acting
-from sim.model.forces import CrossFlow
 from sim.model.hull import HullCoefficients
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import CrossFlow
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
 

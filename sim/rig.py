@@ -18,10 +18,10 @@ from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometers, Gauge
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.acting import Acting
-from sim.model.forces import CrossFlow
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import CrossFlow
 from sim.model.water.radiation import Radiation
 from sim.solve.coupled import Coupled, reflected_inertia
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage

@@ -1,8 +1,7 @@
 """The forces on the model that its linear system does not have: exact geometry, and laws."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,33 +19,7 @@ from sim.model.numbers import (
 )
 from sim.model.system import HullSystem
 from sim.solve.corners import nodes_between
-from sim.solve.linear import Rows, as_rows
 from sim.solve.period import Period
-from sim.stage import UNKNOWN_KEYS_REFUSED
-
-
-@dataclass(frozen=True)
-class CrossFlow:
-    """Cubic and quadratic loads of both velocities through the water, coupled.
-
-    Attributes
-    ----------
-    cubic, quadratic
-        Rows force and moment; columns as in :mod:`sim.model.water.force_laws`. ``None`` for none.
-    """
-
-    cubic: Rows | None = None
-    quadratic: Rows | None = None
-
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-
-    def scaled(self, factor: float) -> "CrossFlow":
-        """Return loads that are larger by a factor."""
-        return CrossFlow(_times(self.cubic, factor), _times(self.quadratic, factor))
-
-
-def _times(rows: Rows | None, factor: float) -> Rows | None:
-    return None if rows is None else as_rows(np.array(rows) * factor)
 
 
 class ModelMotion(NamedTuple):

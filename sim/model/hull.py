@@ -1,29 +1,24 @@
 """Model, water and mounting: from the motion of the struts to the forces that they exert."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import FloatArray
-from hardware.description.body import Body
-from hardware.description.oscillator import Plane
 from hardware.description.struts import to_motion
 from sim import signals
-from sim.model.acting import Acting
 from sim.model.blocks import BlockForces, HullState
 from sim.model.coefficients import HullCoefficients, mass_matrix, weight_matrix
-from sim.model.forces import CrossFlow, Instants
-from sim.model.mounting import Mounting
+from sim.model.forces import Instants
 from sim.model.numbers import numbers_of, turns_with
+from sim.model.parameters import ModelParameters
 from sim.model.steady import HullSteady
-from sim.model.surge import SurgeForces
 from sim.model.system import HullSystem
-from sim.model.water.radiation import Radiation, constant
+from sim.model.water.radiation import constant
 from sim.signals import Signal, Signals
 from sim.solve.linear import Hold
 from sim.solve.model_march import Marching, marching_of
@@ -38,7 +33,7 @@ ValueT = TypeVar("ValueT", np.float64, np.complex128)
 
 
 @dataclass(frozen=True)
-class Hull:
+class Hull(ModelParameters):
     """A rigid model in water, or in air where the water has no coefficients, on its mounting.
 
     The struts' motion moves the model exactly (:mod:`sim.mechanism.geometry`), whatever its angle:
@@ -55,46 +50,7 @@ class Hull:
     sample by sample, or by sweeps over the block until nothing changes any more. On a rigid
     mounting the model moves as the struts do. Else gauges and frame give way, and model, water and
     mounting are solved together.
-
-    Attributes
-    ----------
-    radiation
-        The water's memory, and its added mass at infinite frequency, besides ``water``; ``None``
-        where constant coefficients say all.
-    laws, cross_flow
-        Forces that depend on the motion at once.
-    carriage_speed_m_s
-        Mean speed of the flow past the model, about which the memory is linear. The carriage's
-        speed itself is a signal.
-    flow_factor
-        Speed of the flow past the model over the carriage's.
-    drift_rad
-        Steady heading of the model against the carriage's way, bow to starboard or up, set as the
-        arrangement says.
-    arrangement
-        Of struts, gauges and drift; not a turntable.
-    surge
-        The water's force along the model.
-    afloat
-        Whether buoyancy carries the model: it then displaces its own mass, centred between the
-        struts' attachments in height and below the centre of gravity along the model. Else, in the
-        vertical plane, the weight hangs on the struts whole.
     """
-
-    plane: Plane
-    half_spacing_m: float
-    body: Body
-    water: HullCoefficients = field(default_factory=HullCoefficients)
-    radiation: Radiation | None = None
-    mounting: Mounting = field(default_factory=Mounting)
-    laws: tuple[Acting, ...] = ()
-    cross_flow: CrossFlow | None = None
-    carriage_speed_m_s: float = 0.0
-    flow_factor: float = 1.0
-    drift_rad: float = 0.0
-    arrangement: Arrangement = field(default_factory=Arrangement)
-    surge: SurgeForces | None = None
-    afloat: bool = True
 
     name: ClassVar[str] = "hull"
     reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
@@ -169,7 +125,7 @@ class Hull:
             here = instants._replace(
                 time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
             )
-            forces_here = hull._over(here, marching_of(hull, step_s))
+            forces_here = hull._over(here, marching_of(hull.laws, hull.system, step_s))
             state, force = forces_here.with_memory(state, struts[part], _holds(hull, step_s))
             forces.append(force)
             first += count
@@ -184,7 +140,7 @@ class Hull:
         if self.mounting.joint is not None:
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
-        model = HullSteady(hull, period)
+        model = HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
         return period, self._written(model.force(y, model.balanced(y)).T)
 
     def at_speed(self, inputs: Spectra) -> "Hull":

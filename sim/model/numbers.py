@@ -1,7 +1,6 @@
 """The numbers of a hull that :mod:`sim.mechanism.geometry` reckons with, and their consequences."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +10,12 @@ from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.mechanism import geometry
 from sim.mechanism.geometry import BodyMotion, body_loads, body_motion, gauge_readings
-
-if TYPE_CHECKING:
-    from sim.model.hull import Hull
+from sim.model.parameters import ModelParameters
 
 _BENDING = slice(geometry.QUADRATIC, geometry.QUADRATIC + 2)
 
 
-def numbers_of(hull: "Hull", added_mass: FloatArray, linear: FloatArray) -> FloatArray:
+def numbers_of(hull: ModelParameters, added_mass: FloatArray, linear: FloatArray) -> FloatArray:
     """Return the numbers of a hull, shape ``(ROWS, COLUMNS)`` of :mod:`sim.mechanism.geometry`.
 
     Parameters
@@ -90,7 +87,7 @@ def turns_with(plane: Plane) -> float:
     return -1.0 if plane is Plane.VERTICAL else 1.0
 
 
-def _geometry(hull: "Hull") -> tuple[float, ...]:
+def _geometry(hull: ModelParameters) -> tuple[float, ...]:
     given, angle = hull.arrangement, turns_with(hull.plane) * hull.drift_rad
     rig, offset, struts = (angle if given.drift_by is by else 0.0 for by in DriftBy)
     on_model = given.joint is Joint.SLIDES_ON_MODEL
@@ -107,7 +104,7 @@ def _geometry(hull: "Hull") -> tuple[float, ...]:
     )
 
 
-def _fill_body(found: FloatArray, hull: "Hull") -> None:
+def _fill_body(found: FloatArray, hull: ModelParameters) -> None:
     body, vertical = hull.body, hull.plane is Plane.VERTICAL
     below = body.cg_z_m if vertical else 0.0
     found[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
@@ -118,7 +115,7 @@ def _fill_body(found: FloatArray, hull: "Hull") -> None:
         found[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * weights
 
 
-def _fill_water(found: FloatArray, hull: "Hull", added_mass: FloatArray) -> None:
+def _fill_water(found: FloatArray, hull: ModelParameters, added_mass: FloatArray) -> None:
     side = turns_with(hull.plane)
     turned = np.array([[1.0, side], [side, 1.0]])
     matrices = (added_mass, hull.water.damping, hull.water.restoring)
@@ -131,7 +128,7 @@ def _fill_water(found: FloatArray, hull: "Hull", added_mass: FloatArray) -> None
         _fill_cross_flow(found, hull, side)
 
 
-def _fill_cross_flow(found: FloatArray, hull: "Hull", side: float) -> None:
+def _fill_cross_flow(found: FloatArray, hull: ModelParameters, side: float) -> None:
     given = hull.cross_flow
     kinds = (
         (geometry.CUBIC, None if given is None else given.cubic, (1.0, side, 1.0, side)),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hardware.description.arrays import ComplexArray
+from sim.model.acting import Acting
 from sim.model.forces import law_harmonics
 from sim.model.system import HullSystem
 from sim.solve.model_march import periodic_laws
@@ -14,7 +15,6 @@ from sim.solve.period import Period
 from sim.solve.relaxation import relax
 
 if TYPE_CHECKING:
-    from sim.model.hull import Hull
     from sim.solve.balance import LawBalance
 
 
@@ -26,18 +26,20 @@ class HullSteady:
     and along the model. ``laws`` are what :func:`sim.model.forces.law_forces` asks for.
     """
 
-    hull: "Hull"
+    acting: tuple[Acting, ...]
+    system: HullSystem
+    speed_m_s: float
     period: Period
 
     @cached_property
     def impedance(self) -> ComplexArray:
         """Force per displacement of the model, ``(orders + 1, 2, 2)``."""
-        return self.hull.system.impedance(self.period.s)[0]
+        return self.system.impedance(self.period.s)[0]
 
     @cached_property
     def give(self) -> ComplexArray | None:
         """What the model gives way per rigid load, as large; ``None`` for a rigid mounting."""
-        return _mounting_gain(self.hull.system, self.impedance, self.period)
+        return _mounting_gain(self.system, self.impedance, self.period)
 
     def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return the forces where the laws ask for ``laws``."""
@@ -53,14 +55,7 @@ class HullSteady:
         h = self._model(y, laws)
         column = self.period.s[:, np.newaxis]
         waves = np.hstack([h, h * column, h * column**2, _apply(self.impedance, h)])
-        hull = self.hull
-        return law_harmonics(
-            hull.laws,
-            hull.system,
-            waves,
-            self.period,
-            hull.carriage_speed_m_s,
-        )
+        return law_harmonics(self.acting, self.system, waves, self.period, self.speed_m_s)
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
         """Return what the laws ask for, in balance with what the mounting gives way."""
@@ -88,13 +83,12 @@ class HullSteady:
 
     @cached_property
     def _compiled(self) -> "LawBalance | None":
-        table = periodic_laws(self.hull)
+        table = periodic_laws(self.acting, self.system)
         if table is None:
             return None
         from sim.solve.balance import LawBalance
 
-        speed_m_s = self.hull.carriage_speed_m_s
-        return LawBalance(table, self.give, self.impedance, self.period, speed_m_s)
+        return LawBalance(table, self.give, self.impedance, self.period, self.speed_m_s)
 
 
 def _mounting_gain(

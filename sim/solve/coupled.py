@@ -126,13 +126,18 @@ class Coupled:
         A gear with backlash is run on until its motion repeats.
         """
         if self.drive.settings.gear is None:
-            return CoupledSteady(self, period, inputs).solve()
+            return self._balanced(period, inputs)
         settings = replace(self.drive.settings, gear=None)
         held = replace(self, drive=replace(self.drive, settings=settings))
         real = period.at(settings.frequency_hz(self.drive.frequency_hz))
         if self.drive.motor is not None:
-            real, _ = CoupledSteady(held, period, inputs).solve()
+            real, _ = held._balanced(period, inputs)
         return real, self._settled(real, inputs)
+
+    def _balanced(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
+        parts = CoupledSteady(self.drive, self.mechanism, self.hull, period, inputs)
+        real, found = parts.solve()
+        return real, {one.name: found[one.name] for one in self.writes}
 
     def _settled(self, real: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of all parts after as many periods as it takes."""

@@ -189,7 +189,7 @@ def coupled_march(
     numbered = all(has_number(one.law) for one in hull.laws)
     if play or not numbered or inputs.keys() != {signals.CARRIAGE_SPEED.name}:
         return None
-    model = marching_of(hull, 1.0 / block.sample_rate_hz, shaft.gap[1] > 0.0)
+    model = marching_of(hull.laws, hull.system, 1.0 / block.sample_rate_hz, shaft.gap[1] > 0.0)
     if model is None:
         return None
     flow = hull.flow_factor * inputs[signals.CARRIAGE_SPEED.name]

@@ -1,21 +1,19 @@
 """The periodic steady state of a drive that feels its load, with the load it feels."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hardware.description.arrays import ComplexArray
 from sim import signals
+from sim.drive.loaded import LoadedDrive
 from sim.model.hull import Hull
 from sim.model.steady import HullSteady
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import relax
 from sim.solve.sampled import steady_of
 from sim.stage import Stage
-
-if TYPE_CHECKING:
-    from sim.solve.coupled import Coupled
 
 _STRUTS = ("force_aft", "force_fore")
 _LOADING = ("shaft_angle", "shaft_speed", "lever_aft", "lever_fore", *_STRUTS)
@@ -30,7 +28,9 @@ class CoupledSteady:
     laws come to terms with mounting and drive at once.
     """
 
-    stage: "Coupled"
+    drive: LoadedDrive
+    mechanism: Stage[Any]
+    hull: Stage[Any]
     period: Period
     inputs: Spectra
 
@@ -38,7 +38,7 @@ class CoupledSteady:
         self._real = self.period
         self._found: dict[str, ComplexArray] = {}
         self._model: HullSteady | None = None
-        self._swept = _with_swept_laws(self.stage.hull)
+        self._swept = _with_swept_laws(self.hull)
 
     def solve(self) -> tuple[Period, Spectra]:
         """Return the period that the shaft has under its load, and the harmonics of all parts."""
@@ -48,30 +48,30 @@ class CoupledSteady:
         size = np.full(columns, np.abs(start[:, 0]).max())
         if self._model is not None:
             size[1:] = self._model.scale(_struts(self._found), start[:, 1:])
-        relax(self._respond, start, self.stage.name, size)
-        return self._real, {one.name: self._found[one.name] for one in self.stage.writes}
+        relax(self._respond, start, self.drive.name, size)
+        return self._real, self._found
 
     def _respond(self, at: ComplexArray) -> ComplexArray:
-        stage, inputs = self.stage, self.inputs
+        inputs = self.inputs
         torque = {signals.LOAD_TORQUE.name: at[:, 0]}
-        self._real, shaft = stage.drive.steady(self.period, torque)
+        self._real, shaft = self.drive.steady(self.period, torque)
         found: dict[str, ComplexArray] = {**inputs, **shaft}
-        motion = steady_of(stage.mechanism, self._real, {**found, **inputs})[1]
+        motion = steady_of(self.mechanism, self._real, {**found, **inputs})[1]
         found = {**found, **motion, **inputs}
         laws = at[:, 1:]
         if self._swept is None:
-            forces = steady_of(stage.hull, self._real, found)[1]
+            forces = steady_of(self.hull, self._real, found)[1]
         else:
             forces, laws = self._forces(self._swept, found, laws)
         found = {**found, **forces, **inputs}
         names = list(_LOADING)
         values = self._real.values(np.stack([found[name] for name in names], axis=1)).T
-        load = stage.drive.load(
+        load = self.drive.load(
             dict(zip(names, values, strict=True)), self._real.omega_rad_s * self._real.time_s
         )
         torque_now = self._real.harmonics(load)
         self._found = {**found, signals.LOAD_TORQUE.name: torque_now}
-        inertia = stage.drive.reflected_inertia_kg_m2
+        inertia = self.drive.reflected_inertia_kg_m2
         rest = torque_now - inertia * found[signals.SHAFT_ACCELERATION.name]
         return np.column_stack([rest, laws])
 
@@ -81,7 +81,9 @@ class CoupledSteady:
         """Return the struts' forces and what the laws ask for, after one sweep."""
         model = self._model
         if model is None or model.period != self._real:
-            model = self._model = HullSteady(hull.at_speed(found), self._real)
+            at = hull.at_speed(found)
+            steady = HullSteady(at.laws, at.system, at.carriage_speed_m_s, self._real)
+            model = self._model = steady
         y = _struts(found)
         laws = model.laws(y, laws)
         names = (one.name for one in hull.writes)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from sim.model.acting import Acting
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
 from sim.solve.compiled import available
@@ -13,7 +14,6 @@ from sim.solve.linear import Hold
 
 if TYPE_CHECKING:
     from sim.drive.shaft_loop import Linkages, ShaftLoop
-    from sim.model.hull import Hull
     from sim.solve.marching import Course, ModelLoop
 
 _NOTHING_KEPT = (
@@ -32,19 +32,21 @@ class Marching(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def periodic_laws(hull: "Hull") -> LawTable | None:
+def periodic_laws(given: tuple[Acting, ...], system: HullSystem) -> LawTable | None:
     """Return the laws that repeat as a table; ``None`` where they cannot be in one.
 
     That is without numba, and where a law has no number.
     """
-    laws = tuple(one for one in hull.laws if one.law.periodic)
+    laws = tuple(one for one in given if one.law.periodic)
     if not (available() and all(has_number(one.law) for one in laws)):
         return None
-    return table_of(laws, hull.system)
+    return table_of(laws, system)
 
 
 @lru_cache(maxsize=64)
-def marching_of(hull: "Hull", step_s: float, needed: bool = False) -> Marching | None:
+def marching_of(
+    given: tuple[Acting, ...], system: HullSystem, step_s: float, needed: bool = False
+) -> Marching | None:
     """Return model and laws for the march; ``None`` where sweeps do instead.
 
     Sweeps do without numba. A clearance needs the march, compiled or not. Laws that have no number
@@ -55,11 +57,11 @@ def marching_of(hull: "Hull", step_s: float, needed: bool = False) -> Marching |
     needed
         True where something else than the model needs the march.
     """
-    if not (available() or needed or hull.mounting.joint):
+    if not (available() or needed or system.joint):
         return None
-    laws = tuple(one for one in hull.laws if has_number(one.law))
-    table = table_of(laws, hull.system)
-    return Marching(_model(hull.system, step_s), table)
+    laws = tuple(one for one in given if has_number(one.law))
+    table = table_of(laws, system)
+    return Marching(_model(system, step_s), table)
 
 
 def _model(system: HullSystem, step_s: float) -> "ModelLoop":

@@ -26,9 +26,9 @@ from sim.drive.prescribed import DriveSettings
 from sim.gauges.dynamometer import Dynamometers, Gauge
 from sim.mechanism.linkage import Setting
 from sim.model.acting import Acting, AnyLaw
-from sim.model.forces import CrossFlow
 from sim.model.hull import HullCoefficients
 from sim.model.mounting import Mounting
+from sim.model.water.force_laws import CrossFlow
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import vertical_rig
 

@@ -14,9 +14,9 @@ from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Servo, ShuntMotor
 from sim.mechanism.linkage import Setting
 from sim.model.acting import Acting, Point
-from sim.model.forces import CrossFlow
 from sim.model.laws import Coulomb, Quadratic
 from sim.model.mounting import Mounting
+from sim.model.water.force_laws import CrossFlow
 from sim.solve.periodic import steady_run
 
 BASE = """

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from hardware.description.setpoint import SetPoint
 from sim.model.acting import Acting, Point
 from sim.model.force_law import Motion
-from sim.model.forces import CrossFlow, Instants, ModelMotion, law_forces, law_harmonics
+from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
 from sim.model.law_table import table_of
 from sim.model.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
 from sim.model.numbers import corners_only, geometry_only
 from sim.model.system import HullSystem
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import vertical_rig
 from sim.solve.balance import LawBalance
 from sim.solve.corners import nodes_between

@@ -10,7 +10,6 @@ from scipy.special import dawsn, iv
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.model.acting import Acting, Point
-from sim.model.forces import CrossFlow
 from sim.model.laws import (
     Coulomb,
     Cubic,
@@ -24,6 +23,7 @@ from sim.model.laws import (
     Stribeck,
     Viscous,
 )
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import vertical_rig
 from sim.solve.periodic import steady_run
 

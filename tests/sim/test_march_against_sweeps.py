@@ -14,7 +14,7 @@ from sim.model import hull
 from sim.model import steady as hull_steady
 from sim.model.acting import Acting, Point
 from sim.model.compiled_laws import law_force
-from sim.model.forces import CrossFlow, Instants, ModelMotion, law_forces
+from sim.model.forces import Instants, ModelMotion, law_forces
 from sim.model.law_table import LAWS, has_number, table_of
 from sim.model.laws import (
     Coulomb,
@@ -32,6 +32,7 @@ from sim.model.laws import (
 )
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve import compiled, coupled, coupled_steady
 from sim.solve.periodic import steady_run

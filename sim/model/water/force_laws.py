@@ -7,17 +7,45 @@ are closed forms, for v = V cos(phi), and serve as oracles.
 """
 
 import math
-from typing import Final
+from dataclasses import dataclass
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from sim.solve.linear import Rows, as_rows
+from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Columns of the coefficients, v the translation's velocity and r the rotation's.
 CUBIC_TERMS: Final = ("v^3", "v^2 r", "v r^2", "r^3")
 QUADRATIC_TERMS: Final = ("v|v|", "v|r|", "r|v|", "r|r|")
+
+
+@dataclass(frozen=True)
+class CrossFlow:
+    """Cubic and quadratic loads of both velocities through the water, coupled.
+
+    Attributes
+    ----------
+    cubic, quadratic
+        Rows force and moment; columns :data:`CUBIC_TERMS` and :data:`QUADRATIC_TERMS`. ``None`` for
+        none.
+    """
+
+    cubic: Rows | None = None
+    quadratic: Rows | None = None
+
+    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+
+    def scaled(self, factor: float) -> "CrossFlow":
+        """Return loads that are larger by a factor."""
+        return CrossFlow(_times(self.cubic, factor), _times(self.quadratic, factor))
+
+
+def _times(rows: Rows | None, factor: float) -> Rows | None:
+    return None if rows is None else as_rows(np.array(rows) * factor)
 
 
 def cubic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:

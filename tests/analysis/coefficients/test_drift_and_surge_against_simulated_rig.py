@@ -15,8 +15,8 @@ from analysis.resolver.analyse import Settings, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCE_X
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser
-from sim.model.forces import CrossFlow
 from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
 

@@ -24,8 +24,8 @@ from benchmarks.coefficients_campaigns import (
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.model.forces import CrossFlow
 from sim.model.hull import HullCoefficients
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig
 from tests.analysis.coefficients.cycles import simulated, zeroed
 from tests.analysis.coefficients.kvlcc2 import DERIVATIVES

@@ -23,9 +23,9 @@ from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.model.acting import Acting, Point
-from sim.model.forces import CrossFlow
 from sim.model.law_table import LAWS
 from sim.model.laws import Coulomb, ForceLaw, Motion
+from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles

@@ -17,7 +17,7 @@ from sim.model.water.memory import FittedMemory, fit_memory
 from sim.model.water.table_files import read_heave_csv
 from sim.model.water.tables import RadiationTable
 
-SHARED = Path(__file__).parents[3].parent / "shared" / "reference" / "hydrodynamics"
+SHARED = Path(__file__).parents[4].parent / "shared" / "reference" / "hydrodynamics"
 
 # omega (rad/s), added mass (kg), damping (kg/s): the columns a33_analytic_kg, b33_analytic_kg_s.
 VALUES = np.array(

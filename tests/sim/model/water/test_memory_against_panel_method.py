@@ -10,7 +10,7 @@ from sim.model.water.memory import fit_memory
 from sim.model.water.table_files import read_hull_csv
 from sim.model.water.tables import RadiationTable
 
-HULLS = Path(__file__).parents[3].parent / "shared" / "reference" / "hydrodynamics" / "hulls.csv"
+HULLS = Path(__file__).parents[4].parent / "shared" / "reference" / "hydrodynamics" / "hulls.csv"
 
 
 def shared_hull(body: str, plane: Plane) -> RadiationTable:
