@@ -54,19 +54,13 @@ def yaw_from_period(
     ConfigurationError
         For a value that is not above zero.
     """
-    require_positive(
-        "bifilar yaw",
-        period_s=period.value,
-        half_spacing_m=half_spacing.value,
-        line_m=line.value,
-        gravity_m_s2=gravity.value,
-    )
     inputs = {
         "period_s": period,
         "half_spacing_m": half_spacing,
         "line_m": line,
         "gravity_m_s2": gravity,
     }
+    require_positive("bifilar yaw", **inputs)
     return assess("k_yaw", yaw_gyradius, inputs, unit="m", seed=seed)
 
 
@@ -91,13 +85,8 @@ def yaw_from_ratio(
     ConfigurationError
         For a value that is not above zero.
     """
-    require_positive(
-        "bifilar yaw",
-        yaw_period_s=yaw.value,
-        sway_period_s=sway.value,
-        half_spacing_m=half_spacing.value,
-    )
     inputs = {"yaw_period_s": yaw, "sway_period_s": sway, "half_spacing_m": half_spacing}
+    require_positive("bifilar yaw", **inputs)
     return assess("k_yaw", ratio_gyradius, inputs, unit="m", correlations=correlations, seed=seed)
 
 

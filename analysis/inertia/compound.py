@@ -55,13 +55,8 @@ def compound_pendulum(
     DataError
         If the period is shorter than any gyradius allows at that depth.
     """
-    require_positive(
-        "compound pendulum",
-        period_s=period.value,
-        depth_m=depth.value,
-        gravity_m_s2=gravity.value,
-    )
     inputs = {"period_s": period, "depth_m": depth, "gravity_m_s2": gravity}
+    require_positive("compound pendulum", **inputs)
     return assess("k", pendulum_gyradius, inputs, unit="m", seed=seed)
 
 
@@ -82,18 +77,13 @@ def lamboley(
     DataError
         If the periods contradict the distance of the axes.
     """
-    require_positive(
-        "Lamboley",
-        first_period_s=first_period.value,
-        second_period_s=second_period.value,
-        apart_m=apart.value,
-    )
     inputs = {
         "first_period_s": first_period,
         "second_period_s": second_period,
         "apart_m": apart,
         "gravity_m_s2": gravity,
     }
+    require_positive("Lamboley", **inputs)
     return (
         assess("a", lamboley_depth, inputs, unit="m", seed=seed),
         assess("k", lamboley_gyradius, inputs, unit="m", seed=seed + 1),

@@ -83,25 +83,19 @@ def pitch_from_periods(
     DataError
         If the periods are not in the order slow, sway, fast: one of them is of another motion.
     """
-    require_positive(
-        "double pendulum",
-        slow_period_s=slow.value,
-        fast_period_s=fast.value,
-        sway_period_s=sway.value,
-        gravity_m_s2=gravity.value,
-    )
-    if not slow.value > sway.value > fast.value:
-        raise DataError(
-            f"double pendulum: T_1 = {slow.value:.4g} s, T_s = {sway.value:.4g} s, T_2 = "
-            f"{fast.value:.4g} s; T_1 > T_s > T_2 it must be: one of them is of the wrong axis "
-            "(yaw for sway?)"
-        )
     inputs = {
         "slow_period_s": slow,
         "fast_period_s": fast,
         "sway_period_s": sway,
         "gravity_m_s2": gravity,
     }
+    require_positive("double pendulum", **inputs)
+    if not slow.value > sway.value > fast.value:
+        raise DataError(
+            f"double pendulum: T_1 = {slow.value:.4g} s, T_s = {sway.value:.4g} s, T_2 = "
+            f"{fast.value:.4g} s; T_1 > T_s > T_2 it must be: one of them is of the wrong axis "
+            "(yaw for sway?)"
+        )
     return PendulumResult(
         assess("k", gyradius_from_periods, inputs, unit="m", correlations=correlations, seed=seed),
         assess(

@@ -75,15 +75,16 @@ def exactly(value: float, unit: str = "1") -> Estimate:
     return Estimate(value, 0.0, unit)
 
 
-def require_positive(where: str, **values: float) -> None:
-    """Refuse values that must be above zero.
+def require_positive(where: str, **values: float | Estimate) -> None:
+    """Refuse values that must be above zero; of estimates, their values.
 
     Raises
     ------
     ConfigurationError
         Naming each key and its value.
     """
-    faults = [f"{key} = {value:g}" for key, value in values.items() if not value > 0.0]
+    plain = {k: v.value if isinstance(v, Estimate) else v for k, v in values.items()}
+    faults = [f"{key} = {value:g}" for key, value in plain.items() if not value > 0.0]
     if faults:
         raise ConfigurationError(
             f"{where}: {', '.join(faults)} must be above 0; check the value and its unit"

@@ -53,13 +53,7 @@ def incline_from_one_end(
     ConfigurationError
         For a mass, weight, lever or tilt that is not above zero.
     """
-    require_positive(
-        "incline",
-        weight_kg=weight.value,
-        mass_kg=mass.value,
-        lever_m=lever.value,
-        tilt_rad=tilt.value,
-    )
+    require_positive("incline", weight_kg=weight, mass_kg=mass, lever_m=lever, tilt_rad=tilt)
     inputs = {
         "weight_kg": weight,
         "mass_kg": mass,
@@ -86,14 +80,8 @@ def incline_from_both_ends(
     ConfigurationError
         For a mass, weight, length or tilt that is not above zero.
     """
-    require_positive(
-        "incline",
-        weight_kg=weight.value,
-        mass_kg=mass.value,
-        length_m=length.value,
-        stern_tilt_rad=tilts[0].value,
-        bow_tilt_rad=tilts[1].value,
-    )
+    require_positive("incline", weight_kg=weight, mass_kg=mass, length_m=length)
+    require_positive("incline", stern_tilt_rad=tilts[0], bow_tilt_rad=tilts[1])
     inputs = {
         "weight_kg": weight,
         "mass_kg": mass,

@@ -104,24 +104,9 @@ def model_inertia(
     return total - tare - moment * moment / model_mass_kg
 
 
-def model_gyradius(
-    tare_period_s: Value,
-    total_period_s: Value,
-    tare_moment_kg_m: Value,
-    total_moment_kg_m: Value,
-    model_mass_kg: Value,
-    gravity_m_s2: Value,
-) -> Value:
-    """Gyradius of the model about its own centre of gravity, m."""
-    inertia = model_inertia(
-        tare_period_s,
-        total_period_s,
-        tare_moment_kg_m,
-        total_moment_kg_m,
-        model_mass_kg,
-        gravity_m_s2,
-    )
-    return sqrt(inertia / model_mass_kg)
+def model_gyradius(model_mass_kg: Value, **others: Value) -> Value:
+    """Gyradius of the model about its own centre of gravity, m; inputs of model_inertia."""
+    return sqrt(model_inertia(model_mass_kg=model_mass_kg, **others) / model_mass_kg)
 
 
 @dataclass(frozen=True)
@@ -170,15 +155,8 @@ def model_on_swing(
     """
     _check(tare)
     _check(loaded)
-    require_positive("model", mass_kg=model_mass.value)
-    inputs = {
-        "tare_period_s": tare.period,
-        "total_period_s": loaded.period,
-        "tare_moment_kg_m": tare.moment,
-        "total_moment_kg_m": loaded.moment,
-        "model_mass_kg": model_mass,
-        "gravity_m_s2": tare.gravity,
-    }
+    require_positive("model", mass_kg=model_mass)
+    inputs = _difference(tare, loaded.period, loaded.moment, model_mass)
     tied = correlations or {}
 
     def below(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
@@ -262,7 +240,7 @@ def forecast_swing(
     """
     require_positive(
         "forecast",
-        mass_kg=model_mass.value,
+        mass_kg=model_mass,
         cg_below_pivot_m=cg_below_pivot_m,
         gyradius_m=gyradius_m,
     )
@@ -273,14 +251,9 @@ def forecast_swing(
     own = model_mass.value * gyradius_m**2
     total = swing + own + model_mass.value * cg_below_pivot_m**2
     period = 2.0 * math.pi * math.sqrt(total / (moment * g))
-    inputs = {
-        "tare_period_s": tare.period,
-        "total_period_s": Estimate(period, period_scatter_relative * period, "s"),
-        "tare_moment_kg_m": tare.moment,
-        "total_moment_kg_m": Estimate(moment, moment_relative * moment, "kg m"),
-        "model_mass_kg": model_mass,
-        "gravity_m_s2": tare.gravity,
-    }
+    loaded_period = Estimate(period, period_scatter_relative * period, "s")
+    loaded_moment = Estimate(moment, moment_relative * moment, "kg m")
+    inputs = _difference(tare, loaded_period, loaded_moment, model_mass)
     inertia = linear_budget("I_M", model_inertia, inputs, unit="kg m2").result
     spread = 0.5 * gyradius_m * inertia.relative  # k = sqrt(I/m), m by far the better known
     gyradius = Estimate(gyradius_m, spread, "m")
@@ -289,11 +262,19 @@ def forecast_swing(
     return SwingForecast(period, gyradius, share, not flags, flags)
 
 
+def _difference(
+    tare: SwingState, period: Estimate, moment: Estimate, mass: Estimate
+) -> dict[str, Estimate]:
+    """Return the inputs of :func:`model_inertia`, from the loaded swing's period and moment."""
+    return {
+        "tare_period_s": tare.period,
+        "total_period_s": period,
+        "tare_moment_kg_m": tare.moment,
+        "total_moment_kg_m": moment,
+        "model_mass_kg": mass,
+        "gravity_m_s2": tare.gravity,
+    }
+
+
 def _check(state: SwingState) -> None:
-    require_positive(
-        "swing",
-        period_s=state.period.value,
-        mass_kg=state.mass.value,
-        moment_kg_m=state.moment.value,
-        gravity_m_s2=state.gravity.value,
-    )
+    require_positive("swing", **state.inputs)
