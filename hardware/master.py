@@ -10,7 +10,7 @@ import canopen
 
 from hardware.bus import BusConfiguration, Pumped, Receiver, Sender, Threaded, open_bus
 from hardware.bus_owner import is_private, owned_bus
-from hardware.dictionary import Entry, Layout
+from hardware.dictionary import Layout
 from hardware.errors import HardwareError, as_fault
 from hardware.node import Node, Stream
 from hardware.other_master import Company
@@ -302,11 +302,3 @@ class Master:
         self._company.sent(frame)
         for observe in self._observers:
             observe(frame)
-
-
-def read_identity(node: Node) -> tuple[int, int, int]:
-    """Return a node's device type (1000), vendor id and product code (1018), by SDO."""
-    device, vendor, product = (
-        int(node.sdo.read(at)) for at in (Entry(0x1000), Entry(0x1018, 1), Entry(0x1018, 2))
-    )
-    return device, vendor, product

@@ -12,22 +12,12 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 
-def average_period(yaw_s: Value, sway_s: Value) -> Value:
-    """Period of the oscillation within the beats: ``2 T_y T_s/(T_y + T_s)`` (eq 10)."""
-    return 2.0 * yaw_s * sway_s / (yaw_s + sway_s)
-
-
 def beat_period(yaw_s: Value, sway_s: Value) -> Value:
     """Time from one beat to the next: ``T_y T_s/(T_y - T_s)`` (eq 11).
 
     The envelope's cosine has twice this period. Negative where yaw is the faster.
     """
     return yaw_s * sway_s / (yaw_s - sway_s)
-
-
-def oscillations_per_beat(yaw_s: Value, sway_s: Value) -> Value:
-    """Return ``n = T_b/T_a`` (eq 12)."""
-    return (yaw_s + sway_s) / (2.0 * (yaw_s - sway_s))
 
 
 def ratio_from_beats(oscillations: Value, *, yaw_slower: bool = True) -> Value:

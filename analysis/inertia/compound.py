@@ -7,12 +7,6 @@ from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.numeric import Value, sqrt
 
 
-def pendulum_period(gyradius_m: Value, depth_m: Value, gravity_m_s2: Value) -> Value:
-    """Period of a body whose centre of gravity hangs ``depth_m`` below the axis (eq 22)."""
-    square = gyradius_m * gyradius_m + depth_m * depth_m
-    return 2.0 * math.pi * sqrt(square / (depth_m * gravity_m_s2))
-
-
 def pendulum_gyradius(period_s: Value, depth_m: Value, gravity_m_s2: Value) -> Value:
     """Gyradius from the period (eq 23); the depth drops out where it equals the gyradius."""
     return sqrt(
@@ -36,11 +30,6 @@ def lamboley_gyradius(
     """Gyradius from periods about two axes."""
     depth = lamboley_depth(first_period_s, second_period_s, apart_m, gravity_m_s2)
     return pendulum_gyradius(first_period_s, depth, gravity_m_s2)
-
-
-def inverted_v_depth(line_m: Value, half_spacing_m: Value, cg_depth_m: Value) -> Value:
-    """Depth of the centre of gravity below the axis of inverted-V lines: ``l_0 + l_2``."""
-    return sqrt(line_m * line_m - half_spacing_m * half_spacing_m) + cg_depth_m
 
 
 def compound_pendulum(

@@ -92,8 +92,3 @@ def incline_from_both_ends(
         "bow_tilt_rad": tilts[1],
     }
     return assess("l_2", incline_depth_both_ends, inputs, unit="m", seed=seed)
-
-
-def depth_from_shift(shift_m: Value, tilt_rad: Value) -> Value:
-    """Depth from how far the suspension point moves along the deck to tilt the body."""
-    return shift_m / tan(tilt_rad)

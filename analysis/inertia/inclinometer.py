@@ -1,8 +1,7 @@
 """What a gravity-referenced inclinometer reads when it is carried along.
 
 At radius r above (positive) or below the pivot it feels the tangential acceleration too, and reads
-``alpha (1 - omega^2 r/g)``. Its own lag is a first order's: less amplitude and a later phase, the
-same period.
+``alpha (1 - omega^2 r/g)``.
 """
 
 import math
@@ -25,12 +24,6 @@ def reading_factor(period_s: Value, radius_m: Value, gravity_m_s2: Value) -> Val
     """
     omega = 2.0 * math.pi / period_s
     return 1.0 - omega * omega * radius_m / gravity_m_s2
-
-
-def lag_factor(period_s: float, time_constant_s: float) -> tuple[float, float]:
-    """Return amplitude ratio and phase lag (rad) of a first-order instrument."""
-    product = 2.0 * math.pi * time_constant_s / period_s
-    return 1.0 / math.hypot(1.0, product), math.atan(product)
 
 
 def true_angle(reading_rad: Value, factor: float) -> Value:

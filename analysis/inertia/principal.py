@@ -15,13 +15,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 
-def gyradius_about(px_m: Value, pz_m: Value, angle_rad: Value) -> Value:
-    """Gyradius about an axis in the centre plane at an angle to the principal z axis (eq 3)."""
-    along = px_m * sin(angle_rad)
-    across = pz_m * cos(angle_rad)
-    return sqrt(along * along + across * across)
-
-
 def gyradius_off_level(
     px_m: Value, py_m: Value, pz_m: Value, pitch_rad: Value, roll_rad: Value
 ) -> Value:
@@ -144,12 +137,6 @@ def roll_from_three_yaws(
         "second_rad": second_angle,
     }
     return assess("k_roll", roll_from_tilts, inputs, unit="m", seed=seed)
-
-
-def mass_equivalent_ellipsoid(px_m: Value, py_m: Value, pz_m: Value) -> tuple[Value, Value, Value]:
-    """Semi-axes ``(a, b, c)`` of the ellipsoid of the same mass and inertia."""
-    xx, yy, zz = px_m * px_m, py_m * py_m, pz_m * pz_m
-    return sqrt(2.5 * (yy + zz - xx)), sqrt(2.5 * (zz + xx - yy)), sqrt(2.5 * (xx + yy - zz))
 
 
 def inertia_ellipse(px_m: float, pz_m: float, angle_rad: float, points: int = 181) -> FloatArray:

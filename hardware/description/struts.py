@@ -35,36 +35,22 @@ def to_motion(aft: T, fore: T, half_spacing_m: float, plane: Plane) -> tuple[T, 
     return (aft + fore) / 2.0, difference / (2.0 * half_spacing_m)
 
 
-def to_struts(translation: T, rotation: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
-    """Turn the midpoint's motion into strut displacements ``(aft, fore)``: the inverse."""
-    lever = half_spacing_m * rotation
-    if plane is Plane.VERTICAL:
-        return translation + lever, translation - lever
-    return translation - lever, translation + lever
-
-
-def to_loads(aft: T, fore: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
-    """Turn strut forces into the load on the model.
+def to_strut_forces(force: T, moment: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
+    """Turn a load on the model into the forces of the struts on it.
 
     Parameters
     ----------
-    aft, fore
-        Forces of the struts on the model at ``x = -l`` and ``x = +l``, in newtons: positive down
-        (vertical) or to starboard (horizontal).
+    force, moment
+        Force in N, positive down (vertical) or to starboard (horizontal), and moment about the
+        midpoint in N m, bow up or bow to starboard.
     half_spacing_m
         The distance ``l``.
 
     Returns
     -------
-    force, moment
-        Their sum in N, and the moment about the midpoint in N m: bow up, or bow to starboard.
+    aft, fore
+        Forces at ``x = -l`` and ``x = +l`` in N, positive as the force.
     """
-    difference = aft - fore if plane is Plane.VERTICAL else fore - aft
-    return aft + fore, difference * half_spacing_m
-
-
-def to_strut_forces(force: T, moment: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
-    """Turn force and moment about the midpoint into strut forces ``(aft, fore)``: the inverse."""
     couple = moment / half_spacing_m
     if plane is Plane.VERTICAL:
         return (force + couple) / 2.0, (force - couple) / 2.0

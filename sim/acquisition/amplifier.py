@@ -66,13 +66,6 @@ class LowPass:
         """Return the filter's exact step from sample to sample."""
         return _low_pass_hold(self, step_s)
 
-    def discrete_response(self, frequency_hz: FloatArray, sample_rate_hz: float) -> ComplexArray:
-        """Return what the samples show of the transfer function: that of the discrete step."""
-        z = np.exp(2j * math.pi * np.asarray(frequency_hz) / sample_rate_hz)
-        system = self.system
-        found: ComplexArray = (system.C @ self.hold(1.0 / sample_rate_hz).response(z))[:, 0, 0]
-        return found
-
     def settled(self, value: float) -> FloatArray:
         """Return the states after a constant input."""
         return np.linalg.solve(self.system.A, -value * self.system.B[:, 0]).astype(np.float64)

@@ -22,10 +22,6 @@ class MeasuredMotion(NamedTuple):
     velocity: FloatArray
     acceleration: FloatArray
 
-    def for_strut(self, strut: str) -> dict[str, FloatArray]:
-        """Return the three as substitutes of a chain, for ``"aft"`` or ``"fore"``."""
-        return {f"{name}_{strut}": values for name, values in self._asdict().items()}
-
 
 def from_harmonics(
     harmonics: ComplexArray, frequency_hz: float, time_s: FloatArray

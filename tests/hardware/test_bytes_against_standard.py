@@ -7,7 +7,6 @@ import pytest
 
 from hardware.errors import EmergencyError
 from hardware.lines import Kind, Line, decode, encode
-from hardware.master import read_identity
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
@@ -189,14 +188,6 @@ def test_an_emergency_carries_code_and_register() -> None:
         with pytest.raises(EmergencyError, match=r"0x2320.*0x09.*0102030405") as caught:
             rig.cycle()
         assert (caught.value.code, caught.value.register) == (0x2320, 0x09)
-
-
-def test_a_node_says_who_it_is() -> None:
-    with logged({"shaft": SHAFT}, lambda n: Drive(n, 1)) as (rig, _, log):
-        log.clear()
-        assert read_identity(rig.master.nodes[0]) == (0x00020192, 0, 0)
-        assert frames(log, 0x601)[0] == "4000100000000000"
-        assert frames(log, 0x581)[0] == "4300100092010200"
 
 
 def test_lines_of_the_timestamper() -> None:

@@ -47,7 +47,9 @@ def test_filter_has_its_delay_and_transfer_function(low_pass: LowPass, delay_s: 
     assert abs(corner) == pytest.approx(math.sqrt(0.5), rel=1e-9)
     frequency = np.array([1.0, 5.0])
     time = np.arange(6000) / RATE
-    for f, discrete in zip(frequency, low_pass.discrete_response(frequency, RATE), strict=True):
+    z = np.exp(2j * math.pi * frequency / RATE)
+    step = (low_pass.system.C @ low_pass.hold(1.0 / RATE).response(z))[:, 0, 0]
+    for f, discrete in zip(frequency, step, strict=True):
         found = record(Digitiser(low_pass=low_pass), np.sin(2 * math.pi * f * time))[-2000:]
         late = np.exp(-2j * math.pi * f * time[-2000:])
         wave = 2j * np.mean(found * late)
@@ -194,11 +196,6 @@ def test_motion_from_harmonics_is_differentiated_exactly() -> None:
     np.testing.assert_allclose(
         motion.acceleration, -2 * omega**2 * np.sin(omega * time), atol=1e-12
     )
-    assert set(motion.for_strut("aft")) == {
-        "displacement_aft",
-        "velocity_aft",
-        "acceleration_aft",
-    }
 
 
 def test_parameters_out_of_range_are_refused() -> None:

@@ -72,22 +72,6 @@ def cubic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
     return _combined(coefficients, CUBIC_TERMS, np.stack([v**3, v * v * r, v * r * r, r**3]))
 
 
-def quadratic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
-    """Return force and moment of the quadratic terms (columns :data:`QUADRATIC_TERMS`).
-
-    See :func:`cubic_loads` for shapes and errors.
-    """
-    v, r = np.asarray(velocity, dtype=np.float64)
-    v_size, r_size = np.abs(v), np.abs(r)
-    terms = np.stack([v * v_size, v * r_size, r * v_size, r * r_size])
-    return _combined(coefficients, QUADRATIC_TERMS, terms)
-
-
-def cubic_describing_function(harmonic: int) -> float:
-    """Return the amplitude of cos(n phi) in cos^3(phi): 3/4 for n = 1, 1/4 for n = 3."""
-    return {1: 0.75, 3: 0.25}.get(harmonic, 0.0)
-
-
 def quadratic_describing_function(harmonic: int, drift_ratio: float = 0.0) -> float:
     """Return the amplitude of cos(n phi) in u|u|, u = e + cos(phi).
 

@@ -12,9 +12,6 @@ without the model's weight, which :func:`sim.model.hull.weight_matrix` has. Sway
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.model.water.manoeuvring import Matrix
@@ -63,32 +60,6 @@ class Waterplane:
     def parabola(cls, length_m: float, breadth_m: float) -> "Waterplane":
         """Return that of breadth B (1 - (2 x/L)^2), a Wigley hull's: 2/3 L B, L^3 B / 30."""
         return cls(2.0 * length_m * breadth_m / 3.0, 0.0, length_m**3 * breadth_m / 30.0)
-
-    @classmethod
-    def from_stations(cls, x_m: ArrayLike, breadth_m: ArrayLike) -> "Waterplane":
-        """Return that of measured full breadths, joined by straight lines (moments are exact).
-
-        Raises
-        ------
-        ConfigurationError
-            If there are fewer than two stations, they do not rise or a breadth is negative.
-        """
-        x, b = np.asarray(x_m, dtype=np.float64), np.asarray(breadth_m, dtype=np.float64)
-        if x.ndim != 1 or x.shape != b.shape or x.size < 2:
-            raise ConfigurationError(
-                f"stations of shape {x.shape} with breadths of shape {b.shape}; two or more of "
-                f"each are needed"
-            )
-        if not (np.diff(x) > 0.0).all() or not (b >= 0.0).all():
-            raise ConfigurationError("x_m has to rise from aft to fore, and no breadth is negative")
-        h, x0, x1, b0, b1 = np.diff(x), x[:-1], x[1:], b[:-1], b[1:]
-        middle, between = (x0 + x1) / 2.0, (b0 + b1) / 2.0
-        # Simpson's rule is exact for cubics, and breadth times x^2 is one.
-        moments = (
-            float(np.sum(h / 6.0 * (b0 * x0**n + 4.0 * between * middle**n + b1 * x1**n)))
-            for n in (0, 1, 2)
-        )
-        return cls(*moments)
 
     def shifted(self, ahead_m: float) -> "Waterplane":
         """Return the same area moved ``ahead_m`` forward of where it was."""

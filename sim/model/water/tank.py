@@ -166,22 +166,6 @@ def blockage_speed_factor(model_section_m2: float, tank_section_m2: float) -> fl
     return 1.0 / (1.0 - model_section_m2 / tank_section_m2)
 
 
-def ground_factor(displacement_m: FloatArray, clearance_m: float) -> FloatArray:
-    """Return by what suction towards the bottom grows, h^2/(h - y)^2, at a displacement y down.
-
-    Raises
-    ------
-    ConfigurationError
-        If the displacement reaches the clearance h: the model would touch the bottom.
-    """
-    deepest = float(np.max(displacement_m, initial=-math.inf))
-    if not deepest < clearance_m:
-        raise ConfigurationError(
-            f"displacement of {deepest:g} m reaches the bottom, {clearance_m:g} m below"
-        )
-    return (1.0 - np.asarray(displacement_m) / clearance_m) ** -2.0
-
-
 def _check_positive(**values: float) -> None:
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):

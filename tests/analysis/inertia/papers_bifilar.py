@@ -2,20 +2,16 @@
 
 import math
 
-from analysis.inertia.beats import (
-    average_period,
-    beat_period,
-    oscillations_per_beat,
-    ratio_from_beats,
-)
+from analysis.inertia.beats import beat_period, ratio_from_beats
 from analysis.inertia.bifilar import ratio_gyradius, yaw_gyradius, yaw_period
-from analysis.inertia.corrections import gyradius_with_end_masses
 from analysis.inertia.double_pendulum import best_line_length, mode_periods
-from analysis.inertia.principal import (
+from analysis.inertia.principal import principal_angle, roll_from_tilts
+from tests.analysis.inertia.paper_formulas import (
+    average_period,
     gyradius_about,
+    gyradius_with_end_masses,
     mass_equivalent_ellipsoid,
-    principal_angle,
-    roll_from_tilts,
+    oscillations_per_beat,
 )
 from tests.analysis.inertia.papers import Figure, Printed
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.inertia.beats import BeatCount, beat_period, count_beats, oscillations_per_beat
+from analysis.inertia.beats import BeatCount, beat_period, count_beats
 from analysis.inertia.bifilar import (
     resonance_flags,
     sway_period,
@@ -15,21 +15,8 @@ from analysis.inertia.bifilar import (
     yaw_gyradius,
     yaw_period,
 )
-from analysis.inertia.compound import (
-    compound_pendulum,
-    inverted_v_depth,
-    lamboley,
-    pendulum_period,
-)
-from analysis.inertia.corrections import (
-    bifilar_amplitude_factor,
-    gravity_in_air,
-    gyradius_with_end_masses,
-    pendulum_at_no_amplitude,
-    square_frame,
-    undamped,
-    without_entrained_air,
-)
+from analysis.inertia.compound import compound_pendulum, lamboley
+from analysis.inertia.corrections import gravity_in_air, square_frame, without_entrained_air
 from analysis.inertia.double_pendulum import (
     Reading,
     best_line_length,
@@ -40,16 +27,10 @@ from analysis.inertia.double_pendulum import (
     pitch_from_periods,
 )
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.incline import (
-    depth_from_shift,
-    incline_depth,
-    incline_from_both_ends,
-    incline_from_one_end,
-)
+from analysis.inertia.incline import incline_depth, incline_from_both_ends, incline_from_one_end
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.principal import (
-    gyradius_about,
     gyradius_off_level,
     inertia_ellipse,
     principal_angle,
@@ -59,6 +40,13 @@ from analysis.inertia.principal import (
     roll_from_tilts,
 )
 from hardware.description.errors import ConfigurationError, DataError
+from tests.analysis.inertia.paper_formulas import (
+    bifilar_amplitude_factor,
+    gyradius_about,
+    gyradius_with_end_masses,
+    oscillations_per_beat,
+    pendulum_period,
+)
 from tests.analysis.inertia.records import G, damped
 
 lengths = st.floats(0.05, 4.0)
@@ -169,7 +157,6 @@ def test_depth_drops_out_where_it_equals_the_gyradius() -> None:
     period = Estimate(pendulum_period(0.5, 0.5, G), 0.0, "s")
     found = compound_pendulum(period, Estimate(0.5, 1e-3, "m"), exactly(G))
     assert found.budget.result.uncertainty < 1e-6
-    assert inverted_v_depth(0.5, 0.3, 0.25) == pytest.approx(0.65)
 
 
 def test_incline_from_one_end_and_from_both() -> None:
@@ -183,7 +170,6 @@ def test_incline_from_one_end_and_from_both() -> None:
         weight, whole, exactly(ls + lb), (exactly(bs), exactly(bb)), (exactly(stern), exactly(bow))
     )
     assert both.result.value == pytest.approx(depth, rel=1e-9)
-    assert depth_from_shift(0.1, math.atan(0.4)) == pytest.approx(0.25)
     assert incline_depth(md, mass, ls, bs, stern) == pytest.approx(depth)
     with pytest.raises(ConfigurationError, match="mass_kg = 0"):
         incline_from_one_end(weight, exactly(0.0), exactly(ls), exactly(bs), exactly(stern))
@@ -264,8 +250,6 @@ def test_bifilar_period_at_an_amplitude_against_the_exact_motion() -> None:
 
 def test_corrections() -> None:
     assert gravity_in_air(G, 1.2, 800.0) == pytest.approx(G * 0.9985)
-    assert undamped(4.39, 1.0 / 640.0) == pytest.approx(4.39 * (1.0 - 6e-7), rel=1e-7)
-    assert pendulum_at_no_amplitude(2.0 * (1.0 + 0.01 / 16.0), 0.1) == pytest.approx(2.0)
     assert without_entrained_air(700.0, 2.0, 0.5, 1.0) == pytest.approx(699.0)
     level, upright = square_frame(0.9, 0.7)
     # four rods of a quarter of the mass each

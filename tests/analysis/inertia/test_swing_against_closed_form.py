@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.inclinometer import lag_factor, reading_factor, reading_flags, true_angle
+from analysis.inertia.inclinometer import reading_factor, reading_flags, true_angle
 from analysis.inertia.swing import (
     SwingState,
     forecast_swing,
@@ -241,4 +241,3 @@ def test_inclinometer_carried_along() -> None:
     assert true_angle(0.0093, 0.93) == pytest.approx(0.01)
     with pytest.raises(ConfigurationError, match="nearer to the pivot"):
         true_angle(0.01, fast)
-    assert lag_factor(2.0 * math.pi, 1.0) == pytest.approx((math.sqrt(0.5), math.pi / 4.0))

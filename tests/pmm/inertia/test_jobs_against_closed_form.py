@@ -9,13 +9,12 @@ import pytest
 
 from analysis.inertia.bifilar import yaw_period
 from analysis.inertia.budget import linear_budget
-from analysis.inertia.compound import pendulum_period
 from analysis.inertia.double_pendulum import mode_periods
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.principal import gyradius_about
 from hardware.description.oscillator import Plane
 from pmm.inertia import bifilar, incline, parts, pendulum, plan, swing
 from pmm.inertia.outcome import Outcome
+from tests.analysis.inertia.paper_formulas import gyradius_about, pendulum_period
 
 G = 9.81
 HEAD = "gravity_m_s2 = 9.81\nu_gravity_m_s2 = 0.0005\n"

@@ -14,7 +14,6 @@ from sim.model.water.tank import (
     Tank,
     blockage_speed_factor,
     echo_delay_s,
-    ground_factor,
     group_velocity_m_s,
     wave_number,
     with_walls,
@@ -89,20 +88,6 @@ def test_walls_keep_the_radiation_passive(plane: Plane) -> None:
 def test_nothing_radiates_nothing_comes_back() -> None:
     still = constant(np.diag([40.0, 9.0]))
     assert with_walls(still, TANK, Plane.VERTICAL) == still
-
-
-def test_ground_factor_against_its_harmonics() -> None:
-    """1/(1 - e sin)^2: mean (1 - e^2)^(-3/2), and to leading order 2 e sin, -3/2 e^2 cos(2 th)."""
-    angle = 2.0 * math.pi * np.arange(4096) / 4096
-    for e in (0.02, 0.1, 0.5):
-        factor = ground_factor(0.3 * e * np.sin(angle), 0.3)
-        assert factor.mean() == pytest.approx((1.0 - e * e) ** -1.5, rel=1e-12)
-        if e < 0.05:
-            assert 2.0 * np.mean(factor * np.sin(angle)) == pytest.approx(2.0 * e, rel=2e-3)
-            second = 2.0 * np.mean(factor * np.cos(2.0 * angle))
-            assert second == pytest.approx(-1.5 * e * e, rel=2e-3)
-    with pytest.raises(ConfigurationError, match=r"0\.3 m reaches the bottom, 0\.3 m below"):
-        ground_factor(np.array([0.0, 0.3]), 0.3)
 
 
 def test_blockage_by_continuity() -> None:
