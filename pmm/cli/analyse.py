@@ -160,7 +160,7 @@ def analyse(**options: Any) -> None:
     Exit status: 0 done; 1 the data say no; 2 the request was wrong: an option, or the name of a
     file, folder, column or channel that cannot be. Of several, 1 if any file's data say no.
     """  # noqa: D301
+    from pmm.cli.analyse_options import AnalyseOptions
     from pmm.cli.analysing import run
-    from pmm.cli.request import Request
 
-    run(Request(**options))
+    run(AnalyseOptions(**options))

@@ -15,13 +15,13 @@ from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import NoReferenceError
 from analysis.threads import cores
 from hardware.description.errors import ConfigurationError, DataError, PmmError
+from pmm.cli.analyse_options import AnalyseOptions
 from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
-from pmm.cli.request import Request
 from pmm.cli.screen import busy, error_line, messages, output, print_flags
 from pmm.parallel import open_executor
 from pmm.tables import RunRows, run_rows
@@ -55,7 +55,7 @@ class Failure:
     flags: "tuple[Flag, ...]" = ()
 
 
-def run(request: Request) -> None:
+def run(request: AnalyseOptions) -> None:
     """Analyse all files, each printed when it is done; what fails does not stop the others.
 
     Raises
@@ -91,7 +91,7 @@ def run(request: Request) -> None:
 
 
 def _each(
-    sources: Sequence[Source], request: Request, columns: "ColumnMap | None"
+    sources: Sequence[Source], request: AnalyseOptions, columns: "ColumnMap | None"
 ) -> Iterator[Analysed | Failure]:
     """Analyse one run after the other; said on a terminal while it lasts.
 
@@ -114,7 +114,7 @@ def _each(
             yield one
 
 
-def _check(request: Request, found: Found) -> None:
+def _check(request: AnalyseOptions, found: Found) -> None:
     ways = {
         "--reference": request.reference,
         "--frequency": request.frequency,
@@ -181,7 +181,7 @@ def _untold(_part: float) -> None:
 
 
 def _try_source(
-    source: Source, request: Request, columns: "ColumnMap | None", progress: "Progress"
+    source: Source, request: AnalyseOptions, columns: "ColumnMap | None", progress: "Progress"
 ) -> Analysed | Failure:
     """Read and analyse one recording; what the reader noticed is kept whatever happens then."""
     flags: tuple[Flag, ...] = ()
@@ -202,7 +202,7 @@ def _try_source(
 
 
 def _analyse_recording(
-    recording: "Recording", source: Source, request: Request, columns: "ColumnMap | None"
+    recording: "Recording", source: Source, request: AnalyseOptions, columns: "ColumnMap | None"
 ) -> Analysed:
     from analysis.first_harmonics import seen_in
 

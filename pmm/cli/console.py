@@ -46,6 +46,6 @@ def console(**options: Any) -> None:
 
     Exit status: 0 left by Ctrl-C at rest; 1 the rig says no; 2 the request was wrong.
     """  # noqa: D301
-    from pmm.cli.console_work import Request, work
+    from pmm.cli.console_work import ConsoleOptions, work
 
-    work(Request(**options))
+    work(ConsoleOptions(**options))

@@ -48,7 +48,7 @@ _PLAIN: Final = (
 
 
 @dataclass(frozen=True)
-class Request:
+class ConsoleOptions:
     """The options of ``pmm console``, by their names there."""
 
     rig: str
@@ -64,7 +64,7 @@ class Request:
     speed: float
 
 
-def work(request: Request) -> None:
+def work(request: ConsoleOptions) -> None:
     """Run the console until Ctrl-C.
 
     Raises
@@ -106,7 +106,7 @@ def _loop(station: Station, interrupts: Interrupts, terminal: Terminal) -> None:
             terminal.say("the web server has ended; the rig runs on. Ctrl-C stops it")
 
 
-def _check(request: Request, rig_file: RigFile) -> None:
+def _check(request: ConsoleOptions, rig_file: RigFile) -> None:
     if request.speed != 1.0 and not is_simulated(rig_file.hardware):
         raise ConfigurationError(
             f"--speed {request.speed:g}: {rig_file.path} is no simulated rig; only those run "
@@ -141,7 +141,7 @@ def _check_reference(file: str | None, rig_file: RigFile) -> None:
     read_references((ReferenceFile(file),), rig_file.oscillator.plane, Settings().form)
 
 
-def _check_door(request: Request) -> None:
+def _check_door(request: ConsoleOptions) -> None:
     if (request.certificate is None) != (request.key is None):
         raise ConfigurationError("--certificate and --key belong together; give both or neither")
     if request.host not in LOCAL and request.token_file is None:
@@ -185,7 +185,7 @@ def _token(file: str | None) -> str:
 
 
 @contextmanager
-def _listening(request: Request) -> Iterator[socket]:
+def _listening(request: ConsoleOptions) -> Iterator[socket]:
     family = AF_INET6 if ":" in request.host else AF_INET
     try:
         found = listen((request.host, request.port), family=family)
@@ -213,7 +213,7 @@ def _not_listening(error: OSError) -> str:
 
 @contextmanager
 def _server(
-    request: Request, rig_file: RigFile, listening: socket, quick_stop: QuickStop
+    request: ConsoleOptions, rig_file: RigFile, listening: socket, quick_stop: QuickStop
 ) -> Iterator[Connection]:
     """Start the server's process; end it when the loop has ended."""
     from pmm.console.server import serve
@@ -242,7 +242,7 @@ def _server(
             process.join()
 
 
-def _settings(request: Request, rig_file: RigFile, port: int) -> Settings:
+def _settings(request: ConsoleOptions, rig_file: RigFile, port: int) -> Settings:
     output = None if request.output is None else Path(request.output)
     return Settings(
         rig_path=rig_file.path,
@@ -257,7 +257,7 @@ def _settings(request: Request, rig_file: RigFile, port: int) -> Settings:
 
 @contextmanager
 def _station(
-    request: Request, rig_file: RigFile, connection: Connection, quick_stop: QuickStop
+    request: ConsoleOptions, rig_file: RigFile, connection: Connection, quick_stop: QuickStop
 ) -> Iterator[Station]:
     from importlib.metadata import version
 

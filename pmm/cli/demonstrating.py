@@ -15,7 +15,7 @@ from pmm.cli.analyse import DEFAULT_LEVEL
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import print_compact
-from pmm.cli.run_work import Request, work
+from pmm.cli.run_work import RunOptions, work
 from pmm.cli.screen import busy, output, show_progress
 from pmm.tables import run_rows
 
@@ -60,7 +60,7 @@ def _campaign(name: str, folder: Path) -> list[Shown]:
     rig = folder.with_name(f"{name}-rig")
     with as_file(files("pmm.cli") / "demo_rigs" / name) as shipped:
         shutil.copytree(shipped, rig, dirs_exist_ok=True)
-    work(Request(str(rig / "plan.toml"), output=str(folder)))
+    work(RunOptions(str(rig / "plan.toml"), output=str(folder)))
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     paths = [one.recording_path(folder) for one in campaign.runs]
     return [

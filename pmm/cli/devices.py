@@ -70,9 +70,9 @@ def scan(**options: Any) -> None:
 
     Nothing is changed: no SYNC, no state is commanded. With a rig's file, who is missing is named.
     """
-    from pmm.cli.devices_scan import Request, run
+    from pmm.cli.devices_scan import DeviceScanOptions, run
 
-    run(Request(**options))
+    run(DeviceScanOptions(**options))
 
 
 @devices.command("read")
@@ -84,9 +84,9 @@ def read(**options: Any) -> None:
 
     A bus alone is read by SDO: what the nodes have mapped to their process data.
     """
-    from pmm.cli.devices_read import Request, run
+    from pmm.cli.devices_read import DeviceReadOptions, run
 
-    run(Request(**options))
+    run(DeviceReadOptions(**options))
 
 
 @devices.command("move", context_settings={"ignore_unknown_options": True})

@@ -15,7 +15,7 @@ from hardware.scan import Ear
 from hardware.scan import scan as scan_bus
 from hardware.serial_port import SerialPort
 from pmm.cli.devices_common import opened, plain_table, print_json
-from pmm.cli.devices_scan import Request as Named
+from pmm.cli.devices_scan import DeviceScanOptions
 from pmm.cli.screen import error_line, output
 from pmm.cli.terminal import Terminal
 from pmm.devices.live import Live, Row
@@ -33,7 +33,7 @@ _LATEST = 5  # faults shown
 
 
 @dataclass(frozen=True)
-class Request(Named):
+class DeviceReadOptions(DeviceScanOptions):
     """The options of ``pmm devices read`` by their names there."""
 
     once: bool = False
@@ -49,7 +49,7 @@ class _Shown:
 Look = Callable[[float], _Shown]
 
 
-def run(request: Request) -> None:
+def run(request: DeviceReadOptions) -> None:
     """Show values until the time is over, or Ctrl-C."""
     tables = request.tables()
     console = output(sys.stdout)
@@ -68,7 +68,7 @@ def run(request: Request) -> None:
 
 
 @contextmanager
-def _source(request: Request, tables: RigTables | None) -> Iterator[Look]:
+def _source(request: DeviceReadOptions, tables: RigTables | None) -> Iterator[Look]:
     """Open what is named, and return what looks at it for so many seconds."""
     if tables is not None:
         with opened(tables.configuration()) as rig:
@@ -111,7 +111,7 @@ def _of_port(port: SerialPort, heard: Heard, seconds: float) -> _Shown:
     return _Shown(tuple(rows))
 
 
-def _live(look: Look, request: Request, terminal: Terminal, console: "Console") -> _Shown:
+def _live(look: Look, request: DeviceReadOptions, terminal: Terminal, console: "Console") -> _Shown:
     """Look again and again; on a terminal the table stays in its place."""
     from rich.live import Live as Screen
 

@@ -25,7 +25,7 @@ _PORT: Final = "port"
 
 
 @dataclass(frozen=True)
-class Request:
+class DeviceScanOptions:
     """The options of ``pmm devices scan`` by their names there."""
 
     rig: str | None
@@ -110,7 +110,7 @@ def survey_rig(tables: RigTables, listen_s: float) -> Survey:
     return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong)
 
 
-def _survey_alone(request: Request) -> Survey:
+def _survey_alone(request: DeviceScanOptions) -> Survey:
     """Ask a bus or a port of which nothing is known."""
     heard: dict[str, Heard] = {}
     wrong: list[str] = []
@@ -126,7 +126,7 @@ def _survey_alone(request: Request) -> Survey:
     return Survey(nodes, {}, heard, wrong)
 
 
-def run(request: Request) -> None:
+def run(request: DeviceScanOptions) -> None:
     """Scan, print what was found, and end with status 1 if something is missing."""
     tables = request.tables()
     with busy("scanning"):

@@ -32,6 +32,6 @@ def effects(**options: Any) -> None:
 
     "pmm simulate CAMPAIGN --effect NAME:PARAM=VALUE" switches them on.
     """
-    from pmm.cli.effects_work import Request, run
+    from pmm.cli.effects_work import EffectsOptions, run
 
-    run(Request(**options))
+    run(EffectsOptions(**options))

@@ -31,7 +31,7 @@ JSON_SCHEMA = "pmm-effects-1"
 
 
 @dataclass(frozen=True)
-class Request:
+class EffectsOptions:
     """The options of ``pmm effects``, by their names there."""
 
     effect: str | None
@@ -74,7 +74,7 @@ class Shown:
         return max(abs(value) for key, value in both if key[0] == channel)
 
 
-def run(request: Request) -> None:
+def run(request: EffectsOptions) -> None:
     """List the catalogue, or show one effect.
 
     Raises
@@ -99,7 +99,7 @@ def run(request: Request) -> None:
         output().print(str(path), soft_wrap=True)
 
 
-def _rig(request: Request) -> SimulatedRig:
+def _rig(request: EffectsOptions) -> SimulatedRig:
     if request.campaign is not None:
         return read_campaign(request.campaign).rig().ideal()
     return (vertical_rig() if request.plane == "vertical" else horizontal_rig()).ideal()
@@ -116,7 +116,7 @@ def _shown(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Shown:
     return Shown(effect, set_point, theory, found, effect.lines(situation))
 
 
-def _draw(effect: Effect, rig: SimulatedRig, request: Request) -> list[Path]:
+def _draw(effect: Effect, rig: SimulatedRig, request: EffectsOptions) -> list[Path]:
     from pmm.report.signature_figure import save_signature_figure
 
     with busy("solving"):

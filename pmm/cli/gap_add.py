@@ -30,6 +30,6 @@ def add(**options: Any) -> None:
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.gap_add_work import Request, run
+    from pmm.cli.gap_add_work import GapAddOptions, run
 
-    run(Request(**options))
+    run(GapAddOptions(**options))

@@ -23,6 +23,6 @@ def add_pendulum(**options: Any) -> None:
 
     Exit status: 0 added; 1 no cause is found; 2 the request was wrong.
     """
-    from pmm.cli.gap_add_pendulum_work import Request, run
+    from pmm.cli.gap_add_pendulum_work import GapAddPendulumOptions, run
 
-    run(Request(**options))
+    run(GapAddPendulumOptions(**options))

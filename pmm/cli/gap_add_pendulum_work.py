@@ -20,7 +20,7 @@ JSON_SCHEMA = "pmm-gap-add-pendulum-1"
 
 
 @dataclass(frozen=True)
-class Request(Chosen):
+class GapAddPendulumOptions(Chosen):
     """The options of the command, by their names there."""
 
     file: str
@@ -29,7 +29,7 @@ class Request(Chosen):
     as_json: bool
 
 
-def run(request: Request) -> None:
+def run(request: GapAddPendulumOptions) -> None:
     """Add effects to a pendulum's file.
 
     Raises
@@ -53,7 +53,7 @@ def run(request: Request) -> None:
     add_and_say(path, added, read_case, again=again, schema=schema)
 
 
-def _settled(request: Request, path: Path) -> Settled:
+def _settled(request: GapAddPendulumOptions, path: Path) -> Settled:
     """Return the causes to add, fitted."""
     options = Options(request.effects, request.without, request.most)
     if request.causes:

@@ -20,7 +20,7 @@ JSON_SCHEMA = "pmm-gap-add-1"
 
 
 @dataclass(frozen=True)
-class Request(Looks):
+class GapAddOptions(Looks):
     """The options of the command, by their names there."""
 
     campaign: str
@@ -29,7 +29,7 @@ class Request(Looks):
     as_json: bool
 
 
-def run(request: Request) -> None:
+def run(request: GapAddOptions) -> None:
     """Add an effect to a campaign.
 
     Raises
@@ -55,7 +55,7 @@ def run(request: Request) -> None:
     add_and_say(path, added, campaign_of, again=again, schema=schema)
 
 
-def _examined(request: Request, path: Path) -> Examined:
+def _examined(request: GapAddOptions, path: Path) -> Examined:
     options = request.options
     if request.effect is not None:
         options = replace(options, effects=(request.effect, *request.files))
@@ -63,7 +63,7 @@ def _examined(request: Request, path: Path) -> Examined:
         return examine(path, options, executor, told)
 
 
-def _effects(examined: Examined, request: Request) -> Sequence[Effect]:
+def _effects(examined: Examined, request: GapAddOptions) -> Sequence[Effect]:
     """Return what to add: the named effect as fitted, or the one that was found."""
     found = examined.diagnosis
     if request.effect is not None:

@@ -27,6 +27,6 @@ def answer(**options: Any) -> None:
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.gap_answering import Request, run
+    from pmm.cli.gap_answering import GapAnswerOptions, run
 
-    run(Request(**options))
+    run(GapAnswerOptions(**options))

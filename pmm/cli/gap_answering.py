@@ -17,7 +17,7 @@ from pmm.whole_file import write_whole
 
 
 @dataclass(frozen=True)
-class Request:
+class GapAnswerOptions:
     """The options of the command, by their names there."""
 
     folder: str
@@ -45,7 +45,7 @@ class Answered:
     failed: str = ""
 
 
-def run(request: Request) -> None:
+def run(request: GapAnswerOptions) -> None:
     """Answer a board.
 
     Raises
@@ -102,7 +102,7 @@ def _left_out(path: Path) -> Mapping[str, Sequence[str]]:
     return dict(table)
 
 
-def _answered(request: Request, tasks: Sequence[Task], target: Path) -> list[str]:
+def _answered(request: GapAnswerOptions, tasks: Sequence[Task], target: Path) -> list[str]:
     """Write each answer as it comes; return why cases have none, in their order."""
     failed = []
     for one in _work(request, tasks):
@@ -113,7 +113,7 @@ def _answered(request: Request, tasks: Sequence[Task], target: Path) -> list[str
     return sorted(failed)
 
 
-def _work(request: Request, tasks: Sequence[Task]) -> Iterator[Answered]:
+def _work(request: GapAnswerOptions, tasks: Sequence[Task]) -> Iterator[Answered]:
     """Yield what came of each case, with progress on a terminal."""
     from rich.progress import Progress
 

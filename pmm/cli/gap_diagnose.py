@@ -32,6 +32,6 @@ def diagnose(**options: Any) -> None:
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.gap_diagnose_work import Request, run
+    from pmm.cli.gap_diagnose_work import GapDiagnoseOptions, run
 
-    run(Request(**options))
+    run(GapDiagnoseOptions(**options))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Request(Looks):
+class GapDiagnoseOptions(Looks):
     """The options of the command, by their names there."""
 
     campaign: str
@@ -40,7 +40,7 @@ class Request(Looks):
     as_json: bool
 
 
-def run(request: Request) -> None:
+def run(request: GapDiagnoseOptions) -> None:
     """Diagnose a campaign.
 
     Raises
@@ -83,7 +83,7 @@ def _read_files(found: Examined, folder: Path) -> Iterator[Path]:
             yield path
 
 
-def _check_files(request: Request) -> None:
+def _check_files(request: GapDiagnoseOptions) -> None:
     file = campaign_file(Path(request.campaign))
     read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *request.read]
     check_files({"--page": request.page, "--plan": request.plan}, read)
@@ -98,7 +98,7 @@ def _write_plan(found: Examined, path: Path) -> None:
     messages().print(f"plan: {path}; put the rig's {RIG_FILE} beside it, then: pmm plan check")
 
 
-def examined(request: Request) -> Examined:
+def examined(request: GapDiagnoseOptions) -> Examined:
     """Examine the campaign that is asked for, with progress on a terminal."""
     tell_writers([Path(request.campaign)])
     with progress() as told, engine(request, request.jobs, request.scheduler) as executor:

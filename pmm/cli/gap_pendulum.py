@@ -27,6 +27,6 @@ def pendulum(**options: Any) -> None:
 
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
     """  # noqa: D301
-    from pmm.cli.gap_pendulum_work import Request, run
+    from pmm.cli.gap_pendulum_work import GapPendulumOptions, run
 
-    run(Request(**options))
+    run(GapPendulumOptions(**options))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Request(Chosen):
+class GapPendulumOptions(Chosen):
     """The options, by their names there."""
 
     file: str
@@ -46,7 +46,7 @@ class Request(Chosen):
         yield from super().words()
 
 
-def run(request: Request) -> None:
+def run(request: GapPendulumOptions) -> None:
     """Diagnose a file's records and print what was found."""
     path = Path(request.file)
     check_files({"--page": request.page}, [("FILE.toml", path), *request.read])

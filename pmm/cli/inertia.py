@@ -56,9 +56,9 @@ _fits = click.option(
 
 
 def _run(name: str, options: dict[str, Any]) -> None:
-    from pmm.cli.inertia_running import Request, run
+    from pmm.cli.inertia_running import InertiaOptions, run
 
-    run(Request(name, **options))
+    run(InertiaOptions(name, **options))
 
 
 @_job("swing")

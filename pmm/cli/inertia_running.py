@@ -32,7 +32,7 @@ _RUNS = {
 
 
 @dataclass(frozen=True)
-class Request:
+class InertiaOptions:
     """A job and the options of its command, by their names there."""
 
     job: str
@@ -44,7 +44,7 @@ class Request:
     fits: bool = False
 
 
-def run(request: Request) -> None:
+def run(request: InertiaOptions) -> None:
     """Do a job; what it found is printed even where it then may not be written.
 
     Raises

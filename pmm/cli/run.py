@@ -36,6 +36,6 @@ def run(**options: Any) -> None:
     Exit status: 0 all runs are complete; 1 the rig or the data say no; 2 the request was wrong;
     130 stopped by Ctrl-C.
     """  # noqa: D301
-    from pmm.cli.run_work import Request, work
+    from pmm.cli.run_work import RunOptions, work
 
-    work(Request(**options))
+    work(RunOptions(**options))

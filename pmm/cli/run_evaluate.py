@@ -31,6 +31,6 @@ def evaluate(**options: Any) -> None:
     Exit status: 0 done; 1 the data say no, also if a test shows nothing or the control condition
     is out of its limits; 2 the request was wrong.
     """
-    from pmm.cli.run_evaluating import Request, evaluate_campaign
+    from pmm.cli.run_evaluating import EvaluateOptions, evaluate_campaign
 
-    evaluate_campaign(Request(**options))
+    evaluate_campaign(EvaluateOptions(**options))

@@ -39,7 +39,7 @@ _Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True)
-class Request:
+class EvaluateOptions:
     """The options of ``pmm evaluate``, by their names there."""
 
     folder: str
@@ -48,7 +48,7 @@ class Request:
     as_json: bool
 
 
-def evaluate_campaign(request: Request) -> None:
+def evaluate_campaign(request: EvaluateOptions) -> None:
     """Evaluate a campaign's tests and write what later runs use; what fails stops no other.
 
     Raises

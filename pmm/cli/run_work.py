@@ -55,7 +55,7 @@ _INTERRUPTED: Final = 130
 
 
 @dataclass(frozen=True)
-class Request:
+class RunOptions:
     """The options of ``pmm run``, by their names there."""
 
     plan: str
@@ -85,7 +85,7 @@ class RunFailedError(DataError):
     """A run ended in a fault; the message names its cause."""
 
 
-def work(request: Request) -> None:
+def work(request: RunOptions) -> None:
     """Carry out the runs that were asked for.
 
     Raises
@@ -109,7 +109,7 @@ def work(request: Request) -> None:
         ) from error
 
 
-def _work(request: Request, resume: str) -> None:
+def _work(request: RunOptions, resume: str) -> None:
     """Do it, and say how to go on after a fault."""
     outcomes: list[RunOutcome] = []
     interrupted = False
@@ -136,7 +136,7 @@ def _work(request: Request, resume: str) -> None:
 
 
 @contextmanager
-def _job(request: Request) -> Iterator[Job]:
+def _job(request: RunOptions) -> Iterator[Job]:
     """Say what is to be done; the folder is owned from before it is read, but for a dry run."""
     plan, rig_file = read_plan_and_rig(request.plan)
     findings = require_possible(plan, rig_file, datetime.now(UTC).date())
@@ -281,7 +281,7 @@ def _provenance(job: Job) -> dict[str, str]:
     return {"program": f"pmm {version('pmm')}", "plan": job.plan.name, **operator}
 
 
-def _report(request: Request, job: Job, outcomes: Sequence[RunOutcome], fault: str) -> None:
+def _report(request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault: str) -> None:
     if request.as_json:
         click.echo(json.dumps(_document(request, job, outcomes, fault), indent=1))
         return
@@ -303,7 +303,7 @@ def _report(request: Request, job: Job, outcomes: Sequence[RunOutcome], fault: s
 
 
 def _document(
-    request: Request, job: Job, outcomes: Sequence[RunOutcome], fault: str
+    request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault: str
 ) -> dict[str, Any]:
     return {
         "schema": JSON_SCHEMA,

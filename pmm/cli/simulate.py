@@ -29,6 +29,6 @@ def simulate(**options: Any) -> None:
     The folder gets the campaign file and a NetCDF recording per run; "pmm analyse FOLDER" then
     analyses them. No recording is overwritten unless you say so.
     """
-    from pmm.cli.simulating import Request, run
+    from pmm.cli.simulating import SimulateOptions, run
 
-    run(Request(**options))
+    run(SimulateOptions(**options))

@@ -36,7 +36,7 @@ JSON_SCHEMA = "pmm-simulation-1"
 
 
 @dataclass(frozen=True)
-class Request:
+class SimulateOptions:
     """The options of ``pmm simulate``, by their names there."""
 
     campaign: str
@@ -62,7 +62,7 @@ class Written:
     flags: tuple[Flag, ...]
 
 
-def run(request: Request) -> None:
+def run(request: SimulateOptions) -> None:
     """Simulate the runs that were asked for.
 
     Raises
@@ -99,7 +99,7 @@ def run(request: Request) -> None:
             output().print(str(figure), soft_wrap=True)
 
 
-def _effects(request: Request, campaign: Campaign) -> tuple[Effect, ...]:
+def _effects(request: SimulateOptions, campaign: Campaign) -> tuple[Effect, ...]:
     """Return the effects of the file, and those of the command line after them."""
     more = user_effects(request.effects_file)
     return (*campaign.effects_on(more), *(build(text, more) for text in request.effects))

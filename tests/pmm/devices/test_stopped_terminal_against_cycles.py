@@ -65,7 +65,7 @@ def test_values_are_read_on(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(devices_read, "_source", source)
     devices_read.run(
-        devices_read.Request(str(EXAMPLE), None, "", 1_000_000, (), None, 115_200, False)
+        devices_read.DeviceReadOptions(str(EXAMPLE), None, "", 1_000_000, (), None, 115_200, False)
     )
     assert not terminal.held_up
     assert "19" in terminal.getvalue()

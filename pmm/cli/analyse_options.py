@@ -9,7 +9,7 @@ from analysis.resolver.choice import ReferenceChoice
 
 
 @dataclass(frozen=True)
-class Request:
+class AnalyseOptions:
     """The options of ``pmm analyse``, by their names there; ``None`` where one is not given."""
 
     files: tuple[str, ...]
