@@ -5,6 +5,7 @@ from enum import Enum
 from typing import Literal
 
 from hardware.cia402 import Control, Goal, Mode, Status
+from hardware.commanded import check_position
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.dictionary import Entry
@@ -19,7 +20,7 @@ from hardware.drive import (
     motor_speed,
 )
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
-from hardware.errors import HomingError, LimitError, NotReadyError
+from hardware.errors import HomingError, NotReadyError
 from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN, check_quick_stop
 from hardware.motion import Motion
 from hardware.roles import Cycle, Reading, Role
@@ -178,12 +179,7 @@ class DriveAxis:
         NotReadyError
             If the axis is not enabled or not homed.
         """
-        if position not in self.limits:
-            raise LimitError(
-                self.name,
-                f"{position:g} {self.unit} is outside {self.limits.low:g} to "
-                f"{self.limits.high:g} {self.unit}",
-            )
+        check_position(self, position)
         if not self.homed:
             raise NotReadyError(self.name, "is not homed; home it before it moves")
         speed, way = self._settings.speed, abs(position - self.position)

@@ -8,11 +8,12 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from hardware.commanded import check_position
 from hardware.demand import Demand
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.errors import DialReadingError, LimitError, NotReadyError
+from hardware.errors import DialReadingError, NotReadyError
 from hardware.roles import Cycle, Reading, Role
 
 
@@ -160,12 +161,7 @@ class ManualAxis:
         NotReadyError
             If the axis is not enabled or was never read.
         """
-        if position not in self.limits:
-            raise LimitError(
-                self.name,
-                f"{position:g} {self.unit} is outside {self.limits.low:g} to "
-                f"{self.limits.high:g} {self.unit}",
-            )
+        check_position(self, position)
         if not self.homed:
             raise NotReadyError(self.name, "was never read; home it before it moves")
         dial = f"{position * self._settings.dial_per_unit:.6g} {self._settings.dial_unit}"

@@ -3,10 +3,11 @@
 import math
 from dataclasses import dataclass
 
+from hardware.commanded import check_speed
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.errors import DialReadingError, LimitError, NotReadyError
+from hardware.errors import DialReadingError, NotReadyError
 from hardware.manual_axis import Question
 from hardware.roles import Block, Cycle, Role
 
@@ -62,11 +63,7 @@ class ManualShaft:
 
     def turn(self, frequency_hz: float) -> None:
         """Ask the operator to set a speed and to read it; raises as the driven shaft does."""
-        low, high = self.frequency_hz.low, self.frequency_hz.high
-        if not (frequency_hz > 0.0 and frequency_hz in self.frequency_hz):
-            raise LimitError(
-                self.name, f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0)"
-            )
+        check_speed(self, frequency_hz)
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it before it turns")
         self._wanted_hz = frequency_hz

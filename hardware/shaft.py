@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hardware.cia402 import Goal, Mode, Status
+from hardware.commanded import check_speed
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -22,7 +23,7 @@ from hardware.drive import (
     motor_speed,
 )
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
-from hardware.errors import LimitError, NotReadyError
+from hardware.errors import NotReadyError
 from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop
 from hardware.motion import Motion
 from hardware.roles import Block, Cycle, Role, Sample, blocks
@@ -153,11 +154,7 @@ class DriveShaft:
         NotReadyError
             If the shaft is not enabled.
         """
-        low, high = self.frequency_hz.low, self.frequency_hz.high
-        if not (frequency_hz > 0.0 and frequency_hz in self.frequency_hz):
-            raise LimitError(
-                self.name, f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0)"
-            )
+        check_speed(self, frequency_hz)
         if not self.enabled:
             raise NotReadyError(self.name, "is not enabled; enable it before it turns")
         self._aim(frequency_hz)

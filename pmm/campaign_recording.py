@@ -129,7 +129,7 @@ def open_recording(
 
 
 def _columns(source: RecordingSource) -> "ColumnMap | None":
-    from analysis.readers.registry import find_reader
+    from analysis.readers.reader import find_reader
 
     if source.columns is None or find_reader(source.path).own_channels:
         return None  # a column map is for the files of other systems

@@ -8,6 +8,7 @@ from typing import Final
 
 from hardware.description.version import version_of
 
+_PACKAGES: Final = ("numpy", "scipy", "h5netcdf", "matplotlib")
 _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 
 
@@ -30,3 +31,12 @@ def _commit() -> str | None:
     command = [*where, "describe", "--always", "--dirty", "--abbrev=8"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
     return done.stdout.strip() or None
+
+
+def provenance() -> tuple[tuple[str, str], ...]:
+    """Return pairs of what and which version."""
+    return (
+        ("program", version_line()),
+        ("system", f"{platform.system()} {platform.machine()}"),
+        *((name, version_of(name)) for name in _PACKAGES),
+    )

@@ -15,8 +15,8 @@ import numpy as np
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
-from analysis.gap.polynomial import motion
-from analysis.gap.sparse_law import FORM, Law, scaled_motion, sparse_law
+from analysis.gap.polynomial import motion, scaled_motion
+from analysis.gap.sparse_law import FORM, Law, sparse_law
 from analysis.gap.where import remaining
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import FORCES

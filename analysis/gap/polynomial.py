@@ -16,6 +16,8 @@ from analysis.gap.gaussian import left_over, misfit, posterior
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 
+Moved = tuple[FloatArray, FloatArray, FloatArray]
+
 DEGREE: Final = 3
 _POINTS: Final = 128
 _SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a term's prior, in sigma
@@ -94,16 +96,24 @@ def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArra
     )
 
 
+def scaled_motion(stack: Stack, channel: str, made: Stack | None = None) -> list[Moved]:
+    """Return each run's motion over the largest of a campaign, the runs' own by default."""
+    usual = [motion(run, channel) for run in (made or stack).runs]
+    scale = [max(float(np.abs(one[at]).max()) for one in usual) or 1.0 for at in range(3)]
+    return [
+        (x / scale[0], v / scale[1], a / scale[2])
+        for x, v, a in (motion(run, channel) for run in stack.runs)
+    ]
+
+
 def _terms(made: Stack, stack: Stack, channel: str) -> list[FloatArray]:
-    usual = [motion(run, channel) for run in made.runs]
-    scale = [max(float(np.abs(run[at]).max()) for run in usual) or 1.0 for at in range(3)]
-    moved = [motion(run, channel) for run in stack.runs]
+    moved = scaled_motion(stack, channel, made)
     laws = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i) if i + j]
     found = []
     for i, j in laws:
-        forces = [(x / scale[0]) ** i * (v / scale[1]) ** j for x, v, _ in moved]
+        forces = [x**i * v**j for x, v, _ in moved]
         found.append(components_of(stack, channel, forces))
-    found.append(components_of(stack, channel, [a / scale[2] for _, _, a in moved]))
+    found.append(components_of(stack, channel, [a for _, _, a in moved]))
     return found
 
 

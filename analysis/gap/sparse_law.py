@@ -10,14 +10,12 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.components import Part, Stack
+from analysis.gap.components import Part
 from analysis.gap.fit import Problem
 from analysis.gap.gaussian import rooted
-from analysis.gap.polynomial import components_of, motion
+from analysis.gap.polynomial import Moved, components_of, scaled_motion
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
-
-Moved = tuple[FloatArray, FloatArray, FloatArray]
 
 FORM: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
 # Terms in displacement, velocity and acceleration, each over its largest value in the campaign.
@@ -57,13 +55,6 @@ class Law:
 
     terms: tuple[tuple[str, str, float], ...]
     explained: float
-
-
-def scaled_motion(stack: Stack, channel: str) -> list[Moved]:
-    """Return each run's motion over the largest of the campaign."""
-    moved = [motion(run, channel) for run in stack.runs]
-    scale = [max(float(np.abs(one[at]).max()) for one in moved) or 1.0 for at in range(3)]
-    return [(x / scale[0], v / scale[1], a / scale[2]) for x, v, a in moved]
 
 
 def sparse_law(problem: Problem, residual: FloatArray) -> Law:

@@ -7,6 +7,7 @@ About an axis at an angle phi to the z axis, in the x-z plane,
 which three axes determine and more axes check (eqs 3, 4 and 25 for any number).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -97,3 +98,10 @@ def plane_inertia(
     values = covariance @ (matrix.T @ (weight**2 * measured))
     left = weight * (measured - matrix @ values)
     return PlaneInertia(values, covariance, float(left @ left), phi.size - 3)
+
+
+def inertias_at(xx: float, zz: float, xz: float, angle_rad: float) -> tuple[float, float]:
+    """Return the inertias about the axes that lie at an angle to body x and body z."""
+    s, c = math.sin(angle_rad), math.cos(angle_rad)
+    product = 2.0 * xz * s * c
+    return xx * c * c + zz * s * s - product, xx * s * s + zz * c * c + product

@@ -10,7 +10,7 @@ from analysis.foreign.found import ForeignColumns
 from analysis.foreign.process import read_foreign
 from analysis.readers.columns import ColumnMap
 from analysis.readers.headers import Header, parse_header
-from analysis.readers.registry import Reader
+from analysis.readers.reader import Reader
 from analysis.readers.text_plan import plan_columns
 from analysis.readers.text_recording import Origin, from_columns
 from analysis.readers.text_source import Progress

@@ -23,7 +23,7 @@ from analysis.readers.damage import Damage, find_damage
 from analysis.readers.declared import check_declared
 from analysis.readers.heaps import check_heaps
 from analysis.readers.missing import with_missing_said
-from analysis.readers.registry import Reader
+from analysis.readers.reader import Reader
 from analysis.readers.reserved import reserved
 from analysis.readers.stored_samples import StoredSamples, identity, reading
 from analysis.recording import Recording

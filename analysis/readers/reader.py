@@ -1,14 +1,94 @@
-"""One call that reads a recording of any kind."""
+"""The readers of recordings: entry points ``pmm.readers``, and one call that reads any kind."""
 
 import math
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import Final
 
 from analysis.readers.columns import ColumnMap
-from analysis.readers.registry import find_reader, name_of
 from analysis.readers.text_source import Progress
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
+
+GROUP: Final = "pmm.readers"
+_PACKED: Final = ".gz"
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A reader, as its entry point presents it; its name there is the end of its files' names.
+
+    Attributes
+    ----------
+    read
+        Makes a recording of a path, a column map, the recording's name and what is told the part
+        that has been read, from 0 to 1.
+    own_channels
+        Whether the file says its own channels, units and rate, so that it takes no column map.
+    text
+        Whether the file is text, which is read from gzip too.
+    """
+
+    read: Callable[[Path, ColumnMap, str, Progress], Recording]
+    own_channels: bool = False
+    text: bool = False
+
+
+def find_reader(path: Path) -> Reader:
+    """Return the reader of a file, told from its name.
+
+    Raises
+    ------
+    DataError
+        If the kind of file is not known; the message lists the known ones.
+    ConfigurationError
+        If the reader's package cannot be loaded.
+    """
+    plain = _unpacked(path)
+    ending = plain.suffix.lower().removeprefix(".")
+    reader = _load(_found()[ending]) if ending in _found() else None
+    if reader is None or not (reader.text or plain is path):
+        endings = ", ".join(f".{one}" for one in _found())
+        raise DataError(
+            f"{path}: the kind of file is not known; its name should end in {endings}, or in "
+            "that of a text file with .gz behind"
+        )
+    return reader
+
+
+def name_of(path: Path) -> str:
+    """Return what a recording in a file is called: the file's name without its endings."""
+    return _unpacked(path).stem
+
+
+def text_endings() -> tuple[str, ...]:
+    """Return what names of text files end in, packed ones among them."""
+    texts = [f".{name}" for name, one in _found().items() if _load(one).text]
+    return tuple(f"{ending}{packed}" for ending in texts for packed in ("", _PACKED))
+
+
+def _unpacked(path: Path) -> Path:
+    return path.with_suffix("") if path.suffix.lower() == _PACKED else path
+
+
+@cache
+def _found() -> Mapping[str, EntryPoint]:
+    return {one.name: one for one in entry_points(group=GROUP)}
+
+
+def _load(entry: EntryPoint) -> Reader:
+    try:
+        reader = entry.load()
+    except Exception as error:  # a foreign package may raise anything while it is imported
+        raise ConfigurationError(
+            f"the reader of .{entry.name} files, {entry.value}, cannot be loaded: {error}"
+        ) from error
+    if not isinstance(reader, Reader):
+        raise ConfigurationError(f"{entry.value} is no analysis.readers.reader.Reader")
+    return reader
 
 
 def read_recording(

@@ -12,7 +12,7 @@ from analysis.readers.conditioning import repair_missing, saturation_flags, with
 from analysis.readers.headers import Header
 from analysis.readers.missing import without_beyond
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
-from analysis.readers.registry import Reader
+from analysis.readers.reader import Reader
 from analysis.readers.text_layout import find_layout
 from analysis.readers.text_plan import ColumnPlan, plan_columns, time_factor, without_idle
 from analysis.readers.text_source import Progress, TextSource

@@ -16,7 +16,6 @@ from pmm.cli.coefficients import DEFAULT_TRIALS
 from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.screen import error_line, messages, output
-from pmm.coefficients.provenance import provenance
 from pmm.coefficients.references import beside, check_systems, read_references
 from pmm.coefficients.settings import (
     DRY,
@@ -31,6 +30,7 @@ from pmm.coefficients.solving import Progress
 from pmm.coefficients.systems import check_dimensions, in_system
 from pmm.coefficients.workflow import Outcome, coefficients_of
 from pmm.parallel import open_executor
+from pmm.version import provenance
 from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from hardware.commanded import check_position, check_speed
 from hardware.description.errors import ConfigurationError
 from hardware.roles import Pulse
 from pmm.cli.devices_common import confirm, opened, print_json, print_table
 from pmm.cli.screen import error_line, output
 from pmm.cli.terminal import Terminal
-from pmm.devices.moving import axis_of, check_position, check_speed, look, turn
+from pmm.devices.moving import NOTHING_MOVED, axis_of, look, turn
 from pmm.devices.moving import move as move_axis
 from pmm.devices.opening import RigTables
 from pmm.devices.pushing import Gauges, Pushed, push_each
@@ -45,7 +46,7 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
     ):
         one = axis_of(opened_rig, axis)
         goal = parse_position(position, one.unit)
-        check_position(one, goal)
+        check_position(one, goal, told=NOTHING_MOVED)
         there = f"{goal:g} {one.unit}"
         confirm(f"{axis} will home if it has to, and move to {there}. Is the way clear?", yes=yes)
         shown.enter_context(Terminal())
@@ -101,7 +102,7 @@ def photocell(
         if turn_hz is not None:
             if shaft is None:
                 raise ConfigurationError("--turn: the rig has no shaft; turn it by hand")
-            check_speed(shaft, turn_hz)
+            check_speed(shaft, turn_hz, told=NOTHING_MOVED)
             confirm(f"the shaft will turn at {turn_hz:g} Hz. Is everything clear of it?", yes=yes)
         terminal = shown.enter_context(Terminal())
         opened_rig.prepare()

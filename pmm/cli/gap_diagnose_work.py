@@ -17,10 +17,12 @@ from pmm.cli.folders import check_files
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
+from pmm.cli.sections import print_sections
 from pmm.gap.case import CASE_FILE
 from pmm.gap.examine import Examined, examine
 from pmm.gap.prepare import campaign_file
-from pmm.gap.report import PROPOSED, gap_report
+from pmm.gap.report import PROPOSED, GapReport, gap_report
+from pmm.gap.sections import sections
 from pmm.parallel import open_executor
 from pmm.whole_file import write_whole
 
@@ -56,8 +58,6 @@ def run(request: GapDiagnoseOptions) -> None:
     if request.as_json:
         click.echo(json.dumps(report.as_dict(), indent=1, allow_nan=False))
     else:
-        from pmm.cli.gap_diagnose_print import print_report
-
         print_report(output(), report)
         if report.conclusion.adds:
             added = pasted("gap", "add", request.campaign, *request.words())
@@ -130,3 +130,20 @@ def progress() -> Iterator[Callable[[str], None]]:
         return
     with console.status("reading") as status:
         yield lambda said: status.update(said)
+
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def print_report(console: "Console", report: GapReport) -> None:
+    """Print a diagnosis for people."""
+    wrong, *others = report.said
+    for line in (f"{report.campaign}: {wrong}", *others):
+        console.print(line, style="bold", soft_wrap=True)
+    console.print(f"\n{report.used}", soft_wrap=True)
+    for name, reason in report.left_out.items():
+        console.print(f"LEFT OUT {name}: {reason}", soft_wrap=True)
+    for note in report.notes:
+        console.print(f"NOTE     {note}", soft_wrap=True)
+    print_sections(console, sections(report))

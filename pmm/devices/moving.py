@@ -2,11 +2,12 @@
 
 from typing import Final
 
+from hardware.commanded import check_position, check_speed
 from hardware.description.errors import ConfigurationError
-from hardware.errors import LimitError
 from hardware.rig import Rig
 from hardware.roles import PositionAxis, Reading, Shaft
 
+NOTHING_MOVED: Final = "; nothing was moved"
 _AXES: Final = ("eccentricity", "phase")
 _ENABLE_S: Final = 5.0
 _PATIENCE_S: Final = 600.0  # a person may be at the dial; drives have deadlines of their own
@@ -30,33 +31,6 @@ def axis_of(rig: Rig, name: str) -> PositionAxis:
     return found[name]
 
 
-def check_position(axis: PositionAxis, position: float) -> None:
-    """Refuse a position before anything is asked or moved.
-
-    Raises
-    ------
-    LimitError
-        If it lies outside the axis's limits, with value and limits.
-    """
-    if position not in axis.limits:
-        raise LimitError(
-            axis.name,
-            f"{position:g} {axis.unit} is outside {axis.limits.low:g} to {axis.limits.high:g} "
-            f"{axis.unit}; nothing was moved",
-        )
-
-
-def check_speed(shaft: Shaft, frequency_hz: float) -> None:
-    """Refuse a shaft speed in the same way; raises as :func:`check_position`."""
-    low, high = shaft.frequency_hz.low, shaft.frequency_hz.high
-    if not (frequency_hz > 0.0 and frequency_hz in shaft.frequency_hz):
-        raise LimitError(
-            shaft.name,
-            f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0); nothing was "
-            "moved",
-        )
-
-
 def look(rig: Rig) -> None:
     """Let a few cycles pass, so that every device has said where it stands."""
     for _ in range(_LOOK_CYCLES):
@@ -73,7 +47,7 @@ def move(rig: Rig, axis: PositionAxis, position: float) -> Reading:
     HardwareError
         What the drives report on the way.
     """
-    check_position(axis, position)
+    check_position(axis, position, told=NOTHING_MOVED)
     rate_hz = rig.configuration.sample_rate_hz
     axis.enable()
     rig.run_until(lambda: axis.enabled, round(_ENABLE_S * rate_hz), f"{axis.name} enables")
@@ -91,7 +65,7 @@ def move(rig: Rig, axis: PositionAxis, position: float) -> Reading:
 
 def turn(rig: Rig, shaft: Shaft, frequency_hz: float) -> None:
     """Put the shaft under power and run it up to a speed; raises as :func:`move`."""
-    check_speed(shaft, frequency_hz)
+    check_speed(shaft, frequency_hz, told=NOTHING_MOVED)
     rate_hz = rig.configuration.sample_rate_hz
     shaft.enable()
     rig.run_until(lambda: shaft.enabled, round(_ENABLE_S * rate_hz), f"{shaft.name} enables")

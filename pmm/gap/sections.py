@@ -1,12 +1,12 @@
 """The sections of a gap report, the same ones for the terminal and for the page."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
+from analysis.gap.description import Description
 from pmm.gap.coefficients import headings
 from pmm.gap.conclusion import EFFECT, Conclusion
-from pmm.gap.describing import described
 from pmm.gap.report import GapReport
 from pmm.gap.rows import said_of
 from pmm.gap.words import joined
@@ -143,3 +143,26 @@ def _next(report: GapReport) -> Section:
     rows = tuple((one["said"], f"{one['gain_log_odds']:.1f}") for one in report.next_runs)
     line = _ODDS.format(", ".join(report.next_runs[0]["between"]))
     return Section(NEXT, (line,), (Table("Next", ("run", "expected log odds"), rows),))
+
+
+def described(one: Description | None) -> Sequence[str]:
+    """Return the description of a remainder, a sentence each; it names no cause."""
+    if one is None:
+        return ()
+    orders = sorted(one.orders.items(), key=lambda pair: -pair[1])[:3]
+    lines = [
+        "its form, not its cause: harmonics "
+        + ", ".join(f"{n} ({100.0 * share:.0f} %)" for n, share in orders),
+        "a curve over one quantity carries "
+        + ", ".join(f"{100.0 * share:z.0f} % ({name})" for name, share in one.follows.items()),
+    ]
+    laws = [("frequency", one.frequency_power), ("amplitude", one.amplitude_power)]
+    powers = [f"{name}^{power:z.1f}" for name, power in laws if math.isfinite(power)]
+    if powers:
+        lines.append(f"it grows as {', '.join(powers)}")
+    if math.isfinite(one.air_over_water):
+        lines.append(f"in air it is {one.air_over_water:.2f} times as large as in water")
+    if one.law.terms:
+        terms = ", ".join(f"{channel}: {n:+.3g} N {term}" for channel, term, n in one.law.terms)
+        lines.append(f"few terms that carry {100.0 * one.law.explained:.0f} % of it: {terms}")
+    return lines

@@ -9,6 +9,7 @@ from analysis.inertia.ballast import Target, Weight, place_ballast
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.parts import Part, combine
+from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -146,9 +147,7 @@ def _axes(whole: Part) -> PlaneAxes | None:
     if min(xx, zz) <= 0.0 or xx == zz:
         return None
     angle = 0.5 * math.atan(2.0 * xz / (zz - xx))
-    s, c = math.sin(angle), math.cos(angle)
-    near_x = xx * c * c + zz * s * s - 2.0 * xz * s * c
-    near_z = xx * s * s + zz * c * c + 2.0 * xz * s * c
+    near_x, near_z = inertias_at(xx, zz, xz, angle)
     if min(near_x, near_z) <= 0.0:
         return None
     roll, _, yaw = whole.gyradii

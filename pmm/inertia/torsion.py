@@ -9,7 +9,7 @@ from analysis.inertia.compound import torsional_inertia, torsional_stiffness
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.numeric import Value
-from analysis.inertia.plane_inertia import PlaneInertia, plane_inertia
+from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
 from hardware.description.errors import DataError
 from pmm.inertia.given import given
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
@@ -112,9 +112,7 @@ class Plane:
         """
         xx, zz, xz = (float(value) for value in self.inertia.values)
         psi = self.inertia.principal_angle_rad
-        s, c = math.sin(psi), math.cos(psi)
-        first = xx * c * c + zz * s * s - 2.0 * xz * s * c
-        second = xx * s * s + zz * c * c + 2.0 * xz * s * c
+        first, second = inertias_at(xx, zz, xz, psi)
         if min(first, second) <= 0.0:
             raise DataError(
                 f"principal inertias of {first:.3g} and {second:.3g} kg m2 cannot be: check the "

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from analysis.coefficients.recommended import recommended
-from pmm.coefficients.provenance import provenance
 from pmm.coefficients.reading import sha256_of
 from pmm.coefficients.workflow import Outcome
 from pmm.flag_lines import FlagLine, flag_lines
@@ -22,6 +21,7 @@ from pmm.report.coefficient_plots import figures
 from pmm.report.inline import inline_svg
 from pmm.report.page import write_template
 from pmm.report.style import render
+from pmm.version import provenance
 
 
 @dataclass(frozen=True)

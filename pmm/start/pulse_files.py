@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.readers.photocell import read_edges
-from analysis.readers.registry import text_endings
+from analysis.readers.reader import text_endings
 from hardware.description.errors import PmmError
 from pmm.start.shared_line import SAME_TIME
 

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from analysis.readers import read_recording
-from analysis.readers.registry import find_reader
+from analysis.readers.reader import find_reader
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint

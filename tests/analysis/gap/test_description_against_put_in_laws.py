@@ -6,9 +6,9 @@ import pytest
 from analysis.gap.components import GapRun
 from analysis.gap.description import describe
 from analysis.gap.fit import Problem
-from analysis.gap.polynomial import components_of, polynomial
+from analysis.gap.polynomial import components_of, polynomial, scaled_motion
 from analysis.gap.regimes import regimes
-from analysis.gap.sparse_law import LIBRARY, scaled_motion
+from analysis.gap.sparse_law import LIBRARY
 from analysis.gap.withheld import gap_of, predict_withheld
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of

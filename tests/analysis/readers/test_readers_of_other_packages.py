@@ -62,4 +62,4 @@ def test_a_reader_that_cannot_be_loaded_is_one_sentence(tmp_path: Path) -> None:
 def test_what_is_no_reader_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "run.raw").write_bytes(b"\0")
     done = asked(tmp_path, "run.raw", "lab:read")
-    assert "lab:read is no analysis.readers.registry.Reader" in done.stderr
+    assert "lab:read is no analysis.readers.reader.Reader" in done.stderr

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from hardware.bus import BusConfiguration
+from hardware.commanded import check_speed
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.errors import InterlockError, LimitError
@@ -14,7 +15,7 @@ from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.scan import Ear, scan
 from pmm.devices.live import Live
-from pmm.devices.moving import axis_of, check_speed, look, move, turn
+from pmm.devices.moving import NOTHING_MOVED, axis_of, look, move, turn
 from pmm.devices.pushing import Gauges, direction, push_each
 from pmm.devices.watching import watch
 from sim.devices.registry import running
@@ -169,7 +170,7 @@ def test_no_axis_moves_while_the_shaft_turns() -> None:
 def test_a_speed_beyond_the_shafts_limits_is_refused(frequency_hz: float) -> None:
     refused = pytest.raises(LimitError, match=r"outside 0 to 2 Hz \(and above 0\); nothing")
     with in_process({"shaft": WHOLE["shaft"]}) as (rig, _), refused:
-        check_speed(rig.shaft, frequency_hz)
+        check_speed(rig.shaft, frequency_hz, told=NOTHING_MOVED)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
-from pmm.cli.gap_diagnose_print import print_report
+from pmm.cli.gap_diagnose_work import print_report
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.conclusion import Conclusion, Weighing, verdict_of
 from pmm.gap.pendulum_conclusion import conclude

@@ -1,0 +1,35 @@
+"""Commands against the limits of the axis or shaft that they are for."""
+
+from hardware.errors import LimitError
+from hardware.roles import PositionAxis, Shaft
+
+
+def check_position(axis: PositionAxis, position: float, *, told: str = "") -> None:
+    """Refuse a position beyond an axis's limits, or that is no number.
+
+    Parameters
+    ----------
+    told
+        What is said besides the value and the limits.
+
+    Raises
+    ------
+    LimitError
+        With value and limits.
+    """
+    if position not in axis.limits:
+        raise LimitError(
+            axis.name,
+            f"{position:g} {axis.unit} is outside {axis.limits.low:g} to {axis.limits.high:g} "
+            f"{axis.unit}{told}",
+        )
+
+
+def check_speed(shaft: Shaft, frequency_hz: float, *, told: str = "") -> None:
+    """Refuse a shaft speed in the same way; raises as :func:`check_position`."""
+    low, high = shaft.frequency_hz.low, shaft.frequency_hz.high
+    if not (frequency_hz > 0.0 and frequency_hz in shaft.frequency_hz):
+        raise LimitError(
+            shaft.name,
+            f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0){told}",
+        )
