@@ -1,25 +1,28 @@
-"""``docs/scoreboard.md``: every score beside the others, then all about the newest."""
+"""``docs/scoreboard.md``: the newest score in a minute, all others and all figures folded."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from hardware.description.errors import DataError
+from tests.sealed.scoreboard_figure import NAME, draw, whole
 from tests.sealed.scores import FOLDER, Kept, all_scores
 from tests.sealed.scoring.board import DIAGNOSIS
-from tests.sealed.scoring.markdown import described, tabulated
+from tests.sealed.scoring.markdown import described, folded, tabulated
 from tests.sealed.scoring.rows import BINS
 from tests.sealed.scoring.tables import TITLES, Table, tables, with_ceiling
 from tests.sealed.targets import ceilings
 
 INTRO: Final = (
-    "Written by `python -m tests.sealed whole` or `page`; do not edit. [sealed.md](sealed.md) says "
-    "what a board is, [sealed-scoring.md](sealed-scoring.md) what each figure counts: value, 95 % "
-    'interval, number of cases; behind "of" stands the ceiling, what a linear matcher reaches on '
-    "the same cases.\n\n"
-    "The seed of a board is the hash of the commit that froze the diagnosis and its thresholds. "
-    "A board is scored once; the first score stands first, every later one beside it. Seeds 0 to "
-    "99 are for development and stand nowhere here."
+    "Written by `python -m tests.sealed whole` or `page`; do not edit. A board is some hundred "
+    "made-up campaigns whose answer nobody knew who wrote the diagnosis "
+    "([sealed.md](sealed.md)); it is scored once."
+)
+READING: Final = (
+    'Each figure stands with its 95 % interval and number of cases; behind "of" is what a linear '
+    "matcher reaches on the same cases ([sealed-scoring.md](sealed-scoring.md)). A seed is the "
+    "hash of the commit that froze the diagnosis and its thresholds; seeds 0 to 99 are for "
+    "development and stand nowhere here."
 )
 
 
@@ -34,6 +37,7 @@ def write_scoreboard(docs: Path) -> None:
     kept = all_scores(docs)
     if not kept:
         raise DataError(f"{docs / FOLDER}: no scores yet; `python -m tests.sealed whole` makes one")
+    draw(kept, docs)
     (docs / "scoreboard.md").write_text(page(kept), encoding="utf-8")
 
 
@@ -43,11 +47,49 @@ def page(kept: Sequence[Kept]) -> str:
     machine = Table(f"{newest.name} was made on", ("", newest.name), tuple(newest.made_on.items()))
     parts = [
         f"# The scoreboard\n\n{INTRO}",
-        *(tabulated(one) for one in (_list(kept), _targets(kept), _columns(kept))),
-        f"## The newest score: {newest.name}\n\n{described(newest.score)}",
-        *(tabulated(one, 3) for one in (*tables(newest.score), machine)),
+        _told(newest),
+        f"![Scores over time]({NAME})",
+        tabulated(_newest(newest)),
+        READING,
+        folded("All scores", tabulated(_list(kept)), tabulated(_targets(kept))),
+        folded("The diagnosis, column by column", tabulated(_columns(kept))),
+        folded(
+            f"All about the newest score, {newest.name}",
+            described(newest.score),
+            *(tabulated(one) for one in (*tables(newest.score), machine)),
+        ),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _told(kept: Kept) -> str:
+    """Return what the newest score says, in plain sentences."""
+    judged = [one for one in kept.targets if one.measured is not None]
+    met = sum(one.word == "met" for one in judged)
+    told = [
+        f"The newest board, {kept.name}, of {kept.score.cases} cases, was scored on "
+        f"{kept.made_on['date'][:10]}: {met} of {len(judged)} targets are met."
+    ]
+    named, alarms = whole(kept, "top_1_by_class"), whole(kept, "false_alarms")
+    if named is not None:
+        told.append(
+            f"Where a known effect can be seen at all, its class is named in "
+            f"{100.0 * named.value:.0f} % of {named.count} cases."
+        )
+    if alarms is not None:
+        told.append(
+            f"Where there is none, one is named in {100.0 * alarms.value:.1f} % of {alarms.count}."
+        )
+    return " ".join(told)
+
+
+def _newest(kept: Kept) -> Table:
+    rows = tuple(
+        (one.what, one.limit, _verdict(kept, one.key, one.limit))
+        for one in kept.targets
+        if one.measured is not None
+    )
+    return Table("Targets", ("", "limit", kept.name), rows)
 
 
 def _list(kept: Sequence[Kept]) -> Table:

@@ -12,8 +12,14 @@ def described(score: Score) -> str:
     return "\n\n".join(part for part in (head, notes) if part)
 
 
-def tabulated(table: Table, level: int = 2) -> str:
-    """Return a table under a heading of that level."""
+def tabulated(table: Table) -> str:
+    """Return a table under its caption."""
     lines = [table.head, ("---",) * len(table.head), *table.rows]
     rows = "\n".join("| " + " | ".join(row) + " |" for row in lines)
-    return f"{'#' * level} {table.caption}\n\n{rows}"
+    return f"**{table.caption}**\n\n{rows}"
+
+
+def folded(summary: str, *parts: str) -> str:
+    """Return parts that are shown when somebody asks for them."""
+    inside = "\n\n".join(parts)
+    return f"<details>\n<summary>{summary}</summary>\n\n{inside}\n\n</details>"
