@@ -54,5 +54,6 @@ def _panel(axes: "Axes", names: Sequence[str], figures: Sequence[Figure | None])
     if ceilings:
         axes.plot(*zip(*ceilings, strict=True), ls="", marker="_", ms=16, label="linear matcher")
     axes.set_xticks(range(len(names)), names, rotation=30, fontsize=8)
-    axes.set_ylim(0.0, 0.1 if max(value, default=1.0) < 0.1 else 1.0)
+    highest = max((figure.high for _, figure in there), default=1.0)
+    axes.set_ylim(0.0, 1.1 * highest if highest < 0.3 else 1.0)
     axes.grid(axis="y", alpha=0.3)

@@ -83,15 +83,18 @@ def test_the_page_has_a_column_for_each_score_and_links_to_all_figures(docs: Pat
     text = (docs / "scoreboard.md").read_text()
     lines = text.splitlines()
     assert "|  | limit | aaaaaaa | 000bbbb |" in lines
-    (pairs,) = [line for line in lines if line.startswith(target)]
+    newest, pairs = [line for line in lines if line.startswith(target)]
     # The page of scores: 1 of 1 clear pairs named, where a linear matcher names 0.8.
+    assert newest.endswith("| at least 0.7 | 1 of 0.8, met |")
     assert pairs.endswith("| at least 0.7 | 1 of 0.8, met | 1 of 0.8, met |")
     assert "| the same | at most 0.98 | 0.833, met | 0.833, met |" in lines
     assert "| 1 | [aaaaaaa](scores/aaaaaaa.json) | 2026-03-01 08:00 UTC |" in text
     assert "some cpu, 8 cores, Python 3.11.7" in text
-    assert text.count("## The newest score: 000bbbb\n") == 1
+    assert "The newest board, 000bbbb, of 12 cases, was scored on" in text
+    assert text.count("<details>") == text.count("</details>") == 3
+    assert (docs / "images" / "scoreboard.svg").read_text().startswith("<?xml")
     assert "| stage | 0.714 [0.36, 0.92] n 7 | 0.714 [0.36, 0.92] n 7 |" in lines
-    assert "### SNR 3 to 10" in lines
+    assert "**SNR 3 to 10**" in lines
 
 
 def test_a_score_from_before_a_column_has_a_dash_there(docs: Path) -> None:
@@ -170,7 +173,7 @@ def test_score_keeps_what_it_may_and_refuses_before_it_scores(docs: Path, tmp_pa
     toml.write_text(toml.read_text().replace(FIRST, "c" * 40))
     assert _run("score", str(board), "--no-carry-out", "--docs", str(docs)).exit_code == 0
     assert [one.name for one in all_scores(docs)] == ["aaaaaaa", "000bbbb", "ccccccc"]
-    assert "## The newest score: ccccccc" in (docs / "scoreboard.md").read_text()
+    assert "The newest board, ccccccc," in (docs / "scoreboard.md").read_text()
 
 
 @pytest.mark.parametrize(
