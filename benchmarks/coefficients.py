@@ -87,9 +87,9 @@ def _forms(campaigns: int) -> tuple[list[Row], float]:
         generator = np.random.default_rng(3)
         made = Made(linear | terms)
         named = Counter(
-            choose_form(
-                [made_up(point, made, name, generator) for name, point in points], 0
-            ).verdict
+            choose_form([made_up(point, made, name, generator) for name, point in points], 0)[
+                0
+            ].verdict
             for _ in range(campaigns)
         )
         other = QUADRATIC if form == CUBIC else CUBIC

@@ -14,7 +14,7 @@ import numpy as np
 from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS, UNITS, in_body_axes
-from analysis.kinematics.cycle import harmonics, per_part
+from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry, Waves
 from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Driven, motion
@@ -104,7 +104,35 @@ def of_struts(
     sensitivity[:, STATED.index("frequency_relative")] += harmonics(faster.sum(axis=1), orders)
     moved = _moved(found.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
-    return InBodyAxes(phasors, sensitivity, _of_tare(geometry, inputs[:6], channels - 2))
+    moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
+    return InBodyAxes(phasors, sensitivity, _of_tare(geometry, moving, channels - 2))
+
+
+def parts_of_struts(
+    readings: ComplexArray, geometry: Geometry, omega: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the interleaved parts and the ``of_tare`` of :func:`of_struts` alone, of many runs.
+
+    Parameters
+    ----------
+    readings
+        Displacements and gauges, shape ``(runs, orders + 1, 4 or 5)``.
+    geometry
+        Speed and drift of shape ``(runs, 1)``.
+    omega
+        Angular frequencies, rad/s, shape ``(runs,)``.
+
+    Raises
+    ------
+    DataError
+        As :func:`of_struts`.
+    """
+    runs, count, channels = readings.shape
+    moved = driven(interleaved(readings[..., :2].reshape(runs, -1)), omega)
+    read = waves(interleaved(readings[..., 2:].reshape(runs, -1)), channels - 2)
+    found = harmonics(in_body_axes(geometry, moved, read), count - 1)
+    found[:, 2] -= np.ravel(geometry.drift_rad)
+    return found, _of_tare(geometry, moved, channels - 2)
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:
@@ -122,12 +150,12 @@ def _model(geometry: Geometry, waves: Waves) -> Waves:
     return in_body_axes(exact, driven, waves[..., 6:-3, :])
 
 
-def _of_tare(geometry: Geometry, moved: FloatArray, gauges: int) -> FloatArray:
-    still = np.zeros((2, 1))
+def _of_tare(geometry: Geometry, moved: Driven, gauges: int) -> FloatArray:
+    still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
     at_rest = motion(geometry, Driven(still, still, still)).line_rad
-    read = readings(geometry, at_rest, np.array([[0.0], [1.0], [0.0]]))[:gauges]
-    line = motion(geometry, Driven(moved[0:2], moved[2:4], moved[4:6])).line_rad
-    return loads(geometry, line, read * np.ones_like(line))
+    read = readings(geometry, at_rest, np.array([[0.0], [1.0], [0.0]]))[..., :gauges, :]
+    line = motion(geometry, moved).line_rad
+    return loads(geometry, line, read * np.ones(line.shape[-1]))
 
 
 def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool) -> FloatArray:

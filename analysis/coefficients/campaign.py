@@ -5,15 +5,21 @@ plain function of what can be pickled, for an executor's ``map``), and :func:`as
 table of them. :func:`campaign_coefficients` does all three.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from analysis.coefficients.arrangements import arrangement_flags, other_arrangement
 from analysis.coefficients.campaign_checks import consistency
 from analysis.coefficients.campaign_plan import Group, Request, check_campaign, plan
-from analysis.coefficients.campaign_records import ZERO_FREQUENCY, Entry, Missing
+from analysis.coefficients.campaign_records import (
+    ZERO_FREQUENCY,
+    Entry,
+    Missing,
+    OtherArrangement,
+)
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_solve import Block, solve_group
 from analysis.coefficients.cycle import Cycle
@@ -21,7 +27,7 @@ from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
 from analysis.coefficients.zero_frequency import extrapolate
-from analysis.uncertainty import stacked
+from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.errors import ConfigurationError, DataError
 
 Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
@@ -98,9 +104,41 @@ def assemble(
         flags=tuple(dict.fromkeys(flag for block in blocks for flag in block.flags)),
     )
     _check_wanted(found, request)
-    if request.zero_frequency:
-        found = with_zero_frequency(found)
-    return replace(found, checks=consistency(found, cycles))
+    whole = with_zero_frequency(found) if request.zero_frequency else found
+    others = tuple(_others(found, whole, blocks, cycles))
+    return replace(
+        whole,
+        checks=consistency(whole, cycles),
+        arrangements=others,
+        flags=(*whole.flags, *arrangement_flags(others)),
+    )
+
+
+def _others(
+    found: CampaignCoefficients,
+    whole: CampaignCoefficients,
+    blocks: Sequence[Block],
+    cycles: Sequence[Cycle],
+) -> Iterator[OtherArrangement]:
+    """Yield what each other arrangement says, where all groups know what was read.
+
+    Parameters
+    ----------
+    found, whole
+        Without and with the values at zero frequency.
+    """
+    if not all(block.others for block in blocks):
+        return
+    for several in zip(*(block.others for block in blocks), strict=True):
+        values = np.concatenate([one.values for one in several])
+        if len(whole.entries) > len(found.entries) and np.isfinite(values).all():
+            uncertain = UncertainValues(values, found.uncertain.contributions)
+            values = with_zero_frequency(replace(found, uncertain=uncertain)).values
+        evidence = sum(one.evidence for one in several)
+        first = several[0]
+        yield other_arrangement(
+            whole, cycles[0].arrangement, first.key, first.other, values, evidence
+        )
 
 
 def _still_missing(blocks: Sequence[Block], entries: Sequence[Entry]) -> tuple[Missing, ...]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,23 +33,39 @@ SURGE_FORCES = "surge"
 _LEFT_OUT = "other motion left out"
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
 
-Found = tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]]
+
+@dataclass(eq=False)
+class Found:
+    """What a group's runs gave, as far as it is found.
+
+    Attributes
+    ----------
+    fits
+        With the method of each.
+    richest
+        Of each load the fit of all runs that leaves the least over, to judge arrangements by.
+    """
+
+    fits: list[tuple[str, CycleFit]] = field(default_factory=list)
+    choices: list[FormChoice] = field(default_factory=list)
+    missing: list[Missing] = field(default_factory=list)
+    richest: list[CycleFit] = field(default_factory=list)
 
 
 def nonlinear_fits(cycles: Sequence[Cycle], request: Request) -> Found:
     """Return the fits of force and moment in the form that the data support, and of X."""
-    fits: list[tuple[str, CycleFit]] = []
-    choices: list[FormChoice] = []
-    missing: list[Missing] = []
+    found = Found()
+    fits, missing = found.fits, found.missing
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
     for row in (0, 1):
         try:
-            choice = choose_form(cycles, row, motions, orders, cross=cross)
+            choice, richest = choose_form(cycles, row, motions, orders, cross=cross)
         except DataError as error:
             missing.append(Missing(f"{LOAD_LETTERS[cycles[0].plane][row]} terms", str(error)))
             continue
-        choices.append(choice)
+        found.choices.append(choice)
+        found.richest.append(richest)
         forms = forms_of(cycles[0].plane, row, motions, cross=cross)
         of_all: list[tuple[str, CycleFit]] = []
         for method, of, chosen in _methods(cycles, orders):
@@ -58,8 +74,8 @@ def nonlinear_fits(cycles: Sequence[Cycle], request: Request) -> Found:
         for _, several in of_all[:1]:
             fits += _single_runs(several, row, choice, orders, request)
     if all(cycle.has_surge for cycle in cycles):
-        _surge(fits, missing, cycles, motions, cross, request)
-    return fits, choices, missing
+        _surge(found, cycles, motions, cross, request)
+    return found
 
 
 def _single_runs(
@@ -160,8 +176,7 @@ def _motions(cycles: Sequence[Cycle]) -> tuple[str, bool]:
 
 
 def _surge(
-    fits: list[tuple[str, CycleFit]],
-    missing: list[Missing],
+    found: Found,
     cycles: Sequence[Cycle],
     motions: str,
     cross: bool,
@@ -178,7 +193,19 @@ def _surge(
     names += [f"X_{v}{r}"] if cross else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
-    _try(fits, missing, SURGE_FORCES, cycles, names, orders, request)
+    _try_surge(found, cycles, names, orders, request)
+
+
+def _try_surge(
+    found: Found,
+    cycles: Sequence[Cycle],
+    names: Sequence[str],
+    orders: tuple[int, ...],
+    request: Request,
+) -> None:
+    before = len(found.fits)
+    _try(found.fits, found.missing, SURGE_FORCES, cycles, names, orders, request)
+    found.richest.extend(fit for _, fit in found.fits[before:])
 
 
 def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
@@ -188,17 +215,17 @@ def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
     intervals; X is the resistance and, where the model was turned, quadratic.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
-    fits: list[tuple[str, CycleFit]] = []
-    choices: list[FormChoice] = []
-    missing: list[Missing] = []
+    found = Found()
+    fits, missing = found.fits, found.missing
     for row in (0, 1):
         forms = forms_of(plane, row, "v", steady=True)
         try:
-            choice = choose_form(cycles, row, "v", STATIC, steady=True)
+            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True)
         except DataError as error:
             missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
-        choices.append(choice)
+        found.choices.append(choice)
+        found.richest.append(richest)
         _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choice, STATIC, request)
         label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
         fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
@@ -206,5 +233,5 @@ def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
         letter = VELOCITY_LETTERS[plane][0]
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
         names = ["X_0", f"X_{letter * 2}"] if turned else ["X_0"]
-        _try(fits, missing, SURGE_FORCES, cycles, names, STATIC, request)
-    return fits, choices, missing
+        _try_surge(found, cycles, names, STATIC, request)
+    return found

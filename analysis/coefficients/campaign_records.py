@@ -134,6 +134,37 @@ class FormChoice:
 
 
 @dataclass(frozen=True)
+class OtherArrangement:
+    """What another arrangement of the rig would have made of the recordings.
+
+    Attributes
+    ----------
+    key, stated, other
+        Of ``[oscillator]``: the key, what it is stated to be, and the alternative.
+    evidence_ratio
+        Likelihood of the recordings under the alternative over that under what is stated; NaN
+        where they were not compared.
+    largest
+        Largest move of any value under the alternative, over its half-width.
+    coefficients, moves
+        Those that it moves by more than their half-width, the largest move of each first, and how
+        many half-widths that is.
+    verdict
+        One of those in :mod:`analysis.coefficients.arrangements`.
+    """
+
+    key: str
+    stated: str
+    other: str
+    evidence_ratio: float
+    largest: float
+    coefficients: tuple[str, ...]
+    moves: tuple[float, ...]
+    verdict: str
+    message: str
+
+
+@dataclass(frozen=True)
 class Missing:
     """What was asked for, or would be expected, and cannot be had from these runs."""
 

@@ -12,6 +12,7 @@ from analysis.coefficients.campaign_records import (
     Entry,
     FormChoice,
     Missing,
+    OtherArrangement,
     Outlier,
     ReferenceRow,
 )
@@ -66,9 +67,10 @@ class CampaignCoefficients:
         The n values with every input's contribution: correlations between all of them are kept.
     trials
         The Monte Carlo beside it.
-    choices, checks, outliers, missing, references, flags
+    choices, checks, outliers, arrangements, missing, references, flags
         What was found: forms that the data support, consistency between runs, repeats that stand
-        off, what cannot be had, a reference table beside the values, and what was noticed.
+        off, what other arrangements of the rig would make of it, what cannot be had, a reference
+        table beside the values, and what was noticed.
     """
 
     form: Form
@@ -81,6 +83,7 @@ class CampaignCoefficients:
     choices: tuple[FormChoice, ...] = ()
     checks: tuple[Check, ...] = ()
     outliers: tuple[Outlier, ...] = ()
+    arrangements: tuple[OtherArrangement, ...] = ()
     missing: tuple[Missing, ...] = ()
     references: tuple[ReferenceRow, ...] = ()
     flags: tuple[Flag, ...] = ()

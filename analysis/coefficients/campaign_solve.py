@@ -5,7 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.campaign_nonlinear import SINGLE_RUN, nonlinear_fits, static_fits
+from analysis.coefficients.campaign_nonlinear import (
+    SINGLE_RUN,
+    Found,
+    nonlinear_fits,
+    static_fits,
+)
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, Entry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
@@ -13,6 +18,7 @@ from analysis.coefficients.cycle import Cycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear import lacking_places, linear_fit
+from analysis.coefficients.otherwise import Otherwise, otherwise
 from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
@@ -20,7 +26,13 @@ from hardware.description.flags import Flag
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Entries of one group, ``n`` of them."""
+    """Entries of one group, ``n`` of them.
+
+    Attributes
+    ----------
+    others
+        What they would be under other arrangements of the rig; empty where that is not known.
+    """
 
     entries: tuple[Entry, ...]
     uncertain: UncertainValues
@@ -28,6 +40,7 @@ class Block:
     choices: tuple[FormChoice, ...] = ()
     missing: tuple[Missing, ...] = ()
     flags: tuple[Flag, ...] = ()
+    others: tuple[Otherwise, ...] = ()
 
 
 def solve_group(group: Group, request: Request) -> Block:
@@ -44,7 +57,8 @@ def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
     try:
         found = linear_fit(cycles, request.form, request.stated)
     except DataError:
-        return Block((), UncertainValues(np.zeros(0)), no_trials(0), missing=missing)
+        others = otherwise(cycles, [], [])
+        return Block((), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others)
     fit = found.fit
     entries = tuple(
         replace(
@@ -56,22 +70,22 @@ def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
         for k, place in enumerate(found.places)
     )
     trials = _fits_trials([(LINEAR, fit)], request)
-    return Block(entries, fit.uncertain, trials, missing=missing, flags=found.flags)
+    others = otherwise(cycles, [fit], [])
+    return Block(entries, fit.uncertain, trials, missing=missing, flags=found.flags, others=others)
 
 
-def _fits_block(
-    found: tuple[list[tuple[str, CycleFit]], list[FormChoice], list[Missing]],
-    cycles: Sequence[Cycle],
-    request: Request,
-) -> Block:
-    fits, choices, missing = found
+def _fits_block(found: Found, cycles: Sequence[Cycle], request: Request) -> Block:
+    fits = found.fits
     entries = tuple(
         _fit_entry(method, fit, k) for method, fit in fits for k in range(len(fit.names))
     )
     uncertain = stacked([fit.uncertain for _, fit in fits])
     flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
     trials = _fits_trials(fits, request)
-    return Block(entries, uncertain, trials, tuple(choices), tuple(missing), flags)
+    others = otherwise(cycles, [fit for _, fit in fits], found.richest)
+    return Block(
+        entries, uncertain, trials, tuple(found.choices), tuple(found.missing), flags, others
+    )
 
 
 def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> TrialColumns:

@@ -17,6 +17,7 @@ from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS
 from analysis.kinematics.cycle import INSTANTS
 from analysis.motion import mass_matrix, weight_matrix
+from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
@@ -35,6 +36,10 @@ _SAME_MOTION = 1e-2
 
 def _nothing() -> FloatArray:
     return np.zeros((2, 2))
+
+
+def _unread() -> ComplexArray:
+    return np.zeros((0, 0), dtype=np.complex128)
 
 
 def _still() -> FloatArray:
@@ -75,6 +80,11 @@ class Cycle:
         Where coefficients are wanted, ahead of the midpoint.
     drift_rad
         Steady heading of the model against the carriage's way, bow to starboard (bow up).
+    arrangement
+        Of the rig, by which motion and loads were made of what was read.
+    readings
+        Phasors of the struts' displacements and gauges, ``force_x`` last where there is one, shape
+        ``(orders + 1, 4 or 5)``; empty where only motion and loads are known.
     """
 
     name: str
@@ -93,6 +103,8 @@ class Cycle:
     flags: tuple[Flag, ...] = ()
     sensitivity: FloatArray = field(default_factory=lambda: np.zeros((0, len(STATED))))
     of_tare: FloatArray = field(default_factory=_still)
+    arrangement: Arrangement = field(default_factory=Arrangement)
+    readings: ComplexArray = field(default_factory=_unread)
 
     @property
     def has_surge(self) -> bool:
@@ -211,8 +223,11 @@ class Cycle:
                 f"{100 * _SAME_MOTION:g} %); run it with the same set-point"
             )
         scale = np.zeros((len(self.phasors.names), len(dry.phasors.names)), dtype=np.complex128)
+        readings, gauges = self.readings.copy(), slice(2, dry.readings.shape[1])
         for n in range(1, min(self.orders, dry.orders) + 1):
             turn = abs(ratio) * np.exp(1j * n * np.angle(ratio))
+            if len(readings) and len(dry.readings):
+                readings[n, gauges] -= turn * dry.readings[n, gauges]
             for name in (
                 one for one in CHANNELS[4:] if one in self.channels and one in dry.channels
             ):
@@ -221,7 +236,8 @@ class Cycle:
         taken = dry.phasors.mapped(scale, self.phasors.names, self.phasors.units)
         text = f"the loads of dry run {dry.name} were taken off"
         flag = Flag("dry_run_taken_off", Severity.NOTE, text)
-        return replace(self, phasors=self.phasors.minus(taken), flags=(*self.flags, flag))
+        phasors, flags = self.phasors.minus(taken), (*self.flags, flag)
+        return replace(self, phasors=phasors, readings=readings, flags=flags)
 
     def _check_dry(self, dry: "Cycle") -> None:
         faults = []

@@ -98,6 +98,23 @@ class CycleFit:
         """Return one coefficient."""
         return float(self.values[self.names.index(name)])
 
+    def refitted(self, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return values and squares of other numbers of the cycles, with the same weights.
+
+        Parameters
+        ----------
+        parts
+            Shape ``(trials, cycles, numbers)``.
+
+        Returns
+        -------
+        values, chi_square
+            Shapes ``(trials, n)`` and ``(trials, 3)``.
+        """
+        design, loads = self.problem.design(parts)
+        values = self.problem.solved(design, loads)
+        return values, self.problem.squares(design, loads, values)
+
     def misfit(self, *rows: int) -> float:
         """Return the root of ``chi_square`` per degree of freedom; NaN without any left over."""
         spare = sum(self._spare(row) for row in rows)
@@ -162,7 +179,10 @@ def fit_terms(
     check_determined(first)
     problem = first.weighed(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
-    chi_square, data = _squares(problem, nominal)
+    chi_square = problem.squares(*problem.nominal, nominal)
+    data = np.zeros(3)
+    for row, _ in problem.rows:
+        data[row] = len(cycles) * problem.real.sum()
     return CycleFit(names, terms, nominal, chi_square, data, problem, stated)
 
 
@@ -209,17 +229,6 @@ def _trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray
 
 def _fewest(cycle: Cycle) -> float:
     return min((source.degrees_of_freedom for source in cycle.phasors.sources), default=np.inf)
-
-
-def _squares(problem: CycleProblem, nominal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Weighted squares and count of the numbers fitted, by load."""
-    squares, data = np.zeros(3), np.zeros(3)
-    design, loads = problem.nominal
-    for row, columns in problem.rows:
-        left = loads[..., row] - design[..., columns] @ nominal[columns]
-        squares[row] = float((problem.weighted(left[..., None], row) ** 2).sum())
-        data[row] = len(problem.cycles) * problem.real.sum()
-    return squares, data
 
 
 def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:

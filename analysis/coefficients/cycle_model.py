@@ -104,12 +104,12 @@ class CycleProblem:
         parts
             Shape ``(trials, cycles, numbers)``.
         """
-        return self._solved(*self.design(parts))
+        return self.solved(*self.design(parts))
 
     def solve_nominal(self) -> FloatArray:
         """Return the coefficients of the cycles as they are, ``(terms,)``."""
         design, loads = self.nominal
-        return np.asarray(self._solved(design[None], loads[None])[0])
+        return np.asarray(self.solved(design[None], loads[None])[0])
 
     def weighed(self, weights: FloatArray) -> "CycleProblem":
         """Return the same problem, all that was worked out included, with other weights."""
@@ -118,12 +118,28 @@ class CycleProblem:
         found.__dict__.update(known)
         return found
 
-    def _solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
+    def solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
+        """Return the coefficients, ``(trials, terms)``, of what :meth:`design` returns."""
         found = np.empty((len(design), len(self.terms)))
         for row, columns in self.rows:
             matrix = self.weighted(design[..., columns], row)
             target = self.weighted(loads[..., row, None], row)[..., 0]
             found[:, columns] = least_squares(matrix, target)
+        return found
+
+    def squares(self, design: FloatArray, loads: FloatArray, values: FloatArray) -> FloatArray:
+        """Return the weighted squares of what coefficients leave over, by load.
+
+        Parameters
+        ----------
+        values
+            Shape ``(..., terms)``, for :meth:`design` of as many trials: ``(..., 3)``.
+        """
+        found = np.zeros((*values.shape[:-1], 3))
+        for row, columns in self.rows:
+            fitted = np.einsum("...kbc,...c->...kb", design[..., columns], values[..., columns])
+            left = self.weighted((loads[..., row] - fitted)[..., None], row)
+            found[..., row] = (left**2).sum(axis=(-2, -1))
         return found
 
     def weighted(self, values: FloatArray, row: int) -> FloatArray:

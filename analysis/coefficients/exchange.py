@@ -18,6 +18,7 @@ from analysis.coefficients.campaign_records import (
     Entry,
     FormChoice,
     Missing,
+    OtherArrangement,
     Outlier,
     ReferenceRow,
 )
@@ -39,6 +40,7 @@ _RECORDS: Mapping[str, type] = {
     "choices": FormChoice,
     "checks": Check,
     "outliers": Outlier,
+    "arrangements": OtherArrangement,
     "missing": Missing,
     "references": ReferenceRow,
 }

@@ -78,8 +78,8 @@ def choose_form(
     *,
     cross: bool = True,
     steady: bool = False,
-) -> FormChoice:
-    """Return which form of one load the cycles support.
+) -> tuple[FormChoice, CycleFit]:
+    """Return which form of one load the cycles support, and the fit of the richest.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def choose_form(
             fits[form] = fit_cycles(cycles, forms[form], orders)
         except DataError:
             continue  # terms that these runs cannot tell apart are no candidate
-    criteria, dispersion = _criteria(fits, row)
+    criteria, dispersion, richest = _criteria(fits, row)
     best = min(criteria.values())
     weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
     verdict, fitted, ratio, why = _verdict(criteria)
@@ -111,7 +111,7 @@ def choose_form(
         )
     ranked = sorted(criteria, key=lambda form: criteria[form])
     total = sum(weights.values())
-    return FormChoice(
+    choice = FormChoice(
         LOAD_WORDS[row],
         tuple(cycle.name for cycle in cycles),
         tuple(ranked),
@@ -125,6 +125,7 @@ def choose_form(
         ratio,
         why,
     )
+    return choice, richest
 
 
 def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
@@ -139,8 +140,8 @@ def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
     )
 
 
-def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float], float]:
-    """Akaike's criterion for few data by form, and what the squares were divided by.
+def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float], float, CycleFit]:
+    """Akaike's criterion for few data by form, what squares were divided by, the richest's fit.
 
     A form with so many terms that the criterion does not exist is no candidate.
     """
@@ -155,7 +156,7 @@ def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float],
         few = data - count - 1.0
         penalty = 2.0 * count * (count + 1.0) / few if few > 0 else 0.0
         found[form] = float(fit.chi_square[row]) / dispersion + 2.0 * count + penalty
-    return found, dispersion
+    return found, dispersion, richest
 
 
 def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
@@ -175,20 +176,20 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
     rivals = [form for form in (CUBIC, QUADRATIC) if form != best]
     over_linear, over_rivals = ratio((LINEAR_FORM,)), ratio(rivals)
     if (found := min(over_linear, over_rivals)) >= DECIDES:
-        return best, best, found, f"{best} is {_times(found)} as well supported as the next"
+        return best, best, found, f"{best} is {times(found)} as well supported as the next"
     if over_linear < DECIDES:
         taken, close, found = LINEAR_FORM, LINEAR_FORM, over_linear
     else:
         taken, close = best, rivals[0]
     why = (
-        f"{best} is {_times(found)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
+        f"{best} is {times(found)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
         f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
         "take a larger range of amplitudes (or of drift angles, and more sizes), or more periods"
     )
     return NOT_SEPARABLE, taken, found, why
 
 
-def _times(ratio: float) -> str:
+def times(ratio: float) -> str:
     """Words for an evidence ratio; what is beyond any doubt is not counted out."""
     return f"{ratio:.3g} times" if ratio < BEYOND_DOUBT else f"over {BEYOND_DOUBT:g} times"
 

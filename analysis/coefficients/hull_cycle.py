@@ -6,7 +6,9 @@ the readings at rest.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +16,7 @@ from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
 from analysis.coefficients.stated import STATED
 from analysis.kinematics.averaged import CHANNELS, UNITS
-from analysis.kinematics.cycle import harmonics, per_part
+from analysis.kinematics.cycle import INSTANTS, harmonics, per_part, waves
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Motion
@@ -23,6 +25,9 @@ from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
+
+if TYPE_CHECKING:
+    from analysis.coefficients.cycle import Cycle
 
 _MOVING = 4
 """Channels of motion; those of the loads follow."""
@@ -74,10 +79,7 @@ def on_hull(
     maps = per_part(count, len(channels), _INPUTS, omega)
     parts = interleaved(gross.values)
     moved = parts @ maps
-    known = (
-        (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
-    )
-    stated = np.array([[*known, 1.0, drift_rad]]).T * np.ones(maps.shape[-1])
+    stated = _taken(body, drift_rad)
     loads = len(channels) - _MOVING
     values, slope = pointwise(
         lambda waves: _asked(waves, plane, of_tare, restoring)[..., :loads, :],
@@ -94,9 +96,7 @@ def on_hull(
     faster = (slope[:, : len(_INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
     own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
     sensitivity = own + whole @ sensitivity
-    asked = harmonics(values, orders)
-    found = np.where(net.is_load, -parts, parts)
-    found[net.loads] += asked
+    found = net.parts(parts, harmonics(values, orders))
     shift, by_pace, by_speed = _to_point(
         count, len(channels), point_ahead_m, plane, omega, speed_m_s
     )
@@ -115,6 +115,45 @@ def on_hull(
     )
 
 
+def parts_on_hull(gross: FloatArray, of_tare: FloatArray, cycles: Sequence["Cycle"]) -> FloatArray:
+    """Return the interleaved parts of :func:`on_hull` alone, without slopes, of many runs.
+
+    Parameters
+    ----------
+    gross, of_tare
+        In place of the runs' own, shapes ``(several, runs, 2 n)`` and
+        ``(several, runs, 2 or 3, INSTANTS)``.
+    cycles
+        Of one plane, with as many orders and the same channels.
+    """
+    channels, plane = cycles[0].channels, cycles[0].plane
+    count, loads = cycles[0].orders + 1, len(channels) - _MOVING
+    omega = np.array([2.0 * math.pi * one.frequency_hz for one in cycles])
+    rates = [
+        omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
+    ]
+    moved = np.stack([rates[times][..., channel, :] for channel, times in _INPUTS], axis=-2)
+    stated = np.stack([_taken(one.body, one.drift_rad) for one in cycles])
+    inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
+    restoring = np.stack([one.restoring for one in cycles])
+    asked = _asked(np.concatenate(inputs, axis=-2), plane, of_tare, restoring)[..., :loads, :]
+    net = _Net(count, len(channels)).parts(gross, harmonics(asked, count - 1))
+    turned = np.empty_like(net)
+    for k, one in enumerate(cycles):
+        pace, speed = float(omega[k]), one.speed_m_s
+        shift, *_ = _to_point(count, len(channels), one.point_ahead_m, plane, pace, speed)
+        turned[:, k] = net[:, k] @ shift.T
+    return turned
+
+
+def _taken(body: Body | None, drift_rad: float) -> FloatArray:
+    """Return the values of :data:`_TAKEN` at each instant."""
+    known = (
+        (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
+    )
+    return np.array([[*known, 1.0, drift_rad]]).T * np.ones(INSTANTS)
+
+
 class _Net:
     """Where the loads stand among the parts."""
 
@@ -128,6 +167,12 @@ class _Net:
         """Return the slope of the hull's parts by the gross ones."""
         found = np.diag(np.where(self.is_load, -1.0, 1.0))
         found[self.loads] += asked
+        return found
+
+    def parts(self, gross: FloatArray, asked: FloatArray) -> FloatArray:
+        """Return the hull's parts, ``(..., 2 n)``, of the gross ones and of what is asked."""
+        found = np.where(self.is_load, -gross, gross)
+        found[..., self.loads] += asked
         return found
 
 
@@ -148,9 +193,9 @@ def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArra
         hanging = STANDARD_GRAVITY_M_S2 * mass * below
         found[..., 1, :] += hanging * np.sin(rotation + drift)
         tared = (hanging * np.sin(drift))[..., None, :] * of_tare
-        found[..., : len(of_tare), :] -= tared
+        found[..., : of_tare.shape[-2], :] -= tared
     place = np.stack((translation, rotation), axis=-2)
-    found[..., :2, :] += factor[..., None, :] * np.einsum("rc,...ct->...rt", restoring, place)
+    found[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, place)
     return np.asarray(found)
 
 

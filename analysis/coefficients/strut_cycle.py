@@ -120,6 +120,8 @@ class StrutCycle:
             flags=self.flags,
             sensitivity=found.sensitivity,
             of_tare=found.of_tare,
+            arrangement=oscillator.arrangement,
+            readings=ordered.values.reshape(self.orders + 1, -1),
         )
 
 

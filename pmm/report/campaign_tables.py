@@ -1,7 +1,7 @@
 """The tables of a campaign's report, as plain text in rows."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import count, product
 from string import ascii_uppercase
@@ -228,9 +228,33 @@ def ratio(value: float) -> str:
 
 
 def beside_tables(found: CampaignCoefficients) -> Iterator[Grid]:
-    """Yield the values beside tables from elsewhere, where there are any."""
-    if not found.references:
-        return
+    """Yield the values beside other arrangements' and tables' from elsewhere, if there are any."""
+    if found.arrangements:
+        yield _arrangement_table(found)
+    if found.references:
+        yield _reference_table(found)
+
+
+def _arrangement_table(found: CampaignCoefficients) -> Grid:
+    rows = [
+        (one.key, one.stated, one.other, one.verdict, _number(one.evidence_ratio, ratio),
+         _number(one.largest, "{:.3g}".format), ", ".join(one.coefficients) or _DASH)
+        for one in found.arrangements
+    ]  # fmt: skip
+    heads = ("key", "stated", "other", "the other", "evidence ratio", "largest move",
+             "moved beyond half-width")  # fmt: skip
+    note = (
+        "Evidence ratio: likelihood of the recordings under the other over that under what is "
+        "stated. Moves are in half-widths."
+    )
+    return Grid("Other arrangements of the rig", heads, (4, 5), tuple(rows), (note,))
+
+
+def _number(value: float, written: Callable[[float], str]) -> str:
+    return _DASH if math.isnan(value) else written(value)
+
+
+def _reference_table(found: CampaignCoefficients) -> Grid:
     rows = [
         (one.name, one.unit, frequency(one.frequency_hz), f"{one.speed_m_s:g}",
          rounded(one.measured, one.half_width), f"{one.expected:.5g}", f"{one.difference:+.3g}",
@@ -238,7 +262,7 @@ def beside_tables(found: CampaignCoefficients) -> Iterator[Grid]:
         for one in found.references
     ]  # fmt: skip
     heads = ("coefficient", "unit", "f (Hz)", "U (m/s)", "measured", "table", "off", "", "of")
-    yield Grid("Beside tables from elsewhere", heads, (2, 3, 4, 5, 6), tuple(rows))
+    return Grid("Beside tables from elsewhere", heads, (2, 3, 4, 5, 6), tuple(rows))
 
 
 def run_table(outcome: Outcome) -> Grid:

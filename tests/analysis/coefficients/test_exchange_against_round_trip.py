@@ -13,6 +13,7 @@ from analysis.coefficients.campaign_records import (
     Entry,
     FormChoice,
     Missing,
+    OtherArrangement,
     Outlier,
     ReferenceRow,
 )
@@ -60,6 +61,11 @@ def campaign(*, drawn: bool = True) -> CampaignCoefficients:
             Check("two tests", "Y_v", "N s/m", "one", "other", 1.0, 2.0, -1.0, 0.5, 8.0, True, ""),
         ),
         outliers=(Outlier("sway 2", ("sway 1", "sway 3"), "force", 9.0, 4.0, "stands off"),),
+        arrangements=(
+            OtherArrangement(
+                "gauges", "model", "rig", math.nan, 3.0, ("N_r", "Y_v"), (3.0, 1.5), "open", "",
+            ),
+        ),
         missing=(Missing("N_r", "add a run in yaw"),),
         references=(
             ReferenceRow("Y_v", "N s/m", 0.2, 1.2, "strip", 1.0, 0.1, 1.05, -0.05, 0.0, True),
@@ -73,7 +79,8 @@ def same(one: CampaignCoefficients, other: CampaignCoefficients) -> None:
         assert getattr(one, name) == getattr(other, name), name
     for name in ("missing", "references", "flags"):
         assert getattr(one, name) == getattr(other, name), name
-    assert str(one.entries) == str(other.entries)  # as text: a NaN is never itself
+    for name in ("entries", "arrangements"):  # as text: a NaN is never itself
+        assert str(getattr(one, name)) == str(getattr(other, name))
     np.testing.assert_array_equal(one.values, other.values)
     np.testing.assert_array_equal(one.uncertain.covariance(), other.uncertain.covariance())
     np.testing.assert_array_equal(

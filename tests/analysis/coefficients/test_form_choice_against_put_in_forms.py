@@ -22,7 +22,7 @@ LINEAR = {name: HORIZONTAL[name] for name in ("Y_vdot", "Y_v", "N_vdot", "N_v")}
 def choice(extra: dict[str, float], sizes: slice = slice(0, 3), seed: int = 1):  # type: ignore[no-untyped-def]
     generator = np.random.default_rng(seed)
     made = Made(LINEAR | extra)
-    return choose_form([made_up(p, made, n, generator) for n, p in amplitudes()[sizes]], 0)
+    return choose_form([made_up(p, made, n, generator) for n, p in amplitudes()[sizes]], 0)[0]
 
 
 @pytest.mark.parametrize(

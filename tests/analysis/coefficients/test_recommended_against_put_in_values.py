@@ -62,7 +62,7 @@ def test_a_form_is_taken_at_its_evidence_and_linear_below_it() -> None:
         generator = np.random.default_rng(seed)
         made = Made({**HORIZONTAL, "Y_vvv": put_in})
         cycles = [made_up(p, made, n, generator) for n, p in amplitudes()[:3]]
-        choice = choose_form(cycles, 0)
+        choice, _ = choose_form(cycles, 0)
         linear = choice.aicc[choice.forms.index(LINEAR_FORM)]
         evidence = np.exp(min((linear - min(choice.aicc)) / 2.0, 700.0))
         assert (choice.fitted == LINEAR_FORM) == (evidence < DECIDES), (put_in, evidence)

@@ -1,0 +1,108 @@
+"""Whether the recordings bear out how the rig is said to be arranged, and what rests on it.
+
+A key is doubted where an alternative is :data:`~analysis.coefficients.form_choice.DECIDES` times as
+likely as what is stated. Where neither is, each value that the alternative moves by more than its
+half-width rests on what is stated, and nothing in the recordings bears it out.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import OtherArrangement
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.form_choice import DECIDES, times
+from hardware.description.arrangement import Arrangement
+from hardware.description.arrays import FloatArray
+from hardware.description.flags import Flag, Severity
+
+BETTER = "fits better"
+WORSE = "fits worse"
+OPEN = "cannot be told"
+SAME = "indistinguishable"
+NOT_COMPARED = "not compared"
+
+_NAMED = 5  # coefficients that a message names; the record holds all
+_LARGEST_LOG = 700.0  # of a ratio that a float holds
+
+
+def other_arrangement(
+    found: CampaignCoefficients,
+    stated: Arrangement,
+    key: str,
+    other: str,
+    values: FloatArray,
+    evidence: float,
+) -> OtherArrangement:
+    """Return what one alternative says.
+
+    Parameters
+    ----------
+    values
+        Of all entries under the alternative, shape ``(n,)``; NaN where not reckoned.
+    evidence
+        Natural logarithm of its likelihood over that of what is stated.
+    """
+    own = str(getattr(stated, key))
+    if np.isnan(values).any():
+        text = f"{key} = {other!r} was not compared: it takes force_x, or smaller angles"
+        return OtherArrangement(key, own, other, math.nan, math.nan, (), (), NOT_COMPARED, text)
+    apart, half = np.abs(values - found.values), found.half_widths
+    moved = np.divide(apart, half, out=np.zeros_like(half), where=half > 0.0)
+    order = [int(k) for k in np.argsort(-moved) if moved[k] > 1.0]
+    sizes: dict[str, float] = {}
+    for k in order:
+        sizes.setdefault(found.entries[k].name, float(moved[k]))
+    verdict = _verdict(evidence, bool(sizes))
+    ratio = math.exp(min(max(evidence, -_LARGEST_LOG), _LARGEST_LOG))
+    largest = float(moved.max(initial=0.0))
+    text = _message(verdict, key, own, other, ratio, largest, sizes)
+    moves = (largest, tuple(sizes), tuple(sizes.values()))
+    return OtherArrangement(key, own, other, ratio, *moves, verdict, text)
+
+
+def arrangement_flags(several: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
+    """Return a warning for each key that the recordings doubt, a note for each that is open."""
+    codes = {
+        BETTER: ("arrangement_doubted", Severity.WARNING),
+        OPEN: ("rests_on_arrangement", Severity.NOTE),
+    }
+    return tuple(Flag(*codes[one.verdict], one.message) for one in several if one.verdict in codes)
+
+
+def _verdict(evidence: float, moves: bool) -> str:
+    if abs(evidence) >= math.log(DECIDES):
+        return BETTER if evidence > 0.0 else WORSE
+    return OPEN if moves else SAME
+
+
+def _message(
+    verdict: str,
+    key: str,
+    stated: str,
+    other: str,
+    ratio: float,
+    largest: float,
+    sizes: dict[str, float],
+) -> str:
+    words = [f"{name} by {size:.3g}" for name, size in list(sizes.items())[:_NAMED]]
+    more = [f"{len(sizes) - _NAMED} more"] if len(sizes) > _NAMED else []
+    moved = (
+        f"{', '.join([*words, *more])} half-widths" if sizes else "no coefficient beyond its own"
+    )
+    other, stated = f"{key} = {other!r}", f"{key} = {stated!r}"
+    if verdict == BETTER:
+        return (
+            f"the recordings fit {other} better than {stated}, which is stated ({times(ratio)} as "
+            f"likely; {DECIDES:g} decides); it would move {moved}: look at the rig, and correct "
+            "[oscillator]"
+        )
+    if verdict == WORSE:
+        return f"the recordings bear {stated} out ({times(1.0 / ratio)} as likely as {other})"
+    if verdict == OPEN:
+        return (
+            f"the recordings do not tell {stated} from {other}, which would move {moved}: they "
+            "rest on what is stated; larger angles, more amplitudes or more periods would tell"
+        )
+    return f"{other} moves no coefficient by more than {largest:.2g} of its half-width"

@@ -1,0 +1,132 @@
+"""What coefficients would be had the rig been arranged otherwise, and whether recordings tell.
+
+The fit is a function of the arrangement: joint, pivot, gauges and the way a drift is set. Each fit
+of a campaign is made once more under each alternative of one key, with the same weights.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Final
+
+import numpy as np
+
+from analysis.coefficients.body_axes import parts_of_struts
+from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.hull_cycle import parts_on_hull
+from analysis.coefficients.phasors import interleaved
+from analysis.kinematics.geometry import Geometry
+from hardware.description.arrangement import Arrangement, Joint
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import DataError
+
+_OF_STRUTS: Final = ("joint", "pivot")  # what a turntable has not
+
+
+@dataclass(frozen=True, eq=False)
+class Otherwise:
+    """Fits under one alternative.
+
+    Attributes
+    ----------
+    key, other
+        The arrangement's key, and its value in place of the one that is stated.
+    values
+        Of the coefficients, in the order of the fits, shape ``(n,)``; NaN where the recordings do
+        not let them be reckoned.
+    evidence
+        Natural logarithm of the likelihood over that of what is stated.
+    """
+
+    key: str
+    other: str
+    values: FloatArray
+    evidence: float
+
+
+def alternatives(given: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
+    """Return each arrangement that differs in one key, with that key's name.
+
+    A turntable is no alternative to two struts, nor they to it: their channels are others.
+    """
+    found = []
+    table = given.joint is Joint.YAW_TABLE
+    for key in (one.name for one in fields(given) if not (table and one.name in _OF_STRUTS)):
+        stated = getattr(given, key)
+        ways = [way for way in type(stated) if way not in (stated, Joint.YAW_TABLE)]
+        found += [(key, replace(given, **{key: way})) for way in ways]
+    return tuple(found)
+
+
+def otherwise(
+    cycles: Sequence[Cycle], fits: Sequence[CycleFit], judged: Sequence[CycleFit]
+) -> tuple[Otherwise, ...]:
+    """Return fits under each alternative; none where a run's readings are not known.
+
+    Parameters
+    ----------
+    cycles
+        Of all fits.
+    judged
+        The fits that tell by what they leave over: one for each load, of all runs, in the richest
+        form, so that a wrong form does not speak for an arrangement.
+    """
+    if not all(len(one.readings) for one in cycles):
+        return ()
+    given = cycles[0].arrangement
+    ways = alternatives(given)
+    table = _parts(cycles, [way for _, way in ways])
+    refitted = [_refitted(fit, table)[0] for fit in fits]
+    values = np.concatenate(refitted, axis=1) if fits else np.zeros((len(ways), 0))
+    evidence = sum((_evidence(fit, table) for fit in judged), np.zeros(len(ways)))
+    return tuple(
+        Otherwise(key, str(getattr(way, key)), values[k], float(evidence[k]))
+        for k, (key, way) in enumerate(ways)
+    )
+
+
+def _parts(cycles: Sequence[Cycle], ways: Sequence[Arrangement]) -> dict[str, FloatArray]:
+    """Return the hull's interleaved parts by run and arrangement, ``(2 n, ways)`` of each run."""
+    by_shape: dict[tuple[int, ...], list[Cycle]] = {}
+    for one in cycles:
+        by_shape.setdefault(one.readings.shape, []).append(one)
+    found: dict[str, FloatArray] = {}
+    for alike in by_shape.values():
+        gross, of_tare = zip(*(_gross(alike, way) for way in ways), strict=True)
+        parts = parts_on_hull(np.stack(gross), np.stack(of_tare), alike)
+        found |= {one.name: parts[:, k].T for k, one in enumerate(alike)}
+    return found
+
+
+def _gross(cycles: Sequence[Cycle], way: Arrangement) -> tuple[FloatArray, FloatArray]:
+    """Return gross parts and ``of_tare``; NaN where the alternative does not let them be had."""
+    speed, drift = np.array([[one.speed_m_s, one.drift_rad] for one in cycles]).T[..., None]
+    own = np.stack([interleaved(one.phasors.values) for one in cycles])
+    own_tare = np.stack([one.of_tare for one in cycles])
+    stated = cycles[0].arrangement
+    if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
+        return own, own_tare
+    geometry = Geometry(cycles[0].plane, cycles[0].half_spacing_m, way, speed, drift)
+    omega = np.array([2.0 * np.pi * one.frequency_hz for one in cycles])
+    readings = np.stack([one.readings for one in cycles])
+    try:
+        return parts_of_struts(readings, geometry, omega)
+    except DataError:  # no force_x, or the struts cannot reach
+        return np.full_like(own, np.nan), np.full_like(own_tare, np.nan)
+
+
+def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    problem = fit.problem
+    parts = np.stack([problem.filled(one, table[one.name]) for one in problem.cycles])
+    return fit.refitted(np.moveaxis(parts, -1, 0))
+
+
+def _evidence(fit: CycleFit, table: Mapping[str, FloatArray]) -> FloatArray:
+    """Half the difference of the squares, less by what even the better leaves over."""
+    squares, row = _refitted(fit, table)[1], fit.terms[0].row
+    spare = fit.data[row] - len(fit.terms)
+    if not spare > 0.0:
+        return np.zeros(len(squares))
+    stated = fit.chi_square[row]
+    dispersion = np.maximum(1.0, np.minimum(squares[:, row], stated) / spare)
+    return np.asarray((stated - squares[:, row]) / (2.0 * dispersion))
