@@ -15,11 +15,12 @@ from analysis.coefficients.arrangements import BETTER, NOT_COMPARED, OPEN, SAME,
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.phasors import Source, from_interleaved, interleaved
+from analysis.coefficients.phasors import from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.arrangement import Arrangement, Gauges, Joint
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import HULLS, borne, struts_of
+from tests.analysis.coefficients.sources import of_draws
 from tests.analysis.kinematics.exact import body_of
 from tests.exact.hull import polynomial
 from tests.exact.rig import ExactRig
@@ -81,8 +82,7 @@ def noisy(struts: StrutCycle, generator: np.random.Generator) -> StrutCycle:
     spread = np.repeat(np.where(moved, MOTION_M, FORCE_N), 2)
     spread[1 : 2 * len(moved) // (ORDERS + 1) : 2] = 0.0  # a mean has no quadrature
     draws = spread * generator.standard_normal((PERIODS, len(spread)))
-    deviates = ((draws - draws.mean(axis=0)) / math.sqrt(PERIODS * (PERIODS - 1.0))).T
-    source = Source(f"scatter of {struts.name}", deviates @ deviates.T, PERIODS - 1.0, deviates)
+    source = of_draws(f"scatter of {struts.name}", draws)
     values = from_interleaved(interleaved(struts.phasors.values) + draws.mean(axis=0))
     return replace(struts, phasors=replace(struts.phasors, values=values, sources=(source,)))
 
