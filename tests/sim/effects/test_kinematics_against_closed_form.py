@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hardware.description.arrangement import Joint, Pivot
+from hardware.description.arrangement import Gauges, Joint, Pivot
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.effect import Effect
 from sim.effects.k1_connecting_rod import ConnectingRod
@@ -14,6 +14,8 @@ from sim.effects.k3_eccentricity_error import EccentricityError
 from sim.effects.k4_strut_phase_error import StrutPhaseError
 from sim.effects.k5_foreshortening import Foreshortening
 from sim.effects.k6_joint_play import JointPlay
+from sim.effects.m9_gauges_turned import GaugesTurned
+from sim.model.surge import SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import at_small_angles, mismatch
 
@@ -57,6 +59,18 @@ def test_foreshortening(rig: SimulatedRig, joint: Joint, pivot: Pivot) -> None:
     # The leading term leaves out (e/l)^2 of itself, 4e-4 here, times the numbers of the next one.
     given = replace(rig.ideal(), oscillator=replace(rig.oscillator, joint=joint, pivot=pivot))
     assert mismatch(Foreshortening(), given, SMALL) < 2e-3
+
+
+@pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
+@pytest.mark.parametrize("joint", [Joint.SLIDES_ON_MODEL, Joint.SLIDES_ON_RIG])
+@pytest.mark.parametrize("pivot", Pivot)
+@pytest.mark.parametrize("gauges", Gauges)
+def test_gauges_that_turn_otherwise(
+    rig: SimulatedRig, joint: Joint, pivot: Pivot, gauges: Gauges
+) -> None:
+    named = replace(rig.oscillator, joint=joint, pivot=pivot, gauges=gauges)
+    given = replace(rig.ideal(), oscillator=named, surge=SurgeForces(x_uu=-6.0, x_vr=9.0))
+    assert mismatch(GaugesTurned(), given, [*SMALL, *AHEAD]) < 1e-6
 
 
 @pytest.mark.parametrize("half_play_m", [5e-5, 5e-4])

@@ -22,7 +22,7 @@ from tests.sim.effects.in_time import between, in_time
 
 KINDS = [kind for kind in catalogue().values() if kind.code[0] in "MAH"]
 CODES = [
-    *(f"M{i}" for i in range(1, 9)),
+    *(f"M{i}" for i in range(1, 10)),
     "M6b",
     *(f"A{i}" for i in range(1, 9)),
     *("H1", "H2", "H3", "H3b", *(f"H{i}" for i in range(4, 16))),
