@@ -21,7 +21,7 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from pmm.cli import cli
 from pmm.recorder.header import LiveSettings, RunHeader
-from pmm.recorder.live_path import LivePath, as_record
+from pmm.recorder.live_path import LivePath, header_channels
 from pmm.recorder.run_recorder import Outcome as RunOutcome
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
@@ -78,9 +78,9 @@ def record(pace: Pace, folder: Path, seconds: float) -> None:
         rig.run_until(lambda: shaft.at_speed, 500, "speed")
         _say(FIRST_WORD)
         live, first = LiveSettings(), rig.number + 1
-        path = LivePath(rig, first, live)
+        path = LivePath(rig)
         header = RunHeader(
-            run_name="killed", channels=path.channels, sources=path.sources, kind="oscillation",
+            run_name="killed", channels=header_channels(rig), kind="oscillation",
             sample_rate_hz=RATE_HZ, started_utc="", first_sync=first, rig_tables=described,
             opening=opening_of(rig), live=live,
         )  # fmt: skip
@@ -90,15 +90,12 @@ def record(pace: Pace, folder: Path, seconds: float) -> None:
             taps.append(recorder.frame)
             for _ in range(round(seconds * RATE_HZ)):
                 cycle = rig.cycle()
-                taken = path.step(cycle.number)
-                for number, values in taken.samples:
-                    recorder.samples(number, values)
-                    for i, sample in enumerate(values.T):
-                        _say(SAID.pack(number + i, time.monotonic(), *sample))
+                taken = path.step()
+                recorder.samples(taken.first, taken.values)
+                for i, sample in enumerate(taken.values.T):
+                    _say(SAID.pack(taken.first + i, time.monotonic(), *sample))
                 for pulse in taken.pulses:
                     recorder.pulse(pulse)
-                for reading in taken.readings:
-                    recorder.harmonic(as_record(reading))
                 recorder.cycle_statistics(cycle.lateness_s)
                 recorder.tick(time.monotonic())
             recorder.close(RunOutcome.COMPLETE)

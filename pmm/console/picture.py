@@ -11,10 +11,10 @@ from hardware.rig import Rig
 from pmm.console.messages import Bus, ChannelInfo, Needles
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.live_path import header_channels
 from pmm.run.measurement import Measurement
 from pmm.run.readings import rows_of
 from pmm.run.run_control import RunControl
-from pmm.run.sampler import header_channels
 from pmm.run.states import ALLOWED
 from pmm.run.status import HarmonicRow, Status
 

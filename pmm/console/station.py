@@ -37,7 +37,7 @@ from pmm.console.picture import (
     present_run,
 )
 from pmm.console.quick_stop import QuickStop
-from pmm.console.traces import TappedJournal, Traces, points_a_second, show_idle
+from pmm.console.traces import Traces, points_a_second
 from pmm.console.writing import Writer
 from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
@@ -107,6 +107,8 @@ class Station:
     def show(self, control: RunControl) -> None:
         """Tell what is new, and hand on a frame when it is time: the view of run control."""
         self._answers.settle()
+        if control.taken is not None:
+            self._traces.add(control.taken.first, control.taken.values)
         self._tell_news(control)
         now_s = self._clock()
         if now_s >= self._due_s:
@@ -149,8 +151,6 @@ class Station:
     def _take_orders(self) -> None:
         for order in self._link.orders():
             self._link.tell(self._carry_out(order))
-        if self.control.measurement is None:
-            show_idle(self._rig, self._traces)
 
     def _go_on(self) -> None:
         if self._present is not None and self.control.finished and not self._left:
@@ -278,9 +278,7 @@ class Station:
     def _begin(self, run: RunPlan) -> Measurement:
         if self._recording is None:
             raise AssertionError("a run without a plan")
-        measurement = self._recording.begin(run)
-        measurement.journal = TappedJournal(measurement.journal, self._traces)
-        return measurement
+        return self._recording.begin(run)
 
     def _tell_news(self, control: RunControl) -> None:
         if control.state is not self._told_state:

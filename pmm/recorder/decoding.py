@@ -4,13 +4,10 @@ The rig stands on a bus that plays ``bus.blf`` and on ports that say the lines o
 again. Nothing is sent anywhere.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from importlib.metadata import EntryPoint
 from typing import Any, Final
 
-import numpy as np
-
-from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.errors import DriveStateError, HardwareError, NotAtRestError, TransitionTimeoutError
 from hardware.line_log import LoggedPort
@@ -22,7 +19,7 @@ from hardware.rig import Rig
 from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.serial_port import PortSettings
 from pmm.recorder.files import BUS, LINES
-from pmm.recorder.live_path import PATIENCE_CYCLES, Gatherer, Taken
+from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath, Taken
 from pmm.recorder.recording import RunData
 
 _SYNC: Final = 0x080
@@ -53,22 +50,6 @@ def decode(
     return _played(run, read_rig(_on_playback(run), drivers))
 
 
-def spread(taken: Sequence[Taken], shape: tuple[int, ...], first: int) -> FloatArray:
-    """Return samples by their SYNC, shape ``(channels, n)``; NaN where none came.
-
-    Parameters
-    ----------
-    first
-        SYNC of the first column; samples outside the shape are left out.
-    """
-    found = np.full(shape, np.nan)
-    for start, values in (one for each in taken for one in each.samples):
-        at = np.arange(start, start + values.shape[1]) - first
-        inside = (at >= 0) & (at < shape[1])
-        found[:, at[inside]] = values[:, inside]
-    return found
-
-
 def _on_playback(run: RunData) -> dict[str, Any]:
     """Return the rig's tables with its bus played from the log."""
     tables = dict(run.header.rig_tables)
@@ -95,25 +76,25 @@ def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[Taken], list[s
         rigs.append(rig)
         rig.number = run.header.first_sync - 1
         carry_on(rig, run.header.opening)
-        path = Gatherer(rig, run.header.first_sync)
-        for _ in range(_cycles(run)):
+        path = LivePath(rig)
+        for _ in range(_last_cycle(run) - rig.number):
             try:
                 rig.cycle()
             except (DriveStateError, NotAtRestError, TransitionTimeoutError):
                 pass  # the replayed drives follow the run's commands, not this rig's
             except HardwareError as error:
                 faults.append(str(error))
-            taken.append(path.step(rig.number))
-        taken.append(path.finish())
+            taken.append(path.step())
     return taken, faults
 
 
-def _cycles(run: RunData) -> int:
-    """Return how many cycles the run's samples, pulses and lines reach over."""
-    heard = int(run.texts[LINES][-1][0]) if run.texts[LINES] else 0
-    samples = run.samples
-    last = _last_sync(run) if samples is None else samples.first_sync + samples.sample_count - 1
-    return max(last, heard) - run.header.first_sync + PATIENCE_CYCLES + 1
+def _last_cycle(run: RunData) -> int:
+    """Return the last cycle that the log tells of, or in which the last sample was given up."""
+    number, samples = run.header.first_sync - 1, run.samples
+    heard = int(run.texts[LINES][-1][0]) if run.texts[LINES] else number
+    if samples is not None:
+        return max(samples.first_sync + samples.sample_count - 1 + PATIENCE_CYCLES, heard)
+    return max(_last_sync(run), heard)
 
 
 def _last_sync(run: RunData) -> int:

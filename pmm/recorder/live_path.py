@@ -1,23 +1,27 @@
-"""From the rig's devices to samples and readings: the same for a run and for its replay."""
+"""From the rig's devices to samples, pulses and readings: one path for run, replay and console."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import LiveResolver
+from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.rig import Rig
-from hardware.roles import Pulse, Sampled
+from hardware.roles import Block, Pulse, Sampled
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.samples import Piece
 
-PATIENCE_CYCLES: Final = 3
+PATIENCE_CYCLES: Final = 4
+"""For how many cycles a device's sample is waited for; then it is NaN.
+
+An amplifier gives up a frame that is missing after 2 cycles: at half of this nothing is to spare.
+At twice, what is recorded last before a device falls silent is shown, and flushed, 4 cycles later.
+"""
 
 
 @dataclass(frozen=True)
@@ -26,124 +30,106 @@ class Taken:
 
     Attributes
     ----------
-    samples
-        First SYNC and values, shape ``(channels, n)``, of each stretch without a gap.
-    readings
-        Those that are final.
+    first
+        SYNC of the first sample.
+    values
+        Shape ``(channels, n)``: consecutive samples, NaN where nothing came.
+    pulses
+        Of the photocell.
     """
 
-    samples: tuple[Piece, ...] = ()
-    pulses: tuple[Pulse, ...] = ()
-    readings: tuple[Harmonics, ...] = ()
+    first: int
+    values: FloatArray
+    pulses: tuple[Pulse, ...]
 
 
-class Assembler:
-    """Puts the blocks of several devices together by their SYNC.
-
-    A sample is complete when all devices have delivered it, or have not for three cycles: then it
-    is NaN for those.
-    """
-
-    def __init__(self, devices: Sequence[Sampled], first: int) -> None:
-        self._devices = tuple(one for one in devices if one.channels)
-        self._rows: dict[int, list[float]] = {}
-        self._waits: dict[int, int] = {}
-        self._next = first
-        self._width = len(self.channels)
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """The channels, in the order of the rows."""
-        return tuple(channel for one in self._devices for channel in one.channels)
-
-    @property
-    def sources(self) -> dict[str, str]:
-        """Channel to the name of its device."""
-        return {channel.name: one.name for one in self._devices for channel in one.channels}
-
-    def take(self, newest: int) -> tuple[Piece, ...]:
-        """Return what is complete after cycle ``newest``, in stretches without a gap."""
-        self._collect()
-        ready: list[int] = []
-        for number in sorted(self._rows):
-            if self._waits[number] and number > newest - PATIENCE_CYCLES:
-                break
-            ready.append(number)
-        return self._pieces(ready)
-
-    def finish(self) -> tuple[Piece, ...]:
-        """Return what is left, complete or not."""
-        self._collect()
-        return self._pieces(sorted(self._rows))
-
-    def _collect(self) -> None:
-        row = 0
-        for device in self._devices:
-            for block in device.take():
-                for i, values in enumerate(block.values.T.tolist()):
-                    self._put(block.first + i, row, values)
-            row += len(device.channels)
-
-    def _put(self, number: int, row: int, values: list[float]) -> None:
-        if number < self._next:
-            return  # from before the run, or later than anyone waits
-        if number not in self._rows:
-            self._rows[number] = [math.nan] * self._width
-            self._waits[number] = len(self._devices)
-        self._rows[number][row : row + len(values)] = values
-        self._waits[number] -= 1
-
-    def _pieces(self, ready: list[int]) -> tuple[Piece, ...]:
-        if not ready:
-            return ()
-        self._next = ready[-1] + 1
-        cuts = [0, *(i for i in range(1, len(ready)) if ready[i] != ready[i - 1] + 1), len(ready)]
-        pieces = []
-        for a, b in pairwise(cuts):
-            rows = [self._rows.pop(number) for number in ready[a:b]]
-            pieces.append((ready[a], np.array(rows).T))
-        for number in ready:
-            del self._waits[number]
-        return tuple(pieces)
+def joined(taken: Sequence[Taken], channels: int) -> FloatArray:
+    """Return the samples of consecutive cycles, shape ``(channels, n)``."""
+    return np.concatenate([np.empty((channels, 0)), *(one.values for one in taken)], axis=1)
 
 
-class Gatherer:
+@dataclass
+class _Source:
+    """A device, the rows of its channels, and its blocks, by SYNC, that are not used up."""
+
+    device: Sampled
+    rows: slice
+    last: int
+    offset: int | None = None  # SYNC of its sample number 0: for a device that counts its own
+    waiting: list[Block] = field(default_factory=list)
+
+    def listen(self, number: int) -> None:
+        """Take what has come by cycle ``number``."""
+        for one in (taken := self.device.take()):
+            if self.offset is None:
+                off = number - _last(taken[-1])
+                self.offset = 0 if abs(off) <= PATIENCE_CYCLES else off
+            block = Block(one.first + self.offset, one.values)
+            self.waiting.append(block)
+            self.last = _last(block)
+
+    def write(self, first: int, values: FloatArray) -> None:
+        """Write what lies in samples from ``first`` on, and keep what lies beyond."""
+        end = first + values.shape[1]
+        for one in self.waiting:
+            a, b = max(one.first, first), min(_last(one) + 1, end)
+            if a < b:
+                part = one.values[:, a - one.first : b - one.first]
+                values[self.rows, a - first : b - first] = part
+        self.waiting = [one for one in self.waiting if _last(one) >= end]
+
+
+class LivePath:
     """Samples and pulses of a rig, cycle by cycle: the shaft's angle, then the forces.
 
-    Parameters
+    A sample is complete when all devices have delivered it, or have not for
+    :data:`PATIENCE_CYCLES`. So it depends on nothing but the cycles in which its parts came, and a
+    replay that begins at the same SYNC gives the same bits. What came before is left out.
+
+    Attributes
     ----------
-    first
-        SYNC of the first sample that counts; earlier ones, and the pulses so far, are left out.
+    channels
+        In the order of the rows.
+    next
+        SYNC of the next sample to be handed out.
     """
 
-    def __init__(self, rig: Rig, first: int) -> None:
-        shaft = () if rig.shaft is None else (rig.shaft,)
-        assembler = Assembler((*shaft, *rig.forces), first)
-        self.channels, self.sources = assembler.channels, assembler.sources
-        self._assembler, self._photocell = assembler, rig.photocell
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+        self.channels = header_channels(rig)
+        self.next = rig.number + 1
+        self._sources: list[_Source] = []
+        row = 0
+        for one in sampled_devices(rig):
+            self._sources.append(_Source(one, slice(row, row + len(one.channels)), rig.number))
+            row += len(one.channels)
+            one.take()
         self._pulses()
 
-    def step(self, number: int) -> Taken:
-        """Take what cycle ``number`` brought; call it after :meth:`hardware.rig.Rig.cycle`."""
-        return Taken(self._assembler.take(number), self._pulses())
-
-    def finish(self) -> Taken:
-        """Take what was still waited for."""
-        return Taken(self._assembler.finish(), self._pulses())
+    def step(self) -> Taken:
+        """Take what the rig's cycle brought; call it once after each."""
+        number = self._rig.number
+        for one in self._sources:
+            one.listen(number)
+        complete = min((one.last for one in self._sources), default=number)
+        stop = max(number - PATIENCE_CYCLES, min(complete, number))
+        first, self.next = self.next, max(stop + 1, self.next)
+        values = np.full((len(self.channels), self.next - first), math.nan)
+        for one in self._sources:
+            one.write(first, values)
+        return Taken(first, values, self._pulses())
 
     def _pulses(self) -> tuple[Pulse, ...]:
-        return () if self._photocell is None else self._photocell.take()
+        return () if self._rig.photocell is None else self._rig.photocell.take()
 
 
-class Feed:
-    """A live resolver that is fed from a SYNC on, what is missing as NaN.
+class GateResolver:
+    """A live resolver from the arming of a gate on.
 
     Parameters
     ----------
     first
-        SYNC of the resolver's first sample.
-    pulses_from_s
-        Earlier pulses do not count.
+        SYNC of its first sample.
     """
 
     def __init__(
@@ -152,59 +138,40 @@ class Feed:
         sample_rate_hz: float,
         settings: LiveSettings,
         first: int,
-        pulses_from_s: float,
     ) -> None:
+        self.start_s = first / sample_rate_hz
+        self._usable_from_s = self.start_s + REACH / sample_rate_hz + settings.latency_s
         self.resolver = LiveResolver(
             channels,
             sample_rate_hz,
             harmonics=settings.harmonics,
             periods=settings.periods,
-            start_s=first / sample_rate_hz,
+            start_s=self.start_s,
             latency_s=settings.latency_s,
             angle_offset_rad=settings.angle_offset_rad,
         )
         self._next = first
-        self._after_s = pulses_from_s
 
-    def take(self, taken: Taken) -> list[Harmonics]:
-        """Take what a cycle brought; return the readings that it made final."""
-        readings: list[Harmonics] = []
-        for first, values in taken.samples:
-            readings += self._push(first, values)
-        for one in taken.pulses:
-            if one.time_s >= self._after_s:
-                self._after_s = math.nextafter(one.time_s, math.inf)
-                readings += self.resolver.pulse(one.time_s)
-        return readings
+    def takes(self, pulse: Pulse) -> bool:
+        """Tell whether a pulse counts: the samples around it have to be there."""
+        return pulse.time_s >= self._usable_from_s
 
-    def _push(self, first: int, values: FloatArray) -> list[Harmonics]:
-        values, first = values[:, max(0, self._next - first) :], max(first, self._next)
-        if not values.shape[1]:
-            return []
-        missing = np.full((values.shape[0], first - self._next), np.nan)
-        self._next = first + values.shape[1]
-        return self.resolver.push(np.concatenate([missing, values], axis=1))
+    def push(self, taken: Taken) -> list[Harmonics]:
+        """Take a cycle's samples; return the readings that they made final."""
+        values = taken.values[:, max(0, self._next - taken.first) :]
+        self._next += values.shape[1]
+        return self.resolver.push(values) if values.shape[1] else []
 
 
-class LivePath:
-    """Samples, pulses and readings of a rig, cycle by cycle; see :class:`Gatherer`."""
+def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
+    """Return the devices whose samples are recorded: shaft and force channels."""
+    shaft = (rig.shaft,) if rig.shaft is not None and rig.shaft.channels else ()
+    return (*shaft, *rig.forces)
 
-    def __init__(self, rig: Rig, first: int, settings: LiveSettings) -> None:
-        self._gatherer = Gatherer(rig, first)
-        self.channels, self.sources = self._gatherer.channels, self._gatherer.sources
-        rate_hz = rig.configuration.sample_rate_hz
-        self._feed = Feed(self.channels, rate_hz, settings, first, first / rate_hz)
 
-    def step(self, number: int) -> Taken:
-        """Take what cycle ``number`` brought, and the readings it made final."""
-        taken = self._gatherer.step(number)
-        return replace(taken, readings=tuple(self._feed.take(taken)))
-
-    def finish(self) -> Taken:
-        """Take what was still waited for, and the readings that only a run's end makes final."""
-        taken = self._gatherer.finish()
-        readings = (*self._feed.take(taken), *self._feed.resolver.finish())
-        return replace(taken, readings=readings)
+def header_channels(rig: Rig) -> tuple[Channel, ...]:
+    """Return the recorded channels in the order of their samples' rows."""
+    return tuple(c for one in sampled_devices(rig) for c in one.channels)
 
 
 def as_record(reading: Harmonics) -> dict[str, Any]:
@@ -216,3 +183,7 @@ def as_record(reading: Harmonics) -> dict[str, Any]:
         "channels": list(reading.channel_names),
         "coefficients": reading.coefficients.tolist(),
     }
+
+
+def _last(block: Block) -> int:
+    return block.first + int(block.values.shape[1]) - 1

@@ -10,10 +10,10 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
-from pmm.recorder.decoding import decode, spread
+from pmm.recorder.decoding import decode
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
-from pmm.recorder.live_path import PATIENCE_CYCLES, Taken
+from pmm.recorder.live_path import Taken, joined
 from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
 from pmm.recorder.texts import as_line
@@ -47,7 +47,7 @@ def rebuild(
     except DataError as error:
         what = "lost samples" if run.samples else "no whole sample, and none"
         raise DataError(f"{run.folder}: holds {what} can be decoded: {error}") from error
-    first, values = _with_whole(run, *_joined(run, taken))
+    first, values = _with_whole(run, run.header.first_sync, _samples(run, taken))
     need = 8 * (values.shape[0] + 1) * values.shape[1]
     if (free := free_bytes(run.folder)) < need:
         raise DiskFullError(
@@ -82,18 +82,12 @@ def _with_whole(run: RunData, first: int, decoded: FloatArray) -> tuple[int, Flo
     return begin, values
 
 
-def _joined(run: RunData, taken: Sequence[Taken]) -> tuple[int, FloatArray]:
-    """Return the first SYNC and all samples; at the end, only what every device has delivered."""
-    pieces = [one for each in taken for one in each.samples]
-    first = pieces[0][0] if pieces else 0
-    count = pieces[-1][0] + pieces[-1][1].shape[1] - first if pieces else 0
-    values = spread(taken, (len(run.header.channels), count), first)
-    for _ in range(PATIENCE_CYCLES):
-        if np.isnan(values[:, -1:]).any():
-            values = values[:, :-1]
-    if not values.shape[1]:
+def _samples(run: RunData, taken: Sequence[Taken]) -> FloatArray:
+    """Return all samples that were decoded."""
+    values = joined(taken, len(run.header.channels))
+    if np.isnan(values).all():
         raise DataError(f"{run.folder}: holds no whole sample, and neither do {BUS} and {LINES}")
-    return first, values
+    return values
 
 
 def _write_samples(run: RunData, first: int, values: FloatArray) -> None:

@@ -13,9 +13,9 @@ from hardware.description.errors import DataError
 from hardware.roles import Pulse
 from pmm.campaign_owner import writer_of
 from pmm.recorder.changes import changed_files
-from pmm.recorder.decoding import decode, spread
+from pmm.recorder.decoding import decode
 from pmm.recorder.files import HARMONICS
-from pmm.recorder.live_path import Taken
+from pmm.recorder.live_path import Taken, joined
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.resolving import largest_difference, resolve_again
 from pmm.recorder.samples import JournalSamples
@@ -102,7 +102,10 @@ def _compare(
     run: RunData, samples: JournalSamples, taken: list[Taken], faults: list[str]
 ) -> Replay:
     recorded = samples[:, 0 : samples.sample_count]
-    again = spread(taken, recorded.shape, samples.first_sync)
+    again = np.full(recorded.shape, np.nan)
+    skipped = samples.first_sync - run.header.first_sync
+    decoded = joined(taken, recorded.shape[0])[:, skipped : skipped + samples.sample_count]
+    again[:, : decoded.shape[1]] = decoded
     differing = ~((again == recorded) | (np.isnan(again) & np.isnan(recorded)))
     told, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
     return Replay(

@@ -1,14 +1,16 @@
 """Resolves the gates of a run again, from samples and pulses of its replay."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
-from analysis.resolver.weights import REACH
+from analysis.resolver.harmonics import Harmonics
+from hardware.description.errors import DataError
 from pmm.recorder.files import EVENTS, HARMONICS
-from pmm.recorder.live_path import Feed, Taken, as_record
+from pmm.recorder.live_path import GateResolver, Taken, as_record
 from pmm.recorder.recording import RunData
 
 ARMED: Final = "armed"
@@ -54,8 +56,8 @@ def largest_difference(told: Sequence[Reading], again: Sequence[Reading | None])
 def _start_of(reading: Reading, run: RunData) -> int:
     """Return the SYNC at which the reading's resolver began."""
     rate_hz = run.header.sample_rate_hz
-    starts = [run.header.first_sync, *_armed(run)]
-    return max(n for n in starts if n / rate_hz <= reading["opened_s"] or n == starts[0])
+    starts = [n for n in _armed(run) if n / rate_hz <= reading["opened_s"]]
+    return max(starts, default=run.header.first_sync)
 
 
 def _armed(run: RunData) -> list[int]:
@@ -68,15 +70,17 @@ def _gates(
     """Yield the readings of a resolver that begins at a SYNC, by their gates."""
     header = run.header
     rate_hz, settings = header.sample_rate_hz, replace(header.live, periods=periods)
-    later = [n for n in _armed(run) if n > start]
-    until_s = min(later) / rate_hz if later else np.inf
-    from_s = start / rate_hz
-    if start in _armed(run):
-        from_s += REACH / rate_hz + settings.latency_s
-    feed = Feed(header.channels, rate_hz, settings, start, from_s)
+    until_s = min((n / rate_hz for n in _armed(run) if n > start), default=np.inf)
+    again = GateResolver(header.channels, rate_hz, settings, start)
     for each in taken:
-        pulses = tuple(one for one in each.pulses if one.time_s < until_s)
-        for one in feed.take(replace(each, pulses=pulses)):
-            yield (one.opened_s, one.closed_s), as_record(one)
-    for one in feed.resolver.finish():
-        yield (one.opened_s, one.closed_s), as_record(one)
+        found = again.push(each)
+        for pulse in each.pulses:
+            if again.takes(pulse) and pulse.time_s < until_s:
+                with suppress(DataError):  # it had the run's gate armed anew
+                    found += again.resolver.pulse(pulse.time_s)
+        yield from ((_gate(one), as_record(one)) for one in found)
+    yield from ((_gate(one), as_record(one)) for one in again.resolver.finish())
+
+
+def _gate(reading: Harmonics) -> tuple[float, float]:
+    return reading.opened_s, reading.closed_s

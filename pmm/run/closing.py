@@ -32,11 +32,10 @@ class Closing:
         self._measurement, self._run = measurement, run
         self._outcome, self._reason = outcome, reason
         self._rows: tuple[HarmonicRow, ...] = ()
-        for last in (self._collect, self._read):
-            try:
-                last()
-            except Exception as error:  # closing is never skipped
-                self._reason = self._reason or str(as_fault(f"recorder of {run.name}", error))
+        try:
+            self._rows = measurement.rows()
+        except Exception as error:  # closing is never skipped
+            self._reason = self._reason or str(as_fault(f"recorder of {run.name}", error))
         self._future: Future[str] | None = executor.submit(self._work) if executor else None
         self._file = "" if executor else self._work()
 
@@ -59,12 +58,6 @@ class Closing:
             one.journal.statistics(),
             self._reason,
         )
-
-    def _collect(self) -> None:
-        self._measurement.collect(final=True)
-
-    def _read(self) -> None:
-        self._rows = self._measurement.rows()
 
     def _work(self) -> str:
         """Complete the recording; what cannot be completed stays as journals and is said."""

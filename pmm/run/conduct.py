@@ -10,6 +10,7 @@ from hardware.rig import Rig
 from hardware.roles import PositionAxis
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.live_path import LivePath
 from pmm.run.measurement import Measurement
 from pmm.run.surroundings import Questions, Surroundings
 
@@ -38,6 +39,8 @@ class Conduct:
     restless, astray
         For how many cycles the shaft has moved where it has to stand, or turned at a frequency that
         is not the run's.
+    path
+        What brings samples and pulses; a recording begins with a new one, as its replay does.
     pushed
         How far a push test has come: 0 nobody pushes, 1 pushed, 2 let go.
     """
@@ -57,9 +60,11 @@ class Conduct:
     astray: int = 0
     placed: dict[str, float] = field(default_factory=dict)
     questions: Questions = field(init=False)
+    path: LivePath = field(init=False)
 
     def __post_init__(self) -> None:
         self.questions = Questions(self.rig.prompt, self._answered)
+        self.path = LivePath(self.rig)
 
     @property
     def present(self) -> RunPlan:

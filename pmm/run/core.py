@@ -18,6 +18,7 @@ from pmm.run.states import Machine, State
 from pmm.run.status import RunOutcome
 
 if TYPE_CHECKING:
+    from pmm.recorder.live_path import Taken
     from pmm.run.run_control import RunControl
 
 _FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
@@ -57,6 +58,7 @@ class Core:
         self._halting = self._winding_down = self._braking = self._mute = False
         self._closing: Closing | None = None
         self._executor = executor
+        self.taken: Taken | None = None
         self.alarm_count = 0
         self._alarms: deque[str] = deque(maxlen=_ALARMS)
         self._highest_hz = rig_file.oscillator.frequency_hz.high
@@ -87,14 +89,16 @@ class Core:
     def _record(self, lateness_s: float) -> None:
         """Record a cycle; in a fault a recorder that fails must not keep the axes from stopping."""
         measurement = self._conduct.measurement
-        if measurement is None or self._mute:
+        if self._mute:
             return
         try:
-            measurement.cycle(lateness_s, self._clock())
+            self.taken = self._conduct.path.step()
+            if measurement is not None:
+                measurement.cycle(self.taken, lateness_s, self._clock())
         except Exception as error:
             if self.state is not State.FAULT:
                 raise
-            fault = as_fault(f"recorder of {measurement.run.name}", error)
+            fault = as_fault(f"recorder of {measurement.run.name}" if measurement else "rig", error)
             self._worse(fault)
             self._mute = fault.reaction < Reaction.QUICK_STOP or fault is not error
 

@@ -1,19 +1,15 @@
 """What run control wants of a recorder, and the tap that hands it the frames of the bus."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import PmmError
 from hardware.description.flags import Flag
-from hardware.errors import HardwareError
 from hardware.raw_log import Frame
 from hardware.roles import Pulse
 from pmm.recorder.lateness import CycleStatistics
 from pmm.recorder.run_recorder import Outcome, RunRecorder
-from pmm.run.errors import RecordingError
 
 
 class Journal(Protocol):
@@ -76,14 +72,3 @@ class Taps:
         """Take a line of a serial device."""
         if self.recorder is not None:
             self.recorder.line(cycle, device, data)
-
-
-@contextmanager
-def kept(run: str) -> Iterator[None]:
-    """Turn what a recorder raises into a fault of the run, which stops it along the profile."""
-    try:
-        yield
-    except HardwareError:
-        raise  # the recorder's own, with its reaction
-    except (PmmError, OSError) as error:
-        raise RecordingError(f"recorder of {run}", str(error)) from error

@@ -10,10 +10,10 @@ from typing import Final
 from analysis.resolver.weights import REACH
 from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
 from pmm.run.conduct import Conduct
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
-from pmm.run.sampler import PATIENCE_CYCLES
 from pmm.run.states import State
 from pmm.run.turning import check_frequency, check_standing
 
@@ -73,7 +73,7 @@ def _pausing(c: Conduct) -> State | None:
 
 
 def _enter_starting(c: Conduct) -> None:
-    c.measurement = c.begin(c.present)
+    c.measurement, c.path = c.begin(c.present), LivePath(c.rig)
     c.questions.ask(c.surroundings.tow(c.present.set_point.carriage_speed_m_s))
 
 

@@ -46,20 +46,32 @@ def needles(
     )
 
 
-def rows_at_rest(
-    channels: Sequence[Channel], total: FloatArray, square: FloatArray, count: int
-) -> tuple[HarmonicRow, ...]:
-    """Return the means of a record at rest; the half-width is that of white noise."""
-    if not count:
-        return ()
-    means = total / count
-    spread = np.sqrt(np.maximum(square / count - means**2, 0.0))
-    return tuple(
-        HarmonicRow(
-            one.name, one.unit, float(mean), 0.0, 0.0, 1.96 * float(s) / math.sqrt(count), True
+class Means:
+    """Means of a record at rest."""
+
+    def __init__(self, channels: Sequence[Channel]) -> None:
+        self._channels = tuple(channels)
+        self._sum, self._square = np.zeros((2, len(channels)))
+        self._count = 0
+
+    def take(self, values: FloatArray) -> None:
+        """Take samples, shape ``(channels, n)``; those that any channel lacks do not count."""
+        good = values[:, np.isfinite(values).all(axis=0)]
+        self._sum += good.sum(axis=1)
+        self._square += (good**2).sum(axis=1)
+        self._count += good.shape[1]
+
+    def rows(self) -> tuple[HarmonicRow, ...]:
+        """Return the means; the half-width is that of white noise."""
+        if not self._count:
+            return ()
+        means = self._sum / self._count
+        spread = np.sqrt(np.maximum(self._square / self._count - means**2, 0.0))
+        widths = 1.96 * spread / math.sqrt(self._count)
+        return tuple(
+            HarmonicRow(one.name, one.unit, float(mean), 0.0, 0.0, float(width), final=True)
+            for one, mean, width in zip(self._channels, means, widths, strict=True)
         )
-        for one, mean, s in zip(channels, means, spread, strict=True)
-    )
 
 
 def beside(

@@ -23,10 +23,10 @@ from pmm.plan.simulated_rig import (
 )
 from pmm.recorder.disk import DiskWatch, bytes_per_s, free_bytes
 from pmm.recorder.header import LiveSettings, RunHeader
+from pmm.recorder.live_path import header_channels, sampled_devices
 from pmm.recorder.run_recorder import RunRecorder
-from pmm.run.journal import Taps, kept
-from pmm.run.measurement import LiveOptions, Measurement
-from pmm.run.sampler import header_channels, sampled_devices
+from pmm.run.journal import Taps
+from pmm.run.measurement import Measurement, kept
 
 _FRAMES_A_CYCLE: Final = 3.0  # of each node: process data both ways, and its share of the rest
 _MEGA: Final = 1e6
@@ -80,10 +80,8 @@ class Recording:
                 admit=partial(self._admit, run, watch),
             )
         self.taps.recorder = recorder
-        offset = self.rig_file.photocell_offset
-        options = LiveOptions(3, offset.latency_s, offset.angle_offset_rad)
         expected = expected_readings(run, self.rig_file)
-        measurement = Measurement(self.rig, run, recorder, options, expected)
+        measurement = Measurement(self.rig, run, recorder, recorder.header.live, expected)
         measurement.flags += departure_flag(self._departures)
         return measurement
 

@@ -168,7 +168,7 @@ class RunControl(Stopping):
         if self._winding_down or self._closing is not None:
             raise RunStateError("the axes are still coming to rest, or the recording is closing")
         self.rig.reset()
-        self.fault = None
+        self.fault, self._mute = None, False
         self._conduct.placed.clear()
         self._go(State.IDLE)
 

@@ -61,7 +61,6 @@ class Stopping(Core):
         if measurement is None:
             return
         try:
-            measurement.collect()
             measurement.note(type(error).__name__, Severity.VOID, str(error))
         except Exception as also:  # the fault that led here is what counts
             self._worse(as_fault("recorder", also))

@@ -20,7 +20,14 @@ from hardware.rig_configuration import read_rig
 from hardware.roles import Pulse, Reading
 from pmm.recorder.disk import DiskFullError
 from pmm.recorder.header import LiveSettings, RunHeader
-from pmm.recorder.live_path import LivePath, Taken, as_record
+from pmm.recorder.live_path import (
+    GateResolver,
+    LivePath,
+    Taken,
+    as_record,
+    header_channels,
+    sampled_devices,
+)
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
 from sim.devices.plant import Surroundings
@@ -95,41 +102,38 @@ class Session:
     ) -> tuple[RunRecorder, list[Taken]]:
         """Record some cycles; the recorder is not closed."""
         first = self.rig.number + 1
-        path = LivePath(self.rig, first, live)
+        rate_hz, channels = self.rig.configuration.sample_rate_hz, header_channels(self.rig)
         about = header(
-            channels=path.channels,
-            sources=path.sources,
+            channels=channels,
+            sources={c.name: one.name for one in sampled_devices(self.rig) for c in one.channels},
             first_sync=first,
-            sample_rate_hz=self.rig.configuration.sample_rate_hz,
+            sample_rate_hz=rate_hz,
             rig_tables=self.tables,
             opening=opening_of(self.rig),
             live=live,
         )
         recorder = RunRecorder(folder, about)
+        path, resolving = LivePath(self.rig), GateResolver(channels, rate_hz, live, first)
         self.observe[:], self.hear[:] = [recorder.frame], [recorder.line]
-        taken = [self._cycle(recorder, path, readings) for _ in range(cycles)]
-        taken.append(path.finish())
-        _keep(recorder, taken[-1], readings)
+        found = []
+        for _ in range(cycles):
+            cycle = self.rig.cycle()
+            taken = path.step()
+            found.append(taken)
+            recorder.samples(taken.first, taken.values)
+            harmonics = resolving.push(taken)
+            for pulse in taken.pulses:
+                recorder.pulse(pulse)
+                harmonics += (
+                    resolving.resolver.pulse(pulse.time_s) if resolving.takes(pulse) else []
+                )
+            for reading in harmonics if readings else ():
+                recorder.harmonic(as_record(reading))
+            recorder.cycle_statistics(cycle.lateness_s)
+            recorder.tick(cycle.time_s)
         self.observe.clear()
         self.hear.clear()
-        return recorder, taken
-
-    def _cycle(self, recorder: RunRecorder, path: LivePath, readings: bool) -> Taken:
-        cycle = self.rig.cycle()
-        taken = path.step(cycle.number)
-        _keep(recorder, taken, readings)
-        recorder.cycle_statistics(cycle.lateness_s)
-        recorder.tick(cycle.time_s)
-        return taken
-
-
-def _keep(recorder: RunRecorder, taken: Taken, readings: bool) -> None:
-    for first, values in taken.samples:
-        recorder.samples(first, values)
-    for pulse in taken.pulses:
-        recorder.pulse(pulse)
-    for reading in taken.readings if readings else ():
-        recorder.harmonic(as_record(reading))
+        return recorder, found
 
 
 @contextmanager

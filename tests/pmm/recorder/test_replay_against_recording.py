@@ -4,18 +4,19 @@ import json
 import math
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from analysis.resolver.weights import REACH
 from hardware.description.errors import DataError
 from hardware.lines import TICK_MODULUS, Unwrapped
 from hardware.opening import carry_on, opening_of
 from hardware.raw_log import FramePacker, container, file_header
 from hardware.raw_log_reading import read_frames
+from hardware.roles import Block
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.live_path import Assembler, Feed, as_record
+from pmm.recorder.live_path import GateResolver, LivePath, Taken, as_record, joined
 from pmm.recorder.replay import replay
 from pmm.recorder.run_recorder import Outcome, RunRecorder
 from sim.devices.bench_file import DRIVERS
@@ -118,23 +119,21 @@ def test_gates_that_are_armed_anew_resolve_as_they_did(tmp_path: Path) -> None:
 
 
 def _armed_by_hand(recorder, taken, at: int) -> list[dict]:
-    """Resolve from a SYNC on in blocks of 50, as run control does, and write it down."""
-    rate = recorder.header.sample_rate_hz
-    recorder.event(at, at / rate, "armed", str(at))
-    feed = Feed(recorder.header.channels, rate, recorder.header.live, at, (at + REACH) / rate)
+    """Resolve from a SYNC on in blocks of 50 cycles, and write it down."""
+    header = recorder.header
+    rate_hz, count = header.sample_rate_hz, len(header.channels)
+    recorder.event(at, at / rate_hz, "armed", str(at))
+    resolving = GateResolver(header.channels, rate_hz, header.live, at)
     readings = []
-    pieces = [one for each in taken for one in each.samples]
-    pulses = [one for each in taken for one in each.pulses]
-    for k in range(0, len(pieces), 50):
-        values = np.concatenate([values for _, values in pieces[k : k + 50]], axis=1)
-        end = (pieces[k][0] + values.shape[1]) / rate
-        due = tuple(one for one in pulses if one.time_s <= end)
-        pulses = pulses[len(due) :]
-        block = taken[0].__class__(((pieces[k][0], values),), due)
-        readings += [as_record(one) for one in feed.take(block)]
-    for one in readings:
+    for k in range(0, len(taken), 50):
+        part = taken[k : k + 50]
+        readings += resolving.push(Taken(part[0].first, joined(part, count), ()))
+        for pulse in (one for each in part for one in each.pulses):
+            readings += resolving.resolver.pulse(pulse.time_s) if resolving.takes(pulse) else []
+    told = [as_record(one) for one in readings]
+    for one in told:
         recorder.harmonic(one)
-    return readings
+    return told
 
 
 def test_without_its_rig_or_its_log_a_run_is_refused(runs: Path, tmp_path: Path) -> None:
@@ -161,24 +160,35 @@ class Halting:
         return self._blocks.pop(0) if self._blocks else ()
 
 
-def test_samples_wait_three_cycles_for_a_late_device() -> None:
-    from hardware.roles import Block
-
+def test_samples_wait_four_cycles_for_a_late_device() -> None:
     def one(first: int, *values: float) -> tuple[Block, ...]:
         return (Block(first, np.array([values])),)
 
-    quick = Halting("quick", *(one(n, float(n)) for n in range(1, 9)))
-    late = Halting("late", one(1, 10.0), (), (), one(2, 20.0), (), (), (), one(8, 80.0))
-    assembler = Assembler((quick, late), 1)
-    got = [assembler.take(n) for n in range(1, 9)]
-    found = {first + i: values[:, i] for piece in got for first, values in piece
-             for i in range(values.shape[1])}  # fmt: skip
-    found |= {first + i: values[:, i] for first, values in assembler.finish()
-              for i in range(values.shape[1])}  # fmt: skip
-    assert sorted(found) == list(range(1, 9))
-    assert [found[n][0] for n in sorted(found)] == [float(n) for n in range(1, 9)]
-    assert [found[n][1] for n in (1, 2, 8)] == [10.0, 20.0, 80.0]
-    assert all(math.isnan(found[n][1]) for n in range(3, 8))
+    quick = Halting("quick", (), *(one(n, float(n)) for n in range(1, 13)))
+    late = Halting("late", (), one(1, 10.0), (), (), (), one(2, 20.0), (), (), (), one(8, 80.0))
+    rig = SimpleNamespace(number=0, shaft=None, forces=(quick, late), photocell=None)
+    path = LivePath(rig)
+    found, came_in = [], []
+    for rig.number in range(1, 13):
+        taken = path.step()
+        assert taken.first == len(found) + 1
+        found += taken.values.T.tolist()
+        came_in += [rig.number] * taken.values.shape[1]
+    assert [one for one, _ in found] == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
+    assert [found[n - 1][1] for n in (1, 2, 8)] == [10.0, 20.0, 80.0]
+    assert all(math.isnan(found[n - 1][1]) for n in range(3, 8))
+    assert came_in == [1, 5, 7, 8, 9, 9, 9, 9]
+
+
+def test_a_device_that_counts_its_own_samples_is_put_where_they_came() -> None:
+    quick = Halting("quick", (), *((Block(n, np.array([[1.0]])),) for n in range(101, 105)))
+    own = Halting("own", (), *((Block(n, np.array([[float(n)]])),) for n in range(7, 11)))
+    rig = SimpleNamespace(number=100, shaft=None, forces=(quick, own), photocell=None)
+    path = LivePath(rig)
+    found = []
+    for rig.number in range(101, 105):
+        found += path.step().values.T.tolist()
+    assert found == [[1.0, 7.0], [1.0, 8.0], [1.0, 9.0], [1.0, 10.0]]
 
 
 def test_what_devices_carry_over_is_json_and_goes_on() -> None:

@@ -22,9 +22,10 @@ from hardware.rig_configuration import read_rig
 from hardware.roles import Pulse
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.header import LiveSettings
 from pmm.recorder.lateness import CycleStatistics
 from pmm.recorder.run_recorder import Outcome
-from pmm.run.measurement import LiveOptions, Measurement
+from pmm.run.measurement import Measurement
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
@@ -169,7 +170,7 @@ class Storm:
         runs = [oscillation(f"run-{i}", float(self._random.uniform(0.5, 1.8))) for i in range(3)]
 
         def begin(run: RunPlan) -> Measurement:
-            return Measurement(rig, run, NoJournal(), LiveOptions())
+            return Measurement(rig, run, NoJournal(), LiveSettings(periods=run.max_periods))
 
         self.control = RunControl(rig, file, runs, begin, self._now, Blind())
         events = self._events()

@@ -40,6 +40,10 @@ def of_the_recorder(name: str) -> Callable[[Bench], None]:
     return plant
 
 
+def of_the_live_path(one: Bench) -> None:
+    one.control._conduct.path.step = odd  # type: ignore[method-assign]
+
+
 def of_the_journal(name: str) -> Callable[[Bench], None]:
     def plant(one: Bench) -> None:
         setattr(one.control.measurement.journal, name, odd)  # type: ignore[union-attr]
@@ -63,7 +67,8 @@ PLACES: dict[str, tuple[Callable[[Bench], None], bool]] = {
     "driver of the shaft": (tick_of("shaft"), True),
     "bus": (of_the_bus, True),
     "process data": (a_value_that_fits_no_object, True),
-    "collecting": (of_the_recorder("collect"), True),
+    "collecting": (of_the_live_path, True),
+    "keeping": (of_the_recorder("cycle"), True),
     "live reading": (of_the_recorder("rows"), True),
     "recorder's tick": (of_the_journal("tick"), True),
     "recorder's samples": (of_the_journal("samples"), True),
