@@ -1,5 +1,6 @@
 """What holds for every test: the same examples each time, and nothing is left behind."""
 
+import os
 from collections.abc import Iterator
 
 import can
@@ -31,3 +32,11 @@ def _nothing_left_behind() -> Iterator[None]:
 def _bus_name() -> None:
     """Give the simulated bus its name although the package may run unpacked."""
     can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _one_core() -> Iterator[None]:
+    """Let commands work in this process unless a test asks for more: tests share the cores."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "sched_getaffinity", lambda _: {0}, raising=False)
+        yield
