@@ -23,10 +23,9 @@ from hardware.rig_configuration import read_rig
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.run.core import View
 from pmm.run.journal import Taps
 from pmm.run.recording import Recording
-from pmm.run.run_control import RunControl
+from pmm.run.run_control import RunControl, View
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
 from sim.devices.plant import Surroundings

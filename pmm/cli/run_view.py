@@ -41,8 +41,8 @@ class PlainView:
             self._question = self._asked()
             if self._question:
                 self._say(f"? {self._question}")
-        if control.state is not self._state or control.alarm_count != self._alarms:
-            self._news(control.status(), control.alarm_count)
+        if control.state is not self._state or control.alarms.count != self._alarms:
+            self._news(control.status(), control.alarms.count)
         for outcome in control.outcomes[self._outcomes :]:
             self._outcomes += 1
             self._say(outcome_line(outcome))

@@ -15,7 +15,7 @@ from pmm.recorder.live_path import header_channels
 from pmm.run.measurement import Measurement
 from pmm.run.readings import rows_of
 from pmm.run.run_control import RunControl
-from pmm.run.states import ALLOWED
+from pmm.run.states import Command, is_allowed
 from pmm.run.status import HarmonicRow, Status
 
 HARMONICS: Final = 3
@@ -51,7 +51,7 @@ def axes_of(rig: Rig) -> tuple[tuple[str, str, float], ...]:
 
 def allowed(control: RunControl) -> tuple[str, ...]:
     """Return the commands that the present state takes."""
-    return tuple(str(one) for one, states in ALLOWED.items() if control.state in states)
+    return tuple(str(one) for one in Command if is_allowed(one, control.state))
 
 
 def present_run(control: RunControl, status: Status) -> RunPlan | None:

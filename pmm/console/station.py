@@ -288,7 +288,7 @@ class Station:
                 self._latest = self._needles.standing(control.measurement)
         for text in self._writer.failures():
             self._notice("alarm", text)
-        new = control.alarm_count - self._told_alarms
+        new = control.alarms.count - self._told_alarms
         if new:
             self._told_alarms += new
             for text in control.status().alarms[-new:]:

@@ -1,4 +1,4 @@
-"""What the phases of a run act on: the rig, the present run, and what it takes to carry it out."""
+"""What run control acts on: the rig, the present run, and where it stands."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +11,9 @@ from hardware.roles import PositionAxis
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import LivePath
+from pmm.recorder.run_recorder import Outcome
 from pmm.run.measurement import Measurement
+from pmm.run.states import Machine, State
 from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
@@ -43,6 +45,10 @@ class Conduct:
         What brings samples and pulses; a recording begins with a new one, as its replay does.
     pushed
         How far a push test has come: 0 nobody pushes, 1 pushed, 2 let go.
+    ending
+        How the run ends once it is at rest.
+    leaves_plan
+        Whether no other run follows it: somebody stopped.
     """
 
     rig: Rig
@@ -58,13 +64,31 @@ class Conduct:
     pushed: int = 0
     restless: int = 0
     astray: int = 0
+    ending: Outcome = Outcome.COMPLETE
+    leaves_plan: bool = False
     placed: dict[str, float] = field(default_factory=dict)
+    machine: Machine = field(default_factory=Machine)
     questions: Questions = field(init=False)
     path: LivePath = field(init=False)
 
     def __post_init__(self) -> None:
         self.questions = Questions(self.rig.prompt, self._answered)
         self.path = LivePath(self.rig)
+
+    def take(self, run: RunPlan) -> None:
+        """Make a run the present one."""
+        self.run, self.pushed = run, 0
+        self.ending, self.leaves_plan = Outcome.COMPLETE, False
+
+    def go(self, state: State) -> None:
+        """Enter a state in the present cycle; raises as :meth:`pmm.run.states.Machine.go`."""
+        self.machine.go(state)
+        self.since, self.told = self.rig.number, False
+
+    @property
+    def state(self) -> State:
+        """Where run control stands."""
+        return self.machine.state
 
     @property
     def present(self) -> RunPlan:

@@ -14,8 +14,8 @@ from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
 from pmm.run.conduct import Conduct
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
+from pmm.run.shaft_checks import check_frequency, check_standing
 from pmm.run.states import State
-from pmm.run.turning import check_frequency, check_standing
 
 _OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers
 _HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4  # for the samples beyond the gate's edge
@@ -146,25 +146,13 @@ def _hold(c: Conduct) -> State | None:
     return State.STOPPING
 
 
-def enter_stopping(c: Conduct) -> None:
+def _enter_stopping(c: Conduct) -> None:
     """Stop along the profile, and tell the photocell that no pulses are due."""
     c.rig.stop()
     c.questions.withdraw()
     if c.rig.photocell is not None:
         c.rig.photocell.expect(None)
     c.questions.ask(c.surroundings.tow(0.0))
-
-
-def at_rest(c: Conduct) -> bool:
-    """Wait until nothing moves; take the power off the shaft then."""
-    if c.moving:
-        return False
-    if not c.told:
-        c.told = True
-        c.rested_since = c.rig.number if c.rested_since is None else c.rested_since
-        if c.rig.shaft is not None:
-            c.rig.shaft.disable()
-    return c.questions.done()
 
 
 def _push(c: Conduct) -> None:
@@ -203,16 +191,16 @@ def _check_overdue(c: Conduct, what: str) -> None:
         )
 
 
-ENTER: Final[Mapping[State, Callable[[Conduct], None]]] = MappingProxyType(
+_ENTER: Final[Mapping[State, Callable[[Conduct], None]]] = MappingProxyType(
     {
         State.HOMING: _enter_homing,
         State.SETTING: _enter_setting,
         State.STARTING: _enter_starting,
         State.ARMED: _enter_armed,
-        State.STOPPING: enter_stopping,
+        State.STOPPING: _enter_stopping,
     }
 )
-NEXT: Final[Mapping[State, Callable[[Conduct], State | None]]] = MappingProxyType(
+PHASES: Final[Mapping[State, Callable[[Conduct], State | None]]] = MappingProxyType(
     {
         State.HOMING: _homing,
         State.SETTING: _setting,
@@ -224,3 +212,18 @@ NEXT: Final[Mapping[State, Callable[[Conduct], State | None]]] = MappingProxyTyp
         State.HOLD: _hold,
     }
 )
+
+
+def enter(c: Conduct, state: State) -> None:
+    """Enter a state: note it in the recording, then do what it begins with.
+
+    Raises
+    ------
+    RunStateError
+        If the table of states has no such step.
+    """
+    c.go(state)
+    if c.measurement is not None:
+        c.measurement.event("state", str(state))
+    if state in _ENTER:
+        _ENTER[state](c)

@@ -2,18 +2,43 @@
 
 A fault ends in :attr:`~pmm.run.states.State.FAULT` and stays there: axes brought to rest,
 power off, the recording closed with what there is. Only an operator's reset leads out of it, and
-nothing goes on by itself afterwards.
+nothing goes on by itself afterwards. The tables are in :mod:`pmm.run.states`.
 """
 
-from hardware.errors import HardwareError, as_fault
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
+from typing import TYPE_CHECKING, Final, Protocol
+
+from hardware.errors import HardwareError, Reaction, as_fault
+from hardware.rig import Rig
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
 from pmm.recorder.run_recorder import Outcome
-from pmm.run.phases import NEXT
+from pmm.run.closer import Closer
+from pmm.run.conduct import Begin, Conduct
+from pmm.run.errors import RecordingError
+from pmm.run.fault_latch import FaultLatch
+from pmm.run.measurement import Measurement
+from pmm.run.phases import PHASES, enter
 from pmm.run.states import Command, RunStateError, State
-from pmm.run.status import Status
-from pmm.run.stopping import Stopping
+from pmm.run.status import Alarms, RunOutcome, Status
+from pmm.run.stopper import Stopper
+
+if TYPE_CHECKING:
+    from pmm.recorder.live_path import Taken
+
+_FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
 
 
-class RunControl(Stopping):
+class View(Protocol):
+    """Shows what is going on."""
+
+    def show(self, control: "RunControl") -> None:
+        """Look at the control, if it is time to."""
+
+
+class RunControl:
     """Carries out runs on a rig.
 
     Parameters
@@ -32,18 +57,74 @@ class RunControl(Stopping):
 
     Attributes
     ----------
-    outcomes
-        Of the runs that ended.
-    fault
-        What is latched; ``None`` if nothing is.
-    alarm_count
-        How many alarms there were so far.
+    alarms
+        What went wrong so far.
+    taken
+        What the last cycle brought.
+    free_bytes
+        Returns the room on the disk; ``None`` where nothing is recorded.
     """
 
+    def __init__(
+        self,
+        rig: Rig,
+        rig_file: RigFile,
+        runs: Sequence[RunPlan],
+        begin: Begin,
+        clock: Callable[[], float],
+        view: View,
+        executor: Executor | None = None,
+    ) -> None:
+        self.rig, self.runs = rig, tuple(runs)
+        self._numbers = {one.name: number for number, one in enumerate(self.runs, 1)}
+        self.taken: Taken | None = None
+        self.free_bytes: Callable[[], int | None] = lambda: None
+        self._clock, self._view = clock, view
+        self._conduct = c = Conduct(rig, rig_file, begin, waits=executor is None)
+        self.alarms = Alarms()
+        self._stopper = Stopper(c, self.alarms)
+        self._faults = FaultLatch(c, self._stopper, self.alarms)
+        self._closer = Closer(executor)
+        self._is_mute = False  # the recorder has failed in a fault, and is not tried again
+        self._doing: Mapping[State, Callable[[], State | None]] = {
+            **{state: partial(phase, c) for state, phase in PHASES.items()},
+            State.STOPPING: self._come_to_rest,
+            State.DONE: self._go_on,
+            State.FAULT: self._wind_down,
+        }
+        rig.limit(rig_file.watched)
+
+    def follow(self, before: "RunControl") -> None:
+        """Go on where another plan's control left the rig: carriage, medium and loads stay."""
+        self._conduct.surroundings = before._conduct.surroundings
+        self._conduct.rested_since = before._conduct.rested_since
+
     @property
-    def question(self) -> str:
-        """What the operator is asked by run control itself; empty if nothing."""
-        return self._conduct.questions.present
+    def state(self) -> State:
+        """Where run control stands."""
+        return self._conduct.state
+
+    @property
+    def measurement(self) -> Measurement | None:
+        """The run that is being recorded; ``None`` between runs."""
+        return self._conduct.measurement
+
+    @property
+    def outcomes(self) -> list[RunOutcome]:
+        """Of the runs that ended."""
+        return self._closer.outcomes
+
+    @property
+    def fault(self) -> HardwareError | None:
+        """What is latched; ``None`` if nothing is."""
+        return self._faults.cause
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing more happens without a command."""
+        more = self.state is State.DONE and bool(self._left)
+        settled = not self._closer.busy and self.measurement is None
+        return self.state in _FINAL and not more and settled and not self._stopper.winding_down
 
     def request(self, command: Command) -> None:
         """Take a command.
@@ -55,12 +136,13 @@ class RunControl(Stopping):
         HardwareError
             If a reset does not succeed; the fault stays latched.
         """
-        self._machine.check(command)
-        self._note_command(command)
+        self._conduct.machine.check(command)
+        if self.measurement is not None:
+            self.measurement.event("command", str(command))
         {
             Command.START: self._start,
             Command.NEXT: self._skip,
-            Command.HOLD: self._hold,
+            Command.HOLD: lambda: self._conduct.recording.gate.hold(),
             Command.RESET: self._reset,
             Command.STOP: self._stop,
             Command.QUICK_STOP: self._quick_stop,
@@ -68,7 +150,7 @@ class RunControl(Stopping):
 
     def fail(self, error: HardwareError) -> None:
         """Take a fault that was found outside: by what hands the commands in, for example."""
-        self._found(error)
+        self._faults.take(error)
 
     def step(self) -> None:
         """Run one cycle of the rig, and what the present state makes of it.
@@ -79,20 +161,22 @@ class RunControl(Stopping):
         try:
             lateness_s = self.rig.cycle().lateness_s
         except HardwareError as error:
-            self._found(error)
+            self._faults.take(error)
         try:
-            self._follow(lateness_s)
+            self._record(lateness_s)
+            self._hear_closer()
+            self._do()
         except Exception as error:  # the loop must not end: nobody would stop the axes
-            self._found(as_fault("run control", error), own=True)
+            self._faults.take(as_fault("run control", error), own=True)
         try:
             self._view.show(self)
         except Exception as error:  # nor by what only shows
-            self._found(as_fault("view", error))
+            self._faults.take(as_fault("view", error))
 
     def status(self) -> Status:
         """Return a picture of this moment."""
-        c, run, number = self._conduct, self._conduct.run, self.rig.number
-        measurement = c.measurement
+        c, number = self._conduct, self.rig.number
+        run, measurement = c.run, c.measurement
         return Status(
             state=self.state,
             cycle=number,
@@ -107,90 +191,110 @@ class RunControl(Stopping):
             wanted_periods=measurement.gate.wanted if measurement else 0,
             harmonics=measurement.rows() if measurement else (),
             question=c.questions.present,
-            alarms=tuple(self._alarms),
+            alarms=self.alarms.latest,
             statistics=measurement.journal.statistics() if measurement else None,
             free_bytes=self.free_bytes(),
         )
 
-    def _follow(self, lateness_s: float) -> None:
-        """Let time pass for recording, closing and the present state."""
-        c = self._conduct
-        self._record(lateness_s)
-        if self._closing is not None and self._closing.done():
-            self._closed(self._closing)
-        if self.state is State.FAULT:
-            try:
-                self._wind_down()
-            except Exception as error:  # the recording is closed all the same
-                self._give_up(as_fault("run control", error))
-        elif self.state is State.STOPPING:
-            self._come_to_rest()
-        elif self.state is State.DONE:
-            self._go_on()
-        elif self.state in NEXT:
-            following = NEXT[self.state](c)
-            if following is not None:
-                self._go(following)
-
-    def _go_on(self) -> None:
-        """Take the next run once the last one's recording is closed."""
-        if self._closing is not None:
+    def _record(self, lateness_s: float) -> None:
+        """Record a cycle; in a fault a recorder that fails must not keep the axes from stopping."""
+        if self._is_mute:
             return
-        following = self._next()
+        measurement = self.measurement
+        try:
+            self.taken = self._conduct.path.step()
+            if measurement is not None:
+                measurement.cycle(self.taken, lateness_s, self._clock())
+        except Exception as error:
+            if self.state is not State.FAULT:
+                raise
+            fault = as_fault(f"recorder of {measurement.run.name}" if measurement else "rig", error)
+            self._faults.take_worse(fault)
+            self._is_mute = fault.reaction < Reaction.QUICK_STOP or fault is not error
+
+    def _hear_closer(self) -> None:
+        """Take how a run ended; a recording that could not be completed is a fault."""
+        ended = self._closer.closed()
+        if ended is not None and ended.outcome == Outcome.FAULT and self.fault is None:
+            self._faults.take(RecordingError(f"recorder of {ended.run}", ended.reason))
+
+    def _do(self) -> None:
+        """Do what the present state is for; enter the one that follows it."""
+        doing = self._doing.get(self.state)
+        following = doing() if doing is not None else None
         if following is not None:
-            self._conduct.run, self._conduct.pushed = following, 0
-            self._ending, self._halting = Outcome.COMPLETE, False
-            self._go(State.SETTING)
+            enter(self._conduct, following)
+
+    def _come_to_rest(self) -> State | None:
+        c = self._conduct
+        if not self._stopper.at_rest():
+            return None
+        self._closer.close(c, c.ending)
+        if c.leaves_plan or all(one.name == c.present.name for one in self._left):
+            self._stopper.power_off()
+        return State.STOPPED if c.leaves_plan else State.DONE
+
+    def _wind_down(self) -> None:
+        """In a fault: close the recording once the axes rest, or whatever goes wrong meanwhile."""
+        close = partial(self._closer.close, self._conduct, Outcome.FAULT, str(self.fault))
+        try:
+            if self._stopper.winding_down and self._stopper.wound_down():
+                close()
+        except Exception as error:
+            self._faults.take_worse(as_fault("run control", error))
+            self._stopper.give_up()
+            close()
+
+    def _go_on(self) -> State | None:
+        """Take the next run once the last one's recording is closed."""
+        if self._closer.busy or not self._left:
+            return None
+        self._conduct.take(self._left[0])
+        return State.SETTING
+
+    @property
+    def _left(self) -> list[RunPlan]:
+        return [one for one in self.runs if not self._closer.ended(one)]
 
     def _start(self) -> None:
-        if self._closing is not None:
+        if self._closer.busy:
             raise RunStateError(
                 "the last run's recording is still being completed; start again soon"
             )
-        following = self._next()
-        if following is None:
+        if not self._left:
             raise RunStateError("all runs are done; nothing to start")
-        self._conduct.run, self._conduct.pushed = following, 0
-        self._ending, self._halting = Outcome.COMPLETE, False
-        self._go(State.HOMING)
+        self._conduct.take(self._left[0])
+        enter(self._conduct, State.HOMING)
 
     def _skip(self) -> None:
-        self._ending = Outcome.STOPPED
-        self._go(State.STOPPING)
-
-    def _hold(self) -> None:
-        self._conduct.recording.gate.hold()
+        self._conduct.ending = Outcome.STOPPED
+        enter(self._conduct, State.STOPPING)
 
     def _reset(self) -> None:
         if self.state is not State.FAULT:
-            self._go(State.ARMED)
+            enter(self._conduct, State.ARMED)
             return
-        if self._winding_down or self._closing is not None:
+        if self._stopper.winding_down or self._closer.busy:
             raise RunStateError("the axes are still coming to rest, or the recording is closing")
-        self.rig.reset()
-        self.fault, self._mute = None, False
-        self._conduct.placed.clear()
-        self._go(State.IDLE)
+        self._faults.reset()
+        self._is_mute = False
+        enter(self._conduct, State.IDLE)
 
     def _stop(self) -> None:
         """Stop along the profile; a run whose gate has closed already counts as complete."""
-        self._halting = True
+        c = self._conduct
+        c.leaves_plan = True
         if self.state is State.DONE:
-            self._power_off()
-            self._machine.go(State.STOPPED, self.rig.number)
+            self._stopper.power_off()
+            enter(c, State.STOPPED)
         elif self.state is not State.STOPPING:
-            self._ending = Outcome.STOPPED
-            self._go(State.STOPPING)
+            self._skip()
 
     def _quick_stop(self) -> None:
-        if self.state in NEXT or self.state is State.DONE:
+        if self.state in PHASES or self.state is State.DONE:
             self._stop()
-        self._halting = True
+        self._conduct.leaves_plan = True
         self.rig.quick_stop()
         if self.state is State.STOPPING:
-            self._power_off()  # at rest; the deadline of a drive that does not brake begins now
+            self._stopper.power_off()  # at rest; a drive that does not brake has its deadline now
         self._conduct.questions.withdraw()
-
-    def _note_command(self, command: Command) -> None:
-        if self._conduct.measurement is not None:
-            self._conduct.measurement.event("command", str(command))

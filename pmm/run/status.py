@@ -1,12 +1,40 @@
 """What there is to see of a run: a frozen picture of one moment, for a terminal or a console."""
 
 import math
+from collections import deque
 from dataclasses import dataclass
+from typing import Final
 
 from hardware.description.flags import Flag
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
+
+_ALARMS: Final = 20  # kept for the screen; the recording keeps all
+
+
+class Alarms:
+    """What went wrong, in words.
+
+    Attributes
+    ----------
+    count
+        How many there were so far.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._latest: deque[str] = deque(maxlen=_ALARMS)
+
+    def add(self, text: str) -> None:
+        """Add one."""
+        self.count += 1
+        self._latest.append(text)
+
+    @property
+    def latest(self) -> tuple[str, ...]:
+        """The last of them, the latest last."""
+        return tuple(self._latest)
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,7 @@ class Slow(Executor):
 
 def test_a_run_is_not_started_anew_while_its_recording_is_being_completed(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation("a"), oscillation("b")]) as one:
-        slow = one.control._executor = Slow()
+        slow = one.control._closer.executor = Slow()
         one.until(State.GATE_OPEN)
         one.control.request(Command.STOP)
         one.until(State.STOPPED)

@@ -12,7 +12,7 @@ from pmm.cli.terminal import Terminal
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
-from pmm.run.status import HarmonicRow, RunOutcome, Status
+from pmm.run.status import Alarms, HarmonicRow, RunOutcome, Status
 
 ALARM = (
     "forces[0]: force_aft = -30 N (status 0x04); full scale 30 N; reduce amplitude or frequency, "
@@ -64,7 +64,8 @@ class Control:
     """What a view asks of run control."""
 
     def __init__(self, status: Status, *outcomes: RunOutcome) -> None:
-        self.state, self.alarm_count = status.state, len(status.alarms)
+        self.state, self.alarms = status.state, Alarms()
+        self.alarms.count = len(status.alarms)
         self.outcomes = list(outcomes)
         self._status = status
 

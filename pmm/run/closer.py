@@ -1,4 +1,4 @@
-"""Completing a recording while the loop goes on: drives that hear no heartbeat would stop."""
+"""Recordings are completed while the loop goes on: drives that hear no heartbeat would stop."""
 
 from concurrent.futures import Executor, Future
 
@@ -6,6 +6,7 @@ from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.run_recorder import Outcome
+from pmm.run.conduct import Conduct
 from pmm.run.measurement import Measurement
 from pmm.run.status import HarmonicRow, RunOutcome
 
@@ -72,3 +73,53 @@ class Closing:
             said = f"the recording was not completed: {why}; `pmm recover` makes one"
             self._reason = f"{self._reason}; {said}" if self._reason else said
             return ""
+
+
+class Closer:
+    """Closes the recordings of runs, and keeps how the runs ended.
+
+    Parameters
+    ----------
+    executor
+        Where recordings are completed; ``None`` for at once.
+
+    Attributes
+    ----------
+    outcomes
+        Of the runs that ended.
+    """
+
+    def __init__(self, executor: Executor | None) -> None:
+        self.outcomes: list[RunOutcome] = []
+        self.executor = executor
+        self._closing: Closing | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a recording is still being completed."""
+        return self._closing is not None
+
+    def close(self, c: Conduct, outcome: Outcome, reason: str = "") -> None:
+        """End the present run; one that left before it recorded anything is none but complete."""
+        if c.run is None:
+            return
+        if c.measurement is not None:
+            self._closing = Closing(c.measurement, c.run, outcome, reason, self.executor)
+            c.measurement = None
+        elif outcome is not Outcome.COMPLETE and not self.ended(c.run):
+            run = c.run
+            self.outcomes.append(
+                RunOutcome(run.name, str(run.kind), str(outcome), "", 0, (), (), None, reason)
+            )
+
+    def closed(self) -> RunOutcome | None:
+        """Return how a run ended, once, in the cycle in which its recording is complete."""
+        if self._closing is None or not self._closing.done():
+            return None
+        closing, self._closing = self._closing, None
+        self.outcomes.append(closing.result())
+        return self.outcomes[-1]
+
+    def ended(self, run: RunPlan) -> bool:
+        """Return whether a run has ended, however."""
+        return any(one.run == run.name for one in self.outcomes)
