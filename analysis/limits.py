@@ -27,7 +27,7 @@ LONGEST_LINE: Final = 1 << 17  # bytes: as many columns of 32 letters
 
 
 @dataclass(frozen=True)
-class Limits:
+class ReadingLimits:
     """What reading one recording may take: memory, and seconds of a child process."""
 
     memory_bytes: float = _MEMORY_GB * 1e9
@@ -65,7 +65,7 @@ class Limits:
         )
 
 
-def limits() -> Limits:
+def limits() -> ReadingLimits:
     """Return the limits of this process, as the environment sets them.
 
     Raises
@@ -73,7 +73,9 @@ def limits() -> Limits:
     ConfigurationError
         If a setting is no number above 0.
     """
-    return Limits(_setting(MEMORY_SETTING, _MEMORY_GB) * 1e9, _setting(TIME_SETTING, _SECONDS))
+    return ReadingLimits(
+        _setting(MEMORY_SETTING, _MEMORY_GB) * 1e9, _setting(TIME_SETTING, _SECONDS)
+    )
 
 
 def _setting(name: str, default: float) -> float:

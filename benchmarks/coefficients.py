@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.form_choice import BOTH, CUBIC, NOT_SEPARABLE, QUADRATIC, choose_form
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up
 from benchmarks.coefficients_coverage import CASES, cubic_rates, linear_rates, monte_carlo_ratio
 from benchmarks.machine import ROOT
@@ -124,7 +124,7 @@ def _hull_rows(name: str, table: RadiationTable) -> list[Row]:
             _measured(own, SetPoint(frequency, eccentricity, phase), f"{phase:.0f}", k)
             for phase in (0.0, math.pi)
         ]
-        fit = linear_fit(runs, Form.SEAKEEPING, Stated()).fit
+        fit = linear_fit(runs, Form.SEAKEEPING, StatedUncertainties()).fit
         modes = "35" if table.plane is Plane.VERTICAL else "26"
         for letter, put_in in (("a", water.added_mass), ("b", water.damping)):
             for place, mode in enumerate(modes):
@@ -155,9 +155,11 @@ def _water(table: RadiationTable, k: int) -> HullCoefficients:
     return HullCoefficients(added_mass=added, damping=damping, restoring=restoring)  # type: ignore[arg-type]
 
 
-def _measured(rig: SimulatedRig, point: SetPoint, name: str, seed: int) -> Cycle:
+def _measured(rig: SimulatedRig, point: SetPoint, name: str, seed: int) -> BodyCycle:
     record = simulate(rig, point, periods=30, sample_rate_hz=100.0, seed=seed, name=name)
-    analysis = analyse(from_dataset(record), settings=Settings(channels=_CHANNELS, harmonics=3))
+    analysis = analyse(
+        from_dataset(record), settings=ResolverSettings(channels=_CHANNELS, harmonics=3)
+    )
     cycle = measured_cycle(analysis, rig.oscillator).model()
     return cycle.without(rig.body, np.array(rig.water.restoring))
 

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.random import Generator
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.terms import term_of
 from hardware.description.arrays import ComplexArray, FloatArray
@@ -108,7 +108,7 @@ def made_up(
     name: str,
     generator: Generator | None = None,
     scatter: Scatter = SCATTER,
-) -> Cycle:
+) -> BodyCycle:
     """Return a run with exact loads, worked out sample by sample from the terms.
 
     Parameters
@@ -120,7 +120,7 @@ def made_up(
     return taken(struts if generator is None else scattered(struts, generator, scatter), made)
 
 
-def taken(struts: StrutCycle, made: Made) -> Cycle:
+def taken(struts: StrutCycle, made: Made) -> BodyCycle:
     """Return the run in body axes, with :data:`BODY` and the restoring to be taken off."""
     return struts.model(drift_rad=made.drift_rad).without(BODY, made.known)
 
@@ -229,7 +229,9 @@ def scattered(struts: StrutCycle, generator: Generator, scatter: Scatter = SCATT
     return replace(struts, phasors=replace(phasors, values=values, sources=(source,)))
 
 
-def wrong(struts: StrutCycle, stated: Stated, errors: Mapping[str, float]) -> StrutCycle:
+def wrong(
+    struts: StrutCycle, stated: StatedUncertainties, errors: Mapping[str, float]
+) -> StrutCycle:
     """Return the run as a chain reads it that errs by so many stated standard uncertainties.
 
     Knows amplitude, lag and force gain; errors of the body belong to :class:`Made`.
@@ -245,7 +247,7 @@ def wrong(struts: StrutCycle, stated: Stated, errors: Mapping[str, float]) -> St
     return replace(struts, phasors=struts.phasors.mapped(np.diag(factors)))
 
 
-def wrong_body(stated: Stated, errors: Mapping[str, float]) -> Body:
+def wrong_body(stated: StatedUncertainties, errors: Mapping[str, float]) -> Body:
     """Return the body as it is, where :data:`BODY` is what is taken off."""
     names = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
     return replace(

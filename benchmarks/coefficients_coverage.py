@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     CUBIC,
     HORIZONTAL,
@@ -33,7 +33,7 @@ from benchmarks.outcome import Report, Row
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 
-STATED = Stated(
+STATED = StatedUncertainties(
     mass_kg=0.05,
     inertia_kg_m2=0.1,
     cg_x_m=5e-4,
@@ -85,7 +85,7 @@ def linear_rates(case: Case, campaigns: int) -> dict[str, float]:
     return {name: count / campaigns for name, count in hits.items()}
 
 
-def _campaign(case: Case, generator: Generator) -> list[Cycle]:
+def _campaign(case: Case, generator: Generator) -> list[BodyCycle]:
     """Both motions, with one error of everything stated for all runs."""
     errors = {name: float(generator.standard_normal()) for name in ACTING}
     restoring = RESTORING if case.plane is Plane.VERTICAL else None
@@ -100,7 +100,7 @@ def _campaign(case: Case, generator: Generator) -> list[Cycle]:
 
 def _read(
     point: SetPoint, made: Made, name: str, errors: Mapping[str, float], generator: Generator
-) -> Cycle:
+) -> BodyCycle:
     struts = wrong(made_struts(point, made, name), STATED, errors)
     return taken(scattered(struts, generator), made)
 

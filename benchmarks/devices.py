@@ -14,7 +14,7 @@ from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -80,7 +80,7 @@ def _turning(rate_hz: float) -> Iterator[tuple[Rig, World]]:
     """Open a rig whose shaft turns at speed, axes homed where they stand."""
     can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     configuration = read_rig(tables(rate_hz), DRIVERS)
-    around = Surroundings(carriage_speed_m_s=1.2)
+    around = PlantConditions(carriage_speed_m_s=1.2)
     world = World(configuration, Scene(vertical_rig(), around, _ECCENTRICITY_M, _PHASE_RAD))
     with (
         running(_NAME, world),

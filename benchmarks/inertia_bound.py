@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.inertia.damped import Mode, fit_damped
+from analysis.inertia.damped import DampedMode, fit_damped
 from benchmarks.inertia_campaigns import series_of
 from hardware.description.arrays import FloatArray
 from sim.pendulum.effects import make_effect
 from sim.pendulum.simulate import simulate_swing
 
 
-def period_bounds(time_s: FloatArray, modes: Sequence[Mode], noise_rms: float) -> FloatArray:
+def period_bounds(time_s: FloatArray, modes: Sequence[DampedMode], noise_rms: float) -> FloatArray:
     """Return the least standard deviation of each period, shape ``(modes,)``.
 
     By the Fisher information of all modes' periods, decays, amplitudes and phases and an offset, in
@@ -48,7 +48,7 @@ def bound_ratio_two(records: int, seed: int) -> float:
     Yaw of 4.39 s and sway of 3.83 s over 160 s at 32 Hz, so that the starts come from a thinned
     record; the noise is a hundredth of the larger.
     """
-    truth = (Mode(4.39, 0.0048, 0.02, 0.3), Mode(3.83, 0.0081, 0.01, -1.0))
+    truth = (DampedMode(4.39, 0.0048, 0.02, 0.3), DampedMode(3.83, 0.0081, 0.01, -1.0))
     t = np.arange(0.0, 160.0, 1.0 / 32.0)
     clean = np.zeros(t.size)
     for one in truth:
@@ -60,7 +60,7 @@ def bound_ratio_two(records: int, seed: int) -> float:
 def _ratio(
     time_s: FloatArray,
     clean: FloatArray,
-    truth: Sequence[Mode],
+    truth: Sequence[DampedMode],
     noise_rms: float,
     records: int,
     seed: int,

@@ -25,7 +25,7 @@ from pmm.recorder.live_path import LivePath, header_channels
 from pmm.recorder.run_recorder import Outcome as RunOutcome
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -63,7 +63,7 @@ def record(pace: Pace, folder: Path, seconds: float) -> None:
     can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     described = tables(_NAME)
     configuration = read_rig(described, DRIVERS)
-    world = World(configuration, Scene(vertical_rig(), Surroundings(1.2), 0.02, 0.5))
+    world = World(configuration, Scene(vertical_rig(), PlantConditions(1.2), 0.02, 0.5))
     taps: list[Any] = []
     with (
         running(_NAME, world),

@@ -14,7 +14,7 @@ import numpy as np
 
 from analysis.readers import read_recording
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from benchmarks.peak import peak_bytes
 from benchmarks.signals import Truth, draw_coefficients, recorded
 from hardware.description.arrays import FloatArray
@@ -59,7 +59,7 @@ def main(source: str, where: str) -> None:
     recording = generated(float(where)) if source == "generated" else read_recording(where)
     if source == "loaded":
         recording = replace(recording, samples=recording.samples[:, : recording.sample_count])
-    analysis = analyse(recording, settings=Settings())
+    analysis = analyse(recording, settings=ResolverSettings())
     found = {
         "before": before,
         "peak": peak_bytes(),

@@ -28,7 +28,7 @@ from pmm.run.recording import Recording
 from pmm.run.run_control import RunControl, View
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -70,7 +70,7 @@ def _control(rate_hz: float, periods: int, folder: Path, view: View) -> Iterator
     whole = tables(rate_hz)
     whole["bus"] = {**whole["bus"], "channel": _NAME}
     configuration = read_rig(whole, DRIVERS)
-    around = Surroundings(carriage_speed_m_s=1.2)
+    around = PlantConditions(carriage_speed_m_s=1.2)
     world = World(configuration, Scene(vertical_rig(), around, _E_M, _PHASE_RAD))
     point = SetPoint(_FREQUENCY_HZ, _E_M, _PHASE_RAD)
     run = RunPlan(

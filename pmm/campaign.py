@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from analysis.readers import ColumnMap
-from analysis.resolver.analyse import Settings
+from analysis.resolver.analyse import ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
@@ -19,7 +19,7 @@ from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.model_uncertainty import ModelUncertainty
 from sim.acquisition.channels import Acquisition
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
 from sim.drive.prescribed import DriveSettings
 from sim.effects.catalogue import build_from
@@ -232,7 +232,7 @@ class Campaign:
     drive: DriveSettings = field(default_factory=DriveSettings)
     dynamometers: Dynamometers = field(default_factory=Dynamometers)
     acquisition: Acquisition = field(default_factory=Acquisition)
-    photocell: Photocell | None = field(default_factory=Photocell)
+    photocell: PhotocellStage | None = field(default_factory=PhotocellStage)
     simulation: Simulation = field(default_factory=Simulation)
     radiation: RadiationFile | None = None
     carriage: CarriageSettings = field(default_factory=CarriageSettings)
@@ -244,7 +244,7 @@ class Campaign:
     surge: SurgeForces | None = None
     effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
-    analysis: Settings = field(default_factory=Settings)
+    analysis: ResolverSettings = field(default_factory=ResolverSettings)
     columns: ColumnMap | None = None
     model_uncertainty: ModelUncertainty | None = None
     runs: tuple[Run, ...] = ()

@@ -10,12 +10,12 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
 from sim.drive.carriage import Carriage, CarriageSettings
 from sim.drive.loaded import LoadedDrive
 from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.acting import Acting
 from sim.model.hull import Hull, HullCoefficients
@@ -71,7 +71,7 @@ class SimulatedRig:
     flow_factor: float = 1.0
     dynamometers: Dynamometers = field(default_factory=Dynamometers)
     acquisition: Acquisition = field(default_factory=Acquisition)
-    photocell: Photocell | None = field(default_factory=Photocell)
+    photocell: PhotocellStage | None = field(default_factory=PhotocellStage)
     surge: SurgeForces | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
@@ -162,7 +162,7 @@ class SimulatedRig:
             self,
             dynamometers=Dynamometers(),
             acquisition=replace(self.acquisition, **perfect),
-            photocell=None if self.photocell is None else Photocell(),
+            photocell=None if self.photocell is None else PhotocellStage(),
         )
 
 
@@ -178,7 +178,7 @@ WATER_HORIZONTAL = HullCoefficients(
     added_mass=((62.0, 2.0), (2.0, 18.0)),
     damping=((120.0, -15.0), (40.0, 35.0)),
 )
-_DYNAMOMETERS = Dynamometers(Gauge(full_scale_n=500.0), Gauge(full_scale_n=500.0))
+_DYNAMOMETERS = Dynamometers(Dynamometer(full_scale_n=500.0), Dynamometer(full_scale_n=500.0))
 
 
 def vertical_rig() -> SimulatedRig:

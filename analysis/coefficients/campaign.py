@@ -16,13 +16,13 @@ from analysis.coefficients.campaign_checks import consistency
 from analysis.coefficients.campaign_plan import Group, Request, check_campaign, plan
 from analysis.coefficients.campaign_records import (
     ZERO_FREQUENCY,
-    Entry,
+    CoefficientEntry,
     Missing,
     OtherArrangement,
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
-from analysis.coefficients.campaign_solve import Block, solve_group
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
@@ -39,12 +39,12 @@ class _Solver:
 
     request: Request
 
-    def __call__(self, group: Group) -> Block:
+    def __call__(self, group: Group) -> GroupCoefficients:
         return solve_group(group, self.request)
 
 
 def campaign_coefficients(
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     request: Request = Request(),  # noqa: B008 - frozen
     *,
     mapped: Map = map,
@@ -74,7 +74,10 @@ def campaign_coefficients(
 
 
 def assemble(
-    blocks: Sequence[Block], cycles: Sequence[Cycle], known: Repeatability, request: Request
+    blocks: Sequence[GroupCoefficients],
+    cycles: Sequence[BodyCycle],
+    known: Repeatability,
+    request: Request,
 ) -> CampaignCoefficients:
     """Put the groups' coefficients together, with all that only the whole campaign tells.
 
@@ -117,8 +120,8 @@ def assemble(
 def _others(
     found: CampaignCoefficients,
     whole: CampaignCoefficients,
-    blocks: Sequence[Block],
-    cycles: Sequence[Cycle],
+    blocks: Sequence[GroupCoefficients],
+    cycles: Sequence[BodyCycle],
 ) -> Iterator[OtherArrangement]:
     """Yield what each other arrangement says, where all groups know what was read.
 
@@ -141,7 +144,9 @@ def _others(
         )
 
 
-def _still_missing(blocks: Sequence[Block], entries: Sequence[Entry]) -> tuple[Missing, ...]:
+def _still_missing(
+    blocks: Sequence[GroupCoefficients], entries: Sequence[CoefficientEntry]
+) -> tuple[Missing, ...]:
     """What no group gave; what another group did give is not missing."""
     names = {entry.name for entry in entries}
     every = dict.fromkeys(missing for block in blocks for missing in block.missing)
@@ -201,7 +206,7 @@ def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
     )
 
 
-def _at_zero(found: CampaignCoefficients, rows: Sequence[int]) -> Entry:
+def _at_zero(found: CampaignCoefficients, rows: Sequence[int]) -> CoefficientEntry:
     several = [found.entries[k] for k in rows]
     return replace(
         several[0],

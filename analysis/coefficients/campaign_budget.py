@@ -44,7 +44,7 @@ _DIGIT = 0.1
 
 
 @dataclass(frozen=True)
-class Line:
+class BudgetLine:
     """What one kind of input adds.
 
     Attributes
@@ -84,7 +84,7 @@ class CoefficientBudget:
     degrees_of_freedom: float
     coverage_factor: float
     half_width: float
-    lines: tuple[Line, ...]
+    lines: tuple[BudgetLine, ...]
     digits: str
 
 
@@ -114,7 +114,7 @@ def correlation(found: CampaignCoefficients, first: int, second: int) -> float:
     return float(covariance[0, 1]) / spread if spread else 0.0
 
 
-def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[Line, ...]:
+def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
     variances: dict[str, float] = {}
     freedom: dict[str, float] = {}
     parts = found.uncertain.variances()[:, row]
@@ -124,7 +124,7 @@ def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[Line, 
             variances[source] = variances.get(source, 0.0) + float(part)
             freedom[source] = min(freedom.get(source, math.inf), one.degrees_of_freedom)
     lines = [
-        Line(source, math.sqrt(part), part / spread**2, freedom[source])
+        BudgetLine(source, math.sqrt(part), part / spread**2, freedom[source])
         for source, part in variances.items()
     ]
     return tuple(sorted(lines, key=lambda line: -line.share))

@@ -12,11 +12,11 @@ from analysis.coefficients.campaign_records import (
     HIGHER_ORDER,
     LINEAR,
     ZERO_FREQUENCY,
-    Check,
-    Entry,
+    CoefficientEntry,
+    ConsistencyCheck,
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
+from analysis.coefficients.cycle import LOADS, MOTIONS, BodyCycle, at_order
 from analysis.coefficients.zero_frequency import extrapolate
 from analysis.motion import mass_matrix, weight_matrix
 from analysis.uncertainty import UncertainValues, stacked
@@ -31,7 +31,9 @@ _PURE = 1e-2
 _NAMED = 2  # runs that a check names
 
 
-def consistency(found: CampaignCoefficients, cycles: Sequence[Cycle]) -> tuple[Check, ...]:
+def consistency(
+    found: CampaignCoefficients, cycles: Sequence[BodyCycle]
+) -> tuple[ConsistencyCheck, ...]:
     """Return all checks that the campaign allows."""
     pairs = [*_two_tests(found), *_static(found), *_single(found)]
     several = [_compared(found, *pair) for pair in pairs] + restoring_pairs(cycles)
@@ -49,7 +51,7 @@ class Pair:
     both: UncertainValues
 
 
-def checked(pairs: Sequence[Pair], level: float) -> tuple[Check, ...]:
+def checked(pairs: Sequence[Pair], level: float) -> tuple[ConsistencyCheck, ...]:
     """Hold the first of each pair against the second.
 
     The intervals are so wide that with the probability ``level`` no check of a good campaign fails:
@@ -109,7 +111,7 @@ def _compared(found: CampaignCoefficients, kind: str, first: int, second: int) -
     return Pair(kind, one.name, one.unit, texts, both)
 
 
-def _check(pair: Pair, level: float) -> Check:
+def _check(pair: Pair, level: float) -> ConsistencyCheck:
     """Hold the first of two values against the second."""
     name, unit, texts, both = pair.name, pair.unit, pair.texts, pair.both
     difference = both.mapped(np.array([[1.0, -1.0]]))
@@ -123,7 +125,7 @@ def _check(pair: Pair, level: float) -> Check:
         f"{name} from {texts[0]} is {both.values[0]:.5g}, from {texts[1]} {both.values[1]:.5g} "
         f"{unit}: they {words} ({apart:.3g} +- {half:.3g})"
     )
-    return Check(
+    return ConsistencyCheck(
         pair.kind,
         name,
         unit,
@@ -138,13 +140,13 @@ def _check(pair: Pair, level: float) -> Check:
     )
 
 
-def _where(entry: Entry) -> str:
+def _where(entry: CoefficientEntry) -> str:
     more = len(entry.runs) - _NAMED
     names = ", ".join(entry.runs[:_NAMED]) + (f" and {more} more" if more > 0 else "")
     return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"
 
 
-def restoring_pairs(cycles: Sequence[Cycle]) -> list[Pair]:
+def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
     """Return the measured restoring beside the hydrostatic one, from pure motions at rest.
 
     The load in phase with the motion is ``C + G - omega^2 (M + A)``; the model's part is taken off,
@@ -162,14 +164,14 @@ def restoring_pairs(cycles: Sequence[Cycle]) -> list[Pair]:
     return found
 
 
-def _serves(cycle: Cycle, column: int) -> bool:
+def _serves(cycle: BodyCycle, column: int) -> bool:
     if cycle.frequency_hz == 0.0 or cycle.speed_m_s != 0.0 or cycle.body is None:
         return False
     size = np.abs(cycle.at_struts)
     return bool(size[1 - column] <= _PURE * size[column])
 
 
-def _restoring(cycles: Sequence[Cycle], row: int, column: int) -> Pair:
+def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair:
     name = f"C{'35'[row]}{'35'[column]}"
     stiffness = stacked([_stiffness(cycle, row, column) for cycle in cycles])
     intercept = extrapolate(name, [cycle.frequency_hz for cycle in cycles], stiffness)
@@ -179,7 +181,7 @@ def _restoring(cycles: Sequence[Cycle], row: int, column: int) -> Pair:
     return Pair(RESTORING, name, ("N/m", "N", "N m")[row + column], texts, both)
 
 
-def _stiffness(cycle: Cycle, row: int, column: int) -> UncertainValues:
+def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
     """Load in phase with the motion, over it, less the model's inertia and weight.
 
     What the other motion asks for by hydrostatics is taken off: pitch by struts that slide heaves

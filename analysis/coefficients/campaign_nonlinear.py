@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_records import HIGHER_ORDER, FormChoice, Missing
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import (
     FIRST,
     HIGHER,
@@ -35,7 +35,7 @@ _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its t
 
 
 @dataclass(eq=False)
-class Found:
+class GroupFits:
     """What a group's runs gave, as far as it is found.
 
     Attributes
@@ -52,9 +52,9 @@ class Found:
     richest: list[CycleFit] = field(default_factory=list)
 
 
-def nonlinear_fits(cycles: Sequence[Cycle], request: Request) -> Found:
+def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the fits of force and moment in the form that the data support, and of X."""
-    found = Found()
+    found = GroupFits()
     fits, missing = found.fits, found.missing
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
@@ -110,9 +110,9 @@ def _left_out(fit: CycleFit, several: CycleFit) -> FloatArray:
 
 
 def _methods(
-    cycles: Sequence[Cycle], orders: tuple[int, ...]
-) -> list[tuple[str, Sequence[Cycle], tuple[int, ...]]]:
-    found: list[tuple[str, Sequence[Cycle], tuple[int, ...]]] = []
+    cycles: Sequence[BodyCycle], orders: tuple[int, ...]
+) -> list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]]:
+    found: list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]] = []
     if orders != FIRST:
         found.append((HIGHER_ORDER, cycles, orders))
     found.append((FIRST_HARMONICS, cycles, FIRST))
@@ -125,7 +125,7 @@ def _try_form(
     fits: list[tuple[str, CycleFit]],
     missing: list[Missing],
     method: str,
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     forms: Mapping[str, Sequence[str]],
     choice: FormChoice,
     orders: tuple[int, ...],
@@ -149,7 +149,7 @@ def _try(
     fits: list[tuple[str, CycleFit]],
     missing: list[Missing],
     method: str,
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
@@ -161,7 +161,7 @@ def _try(
         missing += [Missing(name, f"{method}: {error}") for name in names]
 
 
-def _motions(cycles: Sequence[Cycle]) -> tuple[str, bool]:
+def _motions(cycles: Sequence[BodyCycle]) -> tuple[str, bool]:
     """Return in what the runs move through the water, and whether any moves in both at once."""
     speeds = []
     for cycle, moved in zip(cycles, np.abs(moved_of(cycles, Form.MANOEUVRING)), strict=True):
@@ -176,8 +176,8 @@ def _motions(cycles: Sequence[Cycle]) -> tuple[str, bool]:
 
 
 def _surge(
-    found: Found,
-    cycles: Sequence[Cycle],
+    found: GroupFits,
+    cycles: Sequence[BodyCycle],
     motions: str,
     cross: bool,
     request: Request,
@@ -197,8 +197,8 @@ def _surge(
 
 
 def _try_surge(
-    found: Found,
-    cycles: Sequence[Cycle],
+    found: GroupFits,
+    cycles: Sequence[BodyCycle],
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
@@ -208,14 +208,14 @@ def _try_surge(
     found.richest.extend(fit for _, fit in found.fits[before:])
 
 
-def static_fits(cycles: Sequence[Cycle], request: Request) -> Found:
+def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
     Force and moment take the form that the data support, and what they misfit it by widens their
     intervals; X is the resistance and, where the model was turned, quadratic.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
-    found = Found()
+    found = GroupFits()
     fits, missing = found.fits, found.missing
     for row in (0, 1):
         forms = forms_of(plane, row, "v", steady=True)

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.determined import moved_of, told_apart
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium
 
@@ -39,7 +39,7 @@ class Request:
     """
 
     form: Form = Form.MANOEUVRING
-    stated: Stated = field(default_factory=Stated)
+    stated: StatedUncertainties = field(default_factory=StatedUncertainties)
     wanted: tuple[str, ...] = ()
     level: float = 0.95
     trials: int = 0
@@ -61,10 +61,10 @@ class Group:
     """Runs that are solved together."""
 
     kind: GroupKind
-    cycles: tuple[Cycle, ...]
+    cycles: tuple[BodyCycle, ...]
 
 
-def check_campaign(cycles: Sequence[Cycle]) -> None:
+def check_campaign(cycles: Sequence[BodyCycle]) -> None:
     """Refuse a campaign whose runs cannot be of one rig and model.
 
     Raises
@@ -84,7 +84,7 @@ def check_campaign(cycles: Sequence[Cycle]) -> None:
         raise ConfigurationError("the campaign cannot be solved: " + "; ".join(faults))
 
 
-def _other_rig(cycle: Cycle, first: Cycle) -> Iterator[str]:
+def _other_rig(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}; solve each plane alone"
     for name in ("half_spacing_m", "point_ahead_m"):
@@ -93,7 +93,7 @@ def _other_rig(cycle: Cycle, first: Cycle) -> Iterator[str]:
             yield f"{cycle.name} has {name} = {own:g}, {first.name} {other:g}"
 
 
-def _other_bodies(cycles: Sequence[Cycle]) -> Iterator[str]:
+def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:
     """Yield runs with another body than the rest, but for those known to be made with it."""
     bodies = [
         (one.name, one.body)
@@ -109,7 +109,7 @@ def _other_bodies(cycles: Sequence[Cycle]) -> Iterator[str]:
             )
 
 
-def _incomplete(cycle: Cycle) -> Iterator[str]:
+def _incomplete(cycle: BodyCycle) -> Iterator[str]:
     dry = any(flag.code == "dry_run_taken_off" for flag in cycle.flags)
     if cycle.medium is Medium.AIR:
         yield f"{cycle.name} was run in air; take it off as a dry run, or leave it out"
@@ -123,7 +123,7 @@ def _incomplete(cycle: Cycle) -> Iterator[str]:
         yield f"{cycle.name} has values that are not finite; leave the run out"
 
 
-def plan(cycles: Sequence[Cycle], request: Request) -> tuple[Group, ...]:
+def plan(cycles: Sequence[BodyCycle], request: Request) -> tuple[Group, ...]:
     """Return the groups: by speed, frequency and amplitude; all amplitudes together; static runs.
 
     Linear coefficients come from runs with one amplitude, so that what the amplitude does can be
@@ -143,7 +143,7 @@ def plan(cycles: Sequence[Cycle], request: Request) -> tuple[Group, ...]:
     return tuple(found)
 
 
-def _by_amplitude(cycles: Sequence[Cycle], request: Request) -> list[Group]:
+def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
     straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0]
     sizes = _classes([strut_amplitude(one) for one in straight], _SAME_AMPLITUDE, 0.0)
     classes = [
@@ -161,12 +161,12 @@ def _by_amplitude(cycles: Sequence[Cycle], request: Request) -> list[Group]:
     return found
 
 
-def _told(cycles: Sequence[Cycle], form: Form) -> tuple[int, ...]:
+def _told(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:
     """Which motions' coefficients these runs determine."""
     return told_apart(moved_of(cycles, form))
 
 
-def strut_amplitude(cycle: Cycle) -> float:
+def strut_amplitude(cycle: BodyCycle) -> float:
     """Return the larger amplitude of both struts, m."""
     way, arm = cycle.at_struts
     return float(max(abs(way + arm), abs(way - arm)))

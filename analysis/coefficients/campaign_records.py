@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Entry:
+class CoefficientEntry:
     """What one value of a campaign's table is, and what it holds for.
 
     Attributes
@@ -44,7 +44,7 @@ ZERO_FREQUENCY = "zero frequency"
 
 
 @dataclass(frozen=True)
-class Check:
+class ConsistencyCheck:
     """One quantity from two ways.
 
     Attributes

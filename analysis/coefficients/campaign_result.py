@@ -8,8 +8,8 @@ import numpy as np
 from analysis.coefficients.campaign_records import (
     HIGHER_ORDER,
     LINEAR,
-    Check,
-    Entry,
+    CoefficientEntry,
+    ConsistencyCheck,
     FormChoice,
     Missing,
     OtherArrangement,
@@ -77,11 +77,11 @@ class CampaignCoefficients:
     plane: Plane
     normalisation: str
     level: float
-    entries: tuple[Entry, ...]
+    entries: tuple[CoefficientEntry, ...]
     uncertain: UncertainValues
     trials: TrialColumns
     choices: tuple[FormChoice, ...] = ()
-    checks: tuple[Check, ...] = ()
+    checks: tuple[ConsistencyCheck, ...] = ()
     outliers: tuple[Outlier, ...] = ()
     arrangements: tuple[OtherArrangement, ...] = ()
     missing: tuple[Missing, ...] = ()
@@ -109,7 +109,7 @@ class CampaignCoefficients:
             Those wanted; all where ``None``.
         """
 
-        def wanted(entry: Entry) -> bool:
+        def wanted(entry: CoefficientEntry) -> bool:
             return (
                 name in (None, entry.name)
                 and method in (None, entry.method)
@@ -184,6 +184,6 @@ class CampaignCoefficients:
         )
 
 
-def _order(entry: Entry) -> tuple[float, float, float]:
+def _order(entry: CoefficientEntry) -> tuple[float, float, float]:
     frequency = -1.0 if np.isnan(entry.frequency_hz) else entry.frequency_hz
     return (entry.speed_m_s, frequency, entry.translation_amplitude_m)

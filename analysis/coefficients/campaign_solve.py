@@ -7,14 +7,14 @@ import numpy as np
 
 from analysis.coefficients.campaign_nonlinear import (
     SINGLE_RUN,
-    Found,
+    GroupFits,
     nonlinear_fits,
     static_fits,
 )
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
-from analysis.coefficients.campaign_records import LINEAR, Entry, FormChoice, Missing
+from analysis.coefficients.campaign_records import LINEAR, CoefficientEntry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear import lacking_places, linear_fit
@@ -25,7 +25,7 @@ from hardware.description.flags import Flag
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class GroupCoefficients:
     """Entries of one group, ``n`` of them.
 
     Attributes
@@ -34,7 +34,7 @@ class Block:
         What they would be under other arrangements of the rig; empty where that is not known.
     """
 
-    entries: tuple[Entry, ...]
+    entries: tuple[CoefficientEntry, ...]
     uncertain: UncertainValues
     trials: TrialColumns
     choices: tuple[FormChoice, ...] = ()
@@ -43,7 +43,7 @@ class Block:
     others: tuple[Otherwise, ...] = ()
 
 
-def solve_group(group: Group, request: Request) -> Block:
+def solve_group(group: Group, request: Request) -> GroupCoefficients:
     """Return what one group determines; what it cannot tell is named, not raised."""
     if group.kind is GroupKind.LINEAR:
         return _linear(group.cycles, request)
@@ -52,13 +52,15 @@ def solve_group(group: Group, request: Request) -> Block:
     return _fits_block(nonlinear_fits(group.cycles, request), group.cycles, request)
 
 
-def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
+def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     missing = tuple(Missing(*one) for one in lacking_places(cycles, request.form))
     try:
         found = linear_fit(cycles, request.form, request.stated)
     except DataError:
         others = otherwise(cycles, [], [])
-        return Block((), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others)
+        return GroupCoefficients(
+            (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others
+        )
     fit = found.fit
     entries = tuple(
         replace(
@@ -71,10 +73,14 @@ def _linear(cycles: Sequence[Cycle], request: Request) -> Block:
     )
     trials = _fits_trials([(LINEAR, fit)], request)
     others = otherwise(cycles, [fit], [])
-    return Block(entries, fit.uncertain, trials, missing=missing, flags=found.flags, others=others)
+    return GroupCoefficients(
+        entries, fit.uncertain, trials, missing=missing, flags=found.flags, others=others
+    )
 
 
-def _fits_block(found: Found, cycles: Sequence[Cycle], request: Request) -> Block:
+def _fits_block(
+    found: GroupFits, cycles: Sequence[BodyCycle], request: Request
+) -> GroupCoefficients:
     fits = found.fits
     entries = tuple(
         _fit_entry(method, fit, k) for method, fit in fits for k in range(len(fit.names))
@@ -83,7 +89,7 @@ def _fits_block(found: Found, cycles: Sequence[Cycle], request: Request) -> Bloc
     flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
     trials = _fits_trials(fits, request)
     others = otherwise(cycles, [fit for _, fit in fits], found.richest)
-    return Block(
+    return GroupCoefficients(
         entries, uncertain, trials, tuple(found.choices), tuple(found.missing), flags, others
     )
 
@@ -104,11 +110,11 @@ def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> Tria
     )
 
 
-def _fit_entry(method: str, fit: CycleFit, k: int) -> Entry:
+def _fit_entry(method: str, fit: CycleFit, k: int) -> CoefficientEntry:
     cycles = fit.problem.cycles
     moving = [cycle.motion for cycle in cycles if cycle.frequency_hz > 0.0]
     size = np.abs(np.stack(moving)).max(axis=0) if moving else np.zeros(2)
-    return Entry(
+    return CoefficientEntry(
         fit.names[k],
         fit.terms[k].unit,
         method,

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.campaign_records import Entry
+from analysis.coefficients.campaign_records import CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.terms import Term, term_of
 from analysis.uncertainty import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
@@ -23,7 +23,7 @@ System = Callable[[float], Normalisation]
 def without_dimensions(
     found: CampaignCoefficients,
     system: System,
-    stated: Stated = Stated(),  # noqa: B008 - frozen
+    stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
 ) -> CampaignCoefficients:
     """Return the campaign in a system without dimensions.
 
@@ -84,7 +84,7 @@ def common_name(systems: Sequence[Normalisation]) -> str:
     return re.sub(r"U = [^ ]+ m/s", "U = the carriage's", names[0]) if names else DIMENSIONAL
 
 
-def _term(found: CampaignCoefficients, entry: Entry) -> Term:
+def _term(found: CampaignCoefficients, entry: CoefficientEntry) -> Term:
     """Return a coefficient of either form as a term: ``a35`` is that of a rotation's rate."""
     try:
         return term_of(entry.name, found.plane)
@@ -94,11 +94,13 @@ def _term(found: CampaignCoefficients, entry: Entry) -> Term:
         return Term(place.row, (letter + "dot" if place.inertial else letter,))
 
 
-def _factor(found: CampaignCoefficients, entry: Entry, system: Normalisation) -> float:
+def _factor(found: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation) -> float:
     return system.term_factor(_term(found, entry))
 
 
-def _speed_power(found: CampaignCoefficients, entry: Entry, system: Normalisation) -> float:
+def _speed_power(
+    found: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
+) -> float:
     """Power of the speed in what the value is divided by."""
     term = _term(found, entry)
     return 2.0 - term.degree - term.rates if system.speed_m_s > 0.0 else 0.0

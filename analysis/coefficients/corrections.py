@@ -37,7 +37,7 @@ class Delay:
 
 
 @dataclass(frozen=True)
-class LowPass:
+class AmplifierFilter:
     """An amplifier's low-pass filter.
 
     Attributes

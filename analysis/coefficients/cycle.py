@@ -47,7 +47,7 @@ def _still() -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle:
+class BodyCycle:
     """Motion and loads of the model about the midpoint, at the harmonics 0 to ``orders``.
 
     The loads are gross, as the struts exerted them. What is known of them (the model's inertia and
@@ -175,7 +175,7 @@ class Cycle:
     def _insensitive(self) -> FloatArray:
         return np.zeros((2 * len(self.phasors.names), len(STATED)))
 
-    def without(self, body: Body | None = None, restoring: FloatArray | None = None) -> "Cycle":
+    def without(self, body: Body | None = None, restoring: FloatArray | None = None) -> "BodyCycle":
         """Return the cycle with what is to be taken off.
 
         Parameters
@@ -200,7 +200,7 @@ class Cycle:
             restoring=self.restoring if restoring is None else np.asarray(restoring),
         )
 
-    def without_dry(self, dry: "Cycle") -> "Cycle":
+    def without_dry(self, dry: "BodyCycle") -> "BodyCycle":
         """Return the cycle less the loads of a run in still air with the same motion.
 
         They are scaled by the ratio of the motions, and each harmonic is turned by its own multiple
@@ -239,7 +239,7 @@ class Cycle:
         phasors, flags = self.phasors.minus(taken), (*self.flags, flag)
         return replace(self, phasors=phasors, readings=readings, flags=flags)
 
-    def _check_dry(self, dry: "Cycle") -> None:
+    def _check_dry(self, dry: "BodyCycle") -> None:
         faults = []
         if dry.medium is not Medium.AIR:
             faults.append("it was run in water")
@@ -254,9 +254,9 @@ class Cycle:
                 f"{self.name}: {dry.name} cannot be its dry run: {'; '.join(faults)}"
             )
 
-    def about(self, ahead_m: float) -> "Cycle":
+    def about(self, ahead_m: float) -> "BodyCycle":
         """Return the cycle with its coefficients wanted about a point ahead of the midpoint."""
         return replace(self, point_ahead_m=ahead_m)
 
 
-__all__ = ["LOADS", "MOTIONS", "SURGE_FORCE", "Cycle", "at_order", "labels"]
+__all__ = ["LOADS", "MOTIONS", "SURGE_FORCE", "BodyCycle", "at_order", "labels"]

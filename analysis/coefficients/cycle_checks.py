@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.terms import SURGE, Term, name_of_term
 from hardware.description.errors import ConfigurationError, DataError
@@ -15,7 +15,7 @@ _STILL = 1e-3  # of a term's typical size: pure yaw has less of v v r than this 
 _APART = 1e-2  # least over greatest singular value of the terms' scaled columns
 
 
-def check_cycles(cycles: Sequence[Cycle], orders: tuple[int, ...]) -> None:
+def check_cycles(cycles: Sequence[BodyCycle], orders: tuple[int, ...]) -> None:
     """Refuse cycles that cannot be fitted together.
 
     Raises
@@ -40,7 +40,7 @@ def check_cycles(cycles: Sequence[Cycle], orders: tuple[int, ...]) -> None:
         raise ConfigurationError("the runs do not belong together: " + "; ".join(faults))
 
 
-def _unfit(cycle: Cycle, first: Cycle) -> Iterator[str]:
+def _unfit(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}"
     for name in ("half_spacing_m", "point_ahead_m"):

@@ -18,11 +18,11 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import STATED, Stated
+from analysis.coefficients.stated import STATED, StatedUncertainties
 from analysis.coefficients.terms import Term, name_of_term, term_of
 from analysis.uncertainty import Contribution, UncertainValues, added
 from hardware.description.arrays import FloatArray
@@ -57,7 +57,7 @@ class CycleFit:
     chi_square: FloatArray
     data: FloatArray
     problem: CycleProblem
-    stated: Stated
+    stated: StatedUncertainties
     more: tuple[Contribution, ...] = ()
 
     @cached_property
@@ -126,11 +126,11 @@ class CycleFit:
 
 
 def fit_cycles(
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     names: Sequence[str],
     orders: tuple[int, ...] = HIGHER,
     *,
-    stated: Stated = Stated(),  # noqa: B008 - frozen
+    stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
 ) -> CycleFit:
     """Return the coefficients of some terms.
 
@@ -158,13 +158,13 @@ def fit_cycles(
 
 
 def fit_terms(
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     terms: tuple[Term, ...],
     names: tuple[str, ...],
     orders: tuple[int, ...],
     *,
     form: Form = Form.MANOEUVRING,
-    stated: Stated = Stated(),  # noqa: B008 - frozen
+    stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
 ) -> CycleFit:
     """Return the coefficients of terms of a form's velocities, by the names that it gives them.
 
@@ -213,7 +213,7 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
     return np.asarray(1.0 / np.maximum(np.sqrt(shrunk), floor))
 
 
-def _variance(problem: CycleProblem, cycle: Cycle, slope: FloatArray) -> FloatArray:
+def _variance(problem: CycleProblem, cycle: BodyCycle, slope: FloatArray) -> FloatArray:
     """Of one load's residuals by a cycle's scatter: the mean of both parts of each order."""
     found = np.zeros(len(slope))
     for source in cycle.hull.phasors.sources:
@@ -227,7 +227,7 @@ def _trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray
     return np.asarray(trust * variance + (1.0 - trust) * variance.mean(axis=0))
 
 
-def _fewest(cycle: Cycle) -> float:
+def _fewest(cycle: BodyCycle) -> float:
     return min((source.degrees_of_freedom for source in cycle.phasors.sources), default=np.inf)
 
 

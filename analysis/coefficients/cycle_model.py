@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import interleaved
@@ -55,7 +55,7 @@ class CycleProblem:
         Which velocity goes with the translation: through the water, or across the tank.
     """
 
-    cycles: tuple[Cycle, ...]
+    cycles: tuple[BodyCycle, ...]
     terms: tuple[Term, ...]
     orders: tuple[int, ...]
     weights: FloatArray
@@ -68,7 +68,7 @@ class CycleProblem:
         return np.stack([self._filled(interleaved(one.hull.phasors.values), one)
                          for one in self.cycles])  # fmt: skip
 
-    def filled(self, cycle: Cycle, rows: FloatArray) -> FloatArray:
+    def filled(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
         """Return what stands by a cycle's own phasors as it stands by its numbers here.
 
         Parameters
@@ -79,18 +79,18 @@ class CycleProblem:
         """
         return self._filled(rows, cycle)
 
-    def _filled(self, rows: FloatArray, cycle: Cycle) -> FloatArray:
+    def _filled(self, rows: FloatArray, cycle: BodyCycle) -> FloatArray:
         shaped = rows.reshape(cycle.orders + 1, len(cycle.channels), 2, *rows.shape[1:])
         count = self.highest + 1
         found = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
         found[:, : len(cycle.channels)] = shaped[:count]
         return np.concatenate((found.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:]))))
 
-    def scatter(self, cycle: Cycle, source: Contribution) -> FloatArray:
+    def scatter(self, cycle: BodyCycle, source: Contribution) -> FloatArray:
         """Return how a cycle's numbers follow the deviates of a source, ``(numbers, k)``."""
         return self.filled(cycle, source.dense(2 * len(cycle.phasors.names)))
 
-    def sensitivity(self, cycle: Cycle) -> FloatArray:
+    def sensitivity(self, cycle: BodyCycle) -> FloatArray:
         """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""
         found = self.filled(cycle, cycle.hull.sensitivity)
         found[-1, STATED.index("frequency_relative")] = 1.0

@@ -44,7 +44,7 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
     problem = fit.problem
-    scatter = Scatter(count, generator)
+    scatter = DeviateDraws(count, generator)
     deviations = fit.stated.drawn(count, generator)
     ways = []
     for cycle in problem.cycles:
@@ -64,7 +64,7 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     return np.concatenate(found)
 
 
-class Scatter:
+class DeviateDraws:
     """Draws of the sources' deviates: runs that share a source get the same ones of it."""
 
     def __init__(self, count: int, generator: Generator) -> None:

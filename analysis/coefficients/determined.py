@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle, at_order
+from analysis.coefficients.cycle import BodyCycle, at_order
 from analysis.coefficients.names import Form, Place
 from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Plane
@@ -14,7 +14,7 @@ ALONE = 1e-2  # of the other motion: less may be left out
 _APART = 2e-2  # ratio of singular values above which two motions can be told apart
 
 
-def moved_of(cycles: Sequence[Cycle], form: Form) -> ComplexArray:
+def moved_of(cycles: Sequence[BodyCycle], form: Form) -> ComplexArray:
     """Return the fundamental's velocities of a form, the rotation's at the struts; (cycles, 2)."""
     found = []
     for one in cycles:
@@ -54,7 +54,7 @@ def motion_words(plane: Plane, form: Form) -> tuple[str, str]:
     return ("heave", "pitch") if plane is Plane.VERTICAL else ("sway", "yaw")
 
 
-def _phase_for(column: int, run: Cycle, form: Form) -> float:
+def _phase_for(column: int, run: BodyCycle, form: Form) -> float:
     """Strut phase of the pure motion that a column needs."""
     if column == 0:
         return 0.0
@@ -62,7 +62,9 @@ def _phase_for(column: int, run: Cycle, form: Form) -> float:
     return 2.0 * math.atan2(2.0 * math.pi * run.frequency_hz * run.half_spacing_m, speed)
 
 
-def lacking(name: str, place: Place, runs: Sequence[Cycle], form: Form, moved: ComplexArray) -> str:
+def lacking(
+    name: str, place: Place, runs: Sequence[BodyCycle], form: Form, moved: ComplexArray
+) -> str:
     """Return why a coefficient is not determined, and which run would do it."""
     words = motion_words(runs[0].plane, form)
     own, other = np.abs(moved[:, place.column]).max(), np.abs(moved[:, 1 - place.column]).max()
@@ -76,7 +78,7 @@ def lacking(name: str, place: Place, runs: Sequence[Cycle], form: Form, moved: C
     )
 
 
-def mixed(runs: Sequence[Cycle], form: Form, moved: ComplexArray) -> str:
+def mixed(runs: Sequence[BodyCycle], form: Form, moved: ComplexArray) -> str:
     """Return why nothing is determined, and which run would do it."""
     words = motion_words(runs[0].plane, form)
     share = np.abs(moved).max(axis=0)

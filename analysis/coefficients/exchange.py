@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from analysis.coefficients.campaign_records import (
-    Check,
-    Entry,
+    CoefficientEntry,
+    ConsistencyCheck,
     FormChoice,
     Missing,
     OtherArrangement,
@@ -38,7 +38,7 @@ SCHEMA = "pmm coefficients 1"
 
 _RECORDS: Mapping[str, type] = {
     "choices": FormChoice,
-    "checks": Check,
+    "checks": ConsistencyCheck,
     "outliers": Outlier,
     "arrangements": OtherArrangement,
     "missing": Missing,
@@ -101,8 +101,8 @@ def from_dict(content: Mapping[str, Any]) -> CampaignCoefficients:
         _numbers([row["trials_high"] for row in table]),
     )
     values = _numbers([row["value"] for row in table]).reshape(size)
-    names = [one.name for one in fields(Entry)]
-    entries = tuple(_record(Entry, {name: row[name] for name in names}) for row in table)
+    names = [one.name for one in fields(CoefficientEntry)]
+    entries = tuple(_record(CoefficientEntry, {name: row[name] for name in names}) for row in table)
     return _result(content, entries, UncertainValues(values, contributions), trials)
 
 
@@ -144,10 +144,11 @@ def from_dataset(dataset: "xr.Dataset") -> CampaignCoefficients:
     content: dict[str, Any] = {**attributes}
     for name in (*_RECORDS, "flags"):
         content[name] = json.loads(attributes[name])
-    by_name = {one.name: dataset[one.name].values.tolist() for one in fields(Entry)}
+    by_name = {one.name: dataset[one.name].values.tolist() for one in fields(CoefficientEntry)}
     by_name["runs"] = [json.loads(text) for text in by_name["runs"]]
     entries = tuple(
-        _record(Entry, {name: column[k] for name, column in by_name.items()}) for k in range(size)
+        _record(CoefficientEntry, {name: column[k] for name, column in by_name.items()})
+        for k in range(size)
     )
     names = ("trials_standard_uncertainty", "trials_low", "trials_high")
     trials = TrialColumns(int(attributes["trials"]), *(dataset[n].values for n in names))
@@ -167,7 +168,7 @@ def _head(result: CampaignCoefficients) -> dict[str, Any]:
 
 def _result(
     content: Mapping[str, Any],
-    entries: tuple[Entry, ...],
+    entries: tuple[CoefficientEntry, ...],
     uncertain: UncertainValues,
     trials: TrialColumns,
 ) -> CampaignCoefficients:

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from analysis.coefficients.campaign_records import FormChoice
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import HIGHER, CycleFit, fit_cycles
 from analysis.coefficients.terms import (
     LOAD_WORDS,
@@ -71,7 +71,7 @@ def forms_of(
 
 
 def choose_form(
-    cycles: Sequence[Cycle],
+    cycles: Sequence[BodyCycle],
     row: int,
     motions: str = "v",
     orders: tuple[int, ...] = HIGHER,

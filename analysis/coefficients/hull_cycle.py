@@ -19,7 +19,7 @@ from analysis.kinematics.averaged import CHANNELS, UNITS
 from analysis.kinematics.cycle import INSTANTS, harmonics, per_part, waves
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.linearised import by_parts, pointwise
-from analysis.kinematics.motion import Motion
+from analysis.kinematics.motion import MotionWaves
 from analysis.kinematics.rigid_body import inertia_terms
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -27,7 +27,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 if TYPE_CHECKING:
-    from analysis.coefficients.cycle import Cycle
+    from analysis.coefficients.cycle import BodyCycle
 
 _MOVING = 4
 """Channels of motion; those of the loads follow."""
@@ -72,7 +72,7 @@ def on_hull(
     Parameters
     ----------
     gross, sensitivity, channels
-        Of :class:`analysis.coefficients.cycle.Cycle`.
+        Of :class:`analysis.coefficients.cycle.BodyCycle`.
     """
     count = len(gross.names) // len(channels)
     omega = 2.0 * math.pi * frequency_hz
@@ -115,7 +115,9 @@ def on_hull(
     )
 
 
-def parts_on_hull(gross: FloatArray, of_tare: FloatArray, cycles: Sequence["Cycle"]) -> FloatArray:
+def parts_on_hull(
+    gross: FloatArray, of_tare: FloatArray, cycles: Sequence["BodyCycle"]
+) -> FloatArray:
     """Return the interleaved parts of :func:`on_hull` alone, without slopes, of many runs.
 
     Parameters
@@ -180,7 +182,7 @@ def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArra
     """What inertia, weight and restoring ask of the struts: force, moment, surge force."""
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
     mass, ahead, below, turned, factor, drift = np.moveaxis(waves[..., 8:, :], -2, 0)
-    state = Motion(
+    state = MotionWaves(
         rotation,
         rotation,
         translation,

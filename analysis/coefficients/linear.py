@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_terms
 from analysis.coefficients.determined import (
     ALONE,
@@ -21,7 +21,7 @@ from analysis.coefficients.determined import (
     told_apart,
 )
 from analysis.coefficients.names import PLACES, Form, Place, name_of
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
@@ -53,7 +53,7 @@ class LinearFit:
     flags: tuple[Flag, ...]
 
 
-def linear_fit(cycles: Sequence[Cycle], form: Form, stated: Stated) -> LinearFit:
+def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertainties) -> LinearFit:
     """Return all linear coefficients that the runs determine.
 
     Raises
@@ -79,7 +79,7 @@ def linear_fit(cycles: Sequence[Cycle], form: Form, stated: Stated) -> LinearFit
     return LinearFit(fit, places, retained, misfit, flags)
 
 
-def lacking_places(cycles: Sequence[Cycle], form: Form) -> list[tuple[str, str]]:
+def lacking_places(cycles: Sequence[BodyCycle], form: Form) -> list[tuple[str, str]]:
     """Return the names of what runs do not tell, and which run would."""
     moved = moved_of(cycles, form)
     columns = told_apart(moved)
@@ -92,7 +92,7 @@ def lacking_places(cycles: Sequence[Cycle], form: Form) -> list[tuple[str, str]]
 
 
 def _retained(
-    cycles: Sequence[Cycle], moved: np.ndarray, places: Sequence[Place], values: FloatArray
+    cycles: Sequence[BodyCycle], moved: np.ndarray, places: Sequence[Place], values: FloatArray
 ) -> FloatArray:
     """Return each coefficient's part of the load over the largest it is left from, ``(n,)``."""
     found = []
@@ -134,7 +134,7 @@ def _flags(
 
 
 def _neglected(
-    cycles: Sequence[Cycle], form: Form, columns: tuple[int, ...], moved: np.ndarray
+    cycles: Sequence[BodyCycle], form: Form, columns: tuple[int, ...], moved: np.ndarray
 ) -> tuple[Flag, ...]:
     if len(columns) == 2:
         return ()

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.body_axes import parts_of_struts
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.hull_cycle import parts_on_hull
 from analysis.coefficients.phasors import interleaved
@@ -59,7 +59,7 @@ def alternatives(given: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
 
 
 def otherwise(
-    cycles: Sequence[Cycle], fits: Sequence[CycleFit], judged: Sequence[CycleFit]
+    cycles: Sequence[BodyCycle], fits: Sequence[CycleFit], judged: Sequence[CycleFit]
 ) -> tuple[Otherwise, ...]:
     """Return fits under each alternative; none where a run's readings are not known.
 
@@ -85,9 +85,9 @@ def otherwise(
     )
 
 
-def _parts(cycles: Sequence[Cycle], ways: Sequence[Arrangement]) -> dict[str, FloatArray]:
+def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str, FloatArray]:
     """Return the hull's interleaved parts by run and arrangement, ``(2 n, ways)`` of each run."""
-    by_shape: dict[tuple[int, ...], list[Cycle]] = {}
+    by_shape: dict[tuple[int, ...], list[BodyCycle]] = {}
     for one in cycles:
         by_shape.setdefault(one.readings.shape, []).append(one)
     found: dict[str, FloatArray] = {}
@@ -98,7 +98,7 @@ def _parts(cycles: Sequence[Cycle], ways: Sequence[Arrangement]) -> dict[str, Fl
     return found
 
 
-def _gross(cycles: Sequence[Cycle], way: Arrangement) -> tuple[FloatArray, FloatArray]:
+def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, FloatArray]:
     """Return gross parts and ``of_tare``; NaN where the alternative does not let them be had."""
     speed, drift = np.array([[one.speed_m_s, one.drift_rad] for one in cycles]).T[..., None]
     own = np.stack([interleaved(one.phasors.values) for one in cycles])

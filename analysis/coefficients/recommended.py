@@ -15,7 +15,12 @@ from analysis.coefficients.campaign_nonlinear import (
     STATIC_DRIFT,
     SURGE_FORCES,
 )
-from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY, Entry
+from analysis.coefficients.campaign_records import (
+    HIGHER_ORDER,
+    LINEAR,
+    ZERO_FREQUENCY,
+    CoefficientEntry,
+)
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import LINEAR_FORM
 from analysis.coefficients.names import PLACES, Form, name_of
@@ -84,7 +89,7 @@ def table(found: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
         }
 
 
-def _own_frequency(entry: Entry) -> float:
+def _own_frequency(entry: CoefficientEntry) -> float:
     """Frequency that a coefficient belongs to; 0 for a derivative, which is of slow motion."""
     return round(entry.frequency_hz, 4) if _of_seakeeping(entry.name) else 0.0
 
@@ -93,7 +98,7 @@ def _of_seakeeping(name: str) -> bool:
     return name[0] in "ab"
 
 
-def _serves(found: CampaignCoefficients, entry: Entry, *, curved: bool) -> bool:
+def _serves(found: CampaignCoefficients, entry: CoefficientEntry, *, curved: bool) -> bool:
     if entry.method not in _FIRST:
         return False
     if _of_seakeeping(entry.name):

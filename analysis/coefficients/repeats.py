@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.campaign_records import Outlier
-from analysis.coefficients.cycle import LOADS, Cycle, at_order
+from analysis.coefficients.cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.phasors import Phasors, parts_of
 from analysis.uncertainty import Contribution, student_factor
 from hardware.description.arrays import ComplexArray, FloatArray
@@ -23,7 +23,7 @@ _CHANCE = 0.01  # that any run of a good campaign is named
 
 
 @dataclass(frozen=True, eq=False)
-class Kind:
+class RepeatedMotion:
     """Repeats of one motion.
 
     Attributes
@@ -59,10 +59,10 @@ class Repeatability:
 
     relative: FloatArray
     degrees_of_freedom: float
-    kinds: tuple[Kind, ...]
+    kinds: tuple[RepeatedMotion, ...]
 
 
-def repeatability(cycles: Sequence[Cycle]) -> Repeatability:
+def repeatability(cycles: Sequence[BodyCycle]) -> Repeatability:
     """Return what repeating adds to the scatter of force and moment."""
     kinds = tuple(_kind(group) for group in _groups(cycles) if len(group) > 1)
     freedom = sum(len(kind.runs) - 1 for kind in kinds)
@@ -78,7 +78,7 @@ def repeatability(cycles: Sequence[Cycle]) -> Repeatability:
     return Repeatability(np.sqrt(excess), float(freedom), kinds)
 
 
-def with_repeats(cycle: Cycle, found: Repeatability) -> Cycle:
+def with_repeats(cycle: BodyCycle, found: Repeatability) -> BodyCycle:
     """Return the cycle with what repeating adds as a source of its own."""
     if not (found.relative > 0.0).any():
         return cycle
@@ -109,7 +109,7 @@ def outliers(found: Repeatability) -> tuple[Outlier, ...]:
     return tuple(named)
 
 
-def _outlier(kind: Kind, k: int, load: str, ratio: float, limit: float) -> Outlier:
+def _outlier(kind: RepeatedMotion, k: int, load: str, ratio: float, limit: float) -> Outlier:
     others = tuple(run for run in kind.runs if run != kind.runs[k])
     message = (
         f"{kind.runs[k]}: its {load} stands {ratio:.3g} standard uncertainties from the mean of "
@@ -119,7 +119,9 @@ def _outlier(kind: Kind, k: int, load: str, ratio: float, limit: float) -> Outli
     return Outlier(kind.runs[k], others, load, ratio, limit, message)
 
 
-def _distance(kinds: Sequence[Kind], kind: Kind, k: int, row: int) -> tuple[float, float]:
+def _distance(
+    kinds: Sequence[RepeatedMotion], kind: RepeatedMotion, k: int, row: int
+) -> tuple[float, float]:
     """Distance of one run from the others' mean over its scale, and that scale's freedom."""
     others = np.delete(kind.loads[:, row], k)
     apart = kind.loads[k, row] - others.mean()
@@ -140,8 +142,8 @@ def _limit(freedom: float, tests: int) -> float:
     return float(student_factor(freedom, 1.0 - _CHANCE / tests))
 
 
-def _groups(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
-    groups: list[list[Cycle]] = []
+def _groups(cycles: Sequence[BodyCycle]) -> list[list[BodyCycle]]:
+    groups: list[list[BodyCycle]] = []
     for cycle in (one for one in cycles if one.frequency_hz > 0.0):
         for group in groups:
             if _same(group[0], cycle):
@@ -152,12 +154,12 @@ def _groups(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
     return groups
 
 
-def _ratio(first: Cycle, other: Cycle) -> complex:
+def _ratio(first: BodyCycle, other: BodyCycle) -> complex:
     own, found = first.at_struts, other.at_struts
     return complex(np.vdot(own, found) / np.vdot(own, own))
 
 
-def _same(first: Cycle, other: Cycle) -> bool:
+def _same(first: BodyCycle, other: BodyCycle) -> bool:
     if abs(other.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
         return False
     if abs(other.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
@@ -170,19 +172,19 @@ def _same(first: Cycle, other: Cycle) -> bool:
     return bool(alike and left < _SAME_MOTION * np.abs(first.at_struts).max())
 
 
-def _size(cycle: Cycle) -> FloatArray:
+def _size(cycle: BodyCycle) -> FloatArray:
     """Largest part of each load at the fundamental: measured, or what is taken off."""
     return np.asarray(np.maximum(np.abs(cycle.loads), cycle.taken.max(axis=0)) + 1e-300)
 
 
-def _kind(cycles: Sequence[Cycle]) -> Kind:
+def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:
     loads, variance, freedom = [], [], math.inf
     for cycle in cycles:
         loads.append(cycle.loads / _ratio(cycles[0], cycle))
         variance.append(np.maximum(_variance(cycle.hull.phasors), _variance(cycle.phasors)))
         freedom = min([freedom, *(s.degrees_of_freedom for s in cycle.phasors.sources)])
     names = tuple(cycle.name for cycle in cycles)
-    return Kind(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
+    return RepeatedMotion(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
 
 
 def _variance(phasors: Phasors) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import LOADS, MOTIONS, Cycle, at_order
+from analysis.coefficients.cycle import LOADS, MOTIONS, BodyCycle, at_order
 from analysis.coefficients.phasors import Phasors
 from analysis.motion import mass_matrix, weight_matrix
 from hardware.description.arrays import FloatArray
@@ -92,7 +92,7 @@ _NAMES = {Plane.VERTICAL: ("heave", "pitch"), Plane.HORIZONTAL: ("sway", "yaw")}
 
 
 def restoring_of(
-    cycle: Cycle, body: Body | None, added_mass: FloatArray, hydrostatic: FloatArray
+    cycle: BodyCycle, body: Body | None, added_mass: FloatArray, hydrostatic: FloatArray
 ) -> Restoring:
     """Return the stiffness that a slow turn shows.
 
@@ -135,7 +135,7 @@ def restoring_of(
     )
 
 
-def track_of(one: Restoring, cycle: Cycle) -> Track:
+def track_of(one: Restoring, cycle: BodyCycle) -> Track:
     """Return force and moment over the displacement, as the harmonics 1 to 3 draw them."""
     theta = np.linspace(0.0, 2.0 * math.pi, _POINTS)
 
@@ -151,12 +151,12 @@ def track_of(one: Restoring, cycle: Cycle) -> Track:
                  drawn("moment"))  # fmt: skip
 
 
-def _first(cycle: Cycle) -> Phasors:
+def _first(cycle: BodyCycle) -> Phasors:
     chosen = cycle.phasors.select([at_order(name, 1) for name in _CHANNELS])
     return replace(chosen, names=_CHANNELS)
 
 
-def _moved(cycle: Cycle) -> int:
+def _moved(cycle: BodyCycle) -> int:
     """Return which motion it is: 0 for the translation, 1 for the rotation."""
     first = _first(cycle)
     sizes = np.array([abs(first["translation"]), cycle.half_spacing_m * abs(first["rotation"])])

@@ -9,7 +9,7 @@ from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedUncertainties:
     """Standard uncertainties of what all runs share; 0 where it is taken as exact.
 
     Attributes
@@ -87,4 +87,6 @@ class Stated:
         return found
 
 
-STATED = tuple(one.name for one in fields(Stated) if one.name != "inertia_degrees_of_freedom")
+STATED = tuple(
+    one.name for one in fields(StatedUncertainties) if one.name != "inertia_degrees_of_freedom"
+)

@@ -16,7 +16,7 @@ from analysis.coefficients.corrections import (
     calibration,
     response_factors,
 )
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.measured import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
 from analysis.coefficients.phasors import Phasors, joined
 from analysis.kinematics.geometry import Geometry
@@ -33,7 +33,7 @@ from hardware.description.setpoint import SetPoint
 
 @dataclass(frozen=True, eq=False)
 class StrutCycle:
-    """All harmonics of the struts of one run, as they were read; phasors as in :class:`Cycle`."""
+    """All harmonics of the struts of one run as read; phasors as in :class:`BodyCycle`."""
 
     name: str
     oscillator: Oscillator
@@ -91,7 +91,7 @@ class StrutCycle:
         """Return how the run's rig stands."""
         return Geometry.of(self.oscillator, self.set_point.carriage_speed_m_s, drift_rad)
 
-    def model(self, *, drift_rad: float = 0.0) -> Cycle:
+    def model(self, *, drift_rad: float = 0.0) -> BodyCycle:
         """Return motion and loads of the model about the midpoint between the struts.
 
         Raises
@@ -106,7 +106,7 @@ class StrutCycle:
         ordered = self.phasors.select(labels(inputs, self.orders))
         asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
         found = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
-        return Cycle(
+        return BodyCycle(
             self.name,
             oscillator.plane,
             oscillator.half_spacing_m,

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analysis.coefficients.cycle import SURGE_FORCE, Cycle, at_order
+from analysis.coefficients.cycle import SURGE_FORCE, BodyCycle, at_order
 from analysis.uncertainty import student_factor
 from hardware.description.oscillator import Plane
 
@@ -50,7 +50,7 @@ class Tow:
         return float(student_factor(self.degrees_of_freedom, _LEVEL)) * standard_uncertainty
 
 
-def tow_of(kind: str, cycle: Cycle) -> Tow:
+def tow_of(kind: str, cycle: BodyCycle) -> Tow:
     """Return the loads of a tow whose zeros are taken off."""
     rows = ["force", "moment", *([SURGE_FORCE] if cycle.has_surge else [])]
     means = cycle.phasors.select([at_order(name, 0) for name in rows])

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.cycle import LOADS, SURGE_FORCE, Cycle, at_order, labels
+from analysis.coefficients.cycle import LOADS, SURGE_FORCE, BodyCycle, at_order, labels
 from analysis.coefficients.phasors import Phasors
 from analysis.kinematics import averaged
 from analysis.kinematics.averaged import CHANNELS
@@ -36,7 +36,7 @@ AHEAD_CHANNEL: Final = CHANNELS[2]
 
 
 @dataclass(frozen=True)
-class Description:
+class SimmanDescription:
     """What stands beside the numbers; ``None`` where it is not known.
 
     Attributes
@@ -81,14 +81,16 @@ class Deliverables:
     frequency_hz: float
     speed_m_s: float
     drift_rad: float
-    description: Description
+    description: SimmanDescription
     columns: Mapping[str, FloatArray]
     mean: Mapping[str, float]
     sine: Mapping[str, FloatArray]
     cosine: Mapping[str, FloatArray]
 
 
-def deliverables_of(cycle: Cycle, description: Description, samples: int = SAMPLES) -> Deliverables:
+def deliverables_of(
+    cycle: BodyCycle, description: SimmanDescription, samples: int = SAMPLES
+) -> Deliverables:
     """Return a run's averaged cycle and Fourier coefficients.
 
     Raises
@@ -116,7 +118,7 @@ def deliverables_of(cycle: Cycle, description: Description, samples: int = SAMPL
     )
 
 
-def _all_phasors(cycle: Cycle) -> dict[str, ComplexArray]:
+def _all_phasors(cycle: BodyCycle) -> dict[str, ComplexArray]:
     """Loads, motion, velocities through the water and accelerations by name, order 0 real."""
     own = {name: _rows(cycle, name) for name in cycle.channels}
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
@@ -129,12 +131,12 @@ def _all_phasors(cycle: Cycle) -> dict[str, ComplexArray]:
     return found
 
 
-def _rows(cycle: Cycle, name: str) -> ComplexArray:
+def _rows(cycle: BodyCycle, name: str) -> ComplexArray:
     places = [cycle.phasors.index(at_order(name, n)) for n in range(cycle.orders + 1)]
     return np.array(cycle.phasors.values[places])
 
 
-def _ahead(cycle: Cycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+def _ahead(cycle: BodyCycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """Return x, u and du/dt: x of the carriage, the others along the model's own axis."""
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
     own, samples = _rows(cycle, AHEAD_CHANNEL), len(columns["t"])
@@ -181,7 +183,7 @@ def _phasor(one: Deliverables, name: str, order: int) -> complex:
     return complex(one.sine[name][order - 1], one.cosine[name][order - 1])
 
 
-def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> Cycle:
+def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> BodyCycle:
     """Return deliverables as a cycle, so that another tank's runs give coefficients too.
 
     Parameters
@@ -206,7 +208,7 @@ def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> Cycle:
     values = np.stack([rows[channel] for channel in channels], axis=-1).ravel()
     units = averaged.UNITS[: len(channels)] * (orders + 1)
     phasors = Phasors(labels(channels, orders), units, values)
-    return Cycle(
+    return BodyCycle(
         one.description.run,
         one.plane,
         half_spacing_m,

@@ -14,7 +14,7 @@ from analysis.exchange.simman import (
     NAMES,
     UNITS,
     Deliverables,
-    Description,
+    SimmanDescription,
     fourier,
 )
 from hardware.description.arrays import FloatArray
@@ -170,9 +170,9 @@ def _number(folder: Path, said: Mapping[str, str], key: str) -> float:
         ) from None
 
 
-def _description(folder: Path, said: Mapping[str, str]) -> Description:
+def _description(folder: Path, said: Mapping[str, str]) -> SimmanDescription:
     given: dict[str, Any] = {"run": said.get("run", folder.name)}
-    for item in fields(Description):
+    for item in fields(SimmanDescription):
         if item.name not in said or item.name == "run":
             continue
         if item.name == "campaign":
@@ -181,4 +181,4 @@ def _description(folder: Path, said: Mapping[str, str]) -> Description:
             given[item.name] = int(_number(folder, said, item.name))
         else:
             given[item.name] = _number(folder, said, item.name)
-    return Description(**given)
+    return SimmanDescription(**given)

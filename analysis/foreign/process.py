@@ -14,7 +14,7 @@ from typing import IO, Any, Final, cast
 import numpy as np
 
 from analysis.foreign.found import LONGEST_ANSWER, ForeignColumns
-from analysis.limits import TIME_SETTING, Limits, limits
+from analysis.limits import TIME_SETTING, ReadingLimits, limits
 from hardware.description.errors import DataError
 
 # -P: no module of the folder that the user happens to be in is taken for one of ours.
@@ -112,7 +112,7 @@ class _Child:
             pass
 
     def read(
-        self, path: Path, kind: str, reader: str, allowed: Limits
+        self, path: Path, kind: str, reader: str, allowed: ReadingLimits
     ) -> ForeignColumns | DataError:
         """Return what it found, or why the file is refused.
 
@@ -140,7 +140,7 @@ class _Child:
         self._was_late = True
         self._process.kill()
 
-    def _death(self, who: str, allowed: Limits) -> DataError:
+    def _death(self, who: str, allowed: ReadingLimits) -> DataError:
         """Say how it ended."""
         self._process.kill()
         status = self._process.wait()
@@ -164,7 +164,9 @@ class _Child:
         answer: dict[str, Any] = json.loads(found)
         return answer
 
-    def _columns(self, answer: dict[str, Any], allowed: Limits, where: str) -> ForeignColumns:
+    def _columns(
+        self, answer: dict[str, Any], allowed: ReadingLimits, where: str
+    ) -> ForeignColumns:
         columns = answer["columns"]
         longest = max((count for _, _, count in columns), default=0)
         allowed.check_rows(longest, len(columns), where)

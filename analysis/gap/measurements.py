@@ -18,14 +18,14 @@ from analysis.gap.fit import Problem
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Measurement
+from sim.effects.effect import FurtherMeasurement
 from sim.standing import Applied, check_weight, injection
 
 BESIDES: Final = (
-    (Measurement.REST, ""),
-    (Measurement.CHECK_WEIGHT, "aft"),
-    (Measurement.CHECK_WEIGHT, "fore"),
-    (Measurement.INJECTION, ""),
+    (FurtherMeasurement.REST, ""),
+    (FurtherMeasurement.CHECK_WEIGHT, "aft"),
+    (FurtherMeasurement.CHECK_WEIGHT, "fore"),
+    (FurtherMeasurement.INJECTION, ""),
 )
 REST_S: Final = 60.0
 INJECTED_HZ: Final = 10.0  # so fast that a low-pass shows in the size, and not as a delay does
@@ -35,12 +35,16 @@ _ORDERS: Final = (1, 2)  # of what is done to the rig: its size, and what a curv
 # How well that is known, of itself: weights of class M1 with their arm; a generator's sine. That
 # one is off alike at both amplifiers, but is taken as off at each by itself: what all observations
 # share are the rig's numbers, and this is none of them.
-_KNOWN: Final = {Measurement.CHECK_WEIGHT: 1e-4, Measurement.INJECTION: 1e-3}
+_KNOWN: Final = {FurtherMeasurement.CHECK_WEIGHT: 1e-4, FurtherMeasurement.INJECTION: 1e-3}
 _STANDS: Final = SetPoint(INJECTED_HZ, 0.0)
 
 
 def measured_besides(
-    problem: Problem, kind: Measurement, place: CampaignRun, force_n: float = 0.0, strut: str = ""
+    problem: Problem,
+    kind: FurtherMeasurement,
+    place: CampaignRun,
+    force_n: float = 0.0,
+    strut: str = "",
 ) -> GapRun | None:
     """Return the record of one measurement.
 
@@ -58,7 +62,9 @@ def measured_besides(
     near = min(problem.simulator.stack.turning, key=_far)
     parts = tuple(_parts(kind, {one.channel for one in near.observed.components}))
     loaded = [one.channel for one in parts if one.channel.endswith(strut)]
-    sampled = near.sample_rate_hz >= _SAMPLED * INJECTED_HZ or kind is not Measurement.INJECTION
+    sampled = (
+        near.sample_rate_hz >= _SAMPLED * INJECTED_HZ or kind is not FurtherMeasurement.INJECTION
+    )
     if not (loaded and sampled):
         return None
     applied = _applied(kind, force_n, strut)
@@ -82,19 +88,19 @@ def _mean(run: GapRun, channel: str) -> int:
     return run.observed.components.index(Component(channel, Part.MEAN))
 
 
-def _parts(kind: Measurement, recorded: set[str]) -> Iterator[Component]:
+def _parts(kind: FurtherMeasurement, recorded: set[str]) -> Iterator[Component]:
     for name in FORCES:
         if name in recorded:
             yield Component(name, Part.MEAN)
-            for order in () if kind is Measurement.REST else _ORDERS:
+            for order in () if kind is FurtherMeasurement.REST else _ORDERS:
                 yield Component(name, Part.IN_PHASE, order)
                 yield Component(name, Part.QUADRATURE, order)
 
 
-def _applied(kind: Measurement, force_n: float, strut: str) -> Applied | None:
-    if kind is Measurement.CHECK_WEIGHT:
+def _applied(kind: FurtherMeasurement, force_n: float, strut: str) -> Applied | None:
+    if kind is FurtherMeasurement.CHECK_WEIGHT:
         return check_weight(force_n, fore=strut == "fore")
-    return injection(force_n, INJECTED_HZ) if kind is Measurement.INJECTION else None
+    return injection(force_n, INJECTED_HZ) if kind is FurtherMeasurement.INJECTION else None
 
 
 def _size_n(applied: Applied | None, one: Component) -> float:

@@ -22,7 +22,7 @@ from analysis.resolver.analyse import Analysis, analyse
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
-from analysis.resolver.settings import Settings
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.errors import DataError
@@ -69,7 +69,7 @@ class Observed:
 def observe(
     recording: Recording,
     told: ReferenceChoice = ReferenceChoice(),
-    window: Settings = Settings(),
+    window: ResolverSettings = ResolverSettings(),
     *,
     wanted: Set[Part] | None = None,
 ) -> Observed:

@@ -31,7 +31,7 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Measurement
+from sim.effects.effect import FurtherMeasurement
 from sim.signals import FORCE_AFT, FORCE_FORE
 
 NO_GAP: Final = "no gap"
@@ -39,10 +39,10 @@ OSCILLATION: Final = "oscillation"
 _PRELOADED: Final = 6  # of the oscillations that can be made so, each with a dead weight
 _ABOVE: Final = 1.25  # of a dead weight over the force that would lift it
 _SAID: Final[Mapping[str, str]] = {
-    Measurement.REST: "a record at rest",
-    Measurement.CHECK_WEIGHT: "a check weight of {:g} N on the {} dynamometer",
-    Measurement.INJECTION: f"a sine of {{:g}} N at {INJECTED_HZ:g} Hz into all force amplifiers in "
-    "place of the bridges",
+    FurtherMeasurement.REST: "a record at rest",
+    FurtherMeasurement.CHECK_WEIGHT: "a check weight of {:g} N on the {} dynamometer",
+    FurtherMeasurement.INJECTION: f"a sine of {{:g}} N at {INJECTED_HZ:g} Hz into all force "
+    "amplifiers in place of the bridges",
 }
 _FREQUENCIES: Final = 3
 _RADII: Final = 2
@@ -63,7 +63,7 @@ class Choices:
     strut_phase_rad: tuple[float, ...] = (0.0, math.pi / 2.0, math.pi)
     carriage_speed_m_s: tuple[float, ...] = (0.0,)
     media: tuple[Medium, ...] = (Medium.WATER, Medium.AIR)
-    special: tuple[Measurement, ...] = tuple(Measurement)
+    special: tuple[FurtherMeasurement, ...] = tuple(FurtherMeasurement)
     force_limit_n: float = math.inf
 
 
@@ -128,7 +128,7 @@ def proposals(
     weighed = partial(_weighed, problem, leading, free=free, priors=priors)
     found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
-    if plays and Measurement.PRELOAD in choices.special:
+    if plays and FurtherMeasurement.PRELOAD in choices.special:
         bare = [one for one, _ in found]
         pressed = _preloaded(problem.simulator, bare, choices)
         found += weighed(tuple(islice(pressed, _PRELOADED)))
@@ -191,7 +191,7 @@ def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Ite
     force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
     for kind, strut in BESIDES:
         if kind in choices.special:
-            size_n = 0.0 if kind is Measurement.REST else force_n
+            size_n = 0.0 if kind is FurtherMeasurement.REST else force_n
             run = measured_besides(problem, kind, place, size_n, strut)
             if run is not None:
                 yield _Choice(kind, None, size_n, run, strut)

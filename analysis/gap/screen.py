@@ -15,27 +15,27 @@ from analysis.gap.fit import Problem
 from analysis.gap.where import left_by_step
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
-from sim.effects.effect import Effect, Trace
+from sim.effects.effect import DeviationTrace, Effect
 
 BEYOND: Final = 3.0  # standard deviations of a kind's chi-square
 _LONE: Final = 4.0  # sigma of a single component
-_PARTS: Final[Mapping[Trace, frozenset[Part]]] = {
-    Trace.STEADY: frozenset(STEADY_PARTS),
-    Trace.MEAN: frozenset({Part.MEAN}),
-    Trace.TREND: frozenset(TRENDS),
-    Trace.PULSES: frozenset({Part.PULSES}),
-    Trace.PERIODS: frozenset({Part.PERIOD_SCATTER}),
-    Trace.CYCLES: frozenset({Part.CYCLE_SCATTER}),
-    Trace.BESIDE: frozenset({Part.BETWEEN, Part.LINE}),
+_PARTS: Final[Mapping[DeviationTrace, frozenset[Part]]] = {
+    DeviationTrace.STEADY: frozenset(STEADY_PARTS),
+    DeviationTrace.MEAN: frozenset({Part.MEAN}),
+    DeviationTrace.TREND: frozenset(TRENDS),
+    DeviationTrace.PULSES: frozenset({Part.PULSES}),
+    DeviationTrace.PERIODS: frozenset({Part.PERIOD_SCATTER}),
+    DeviationTrace.CYCLES: frozenset({Part.CYCLE_SCATTER}),
+    DeviationTrace.BESIDE: frozenset({Part.BETWEEN, Part.LINE}),
 }
 # What a drive does, these do, and more of it than the forces show.
-_CHANNELS: Final[Mapping[Trace, frozenset[str]]] = {
-    Trace.MOTION: frozenset({SHAFT_ANGLE.name, *DISPLACEMENTS}),
-    Trace.SHAFT: frozenset({SHAFT_ANGLE.name}),
+_CHANNELS: Final[Mapping[DeviationTrace, frozenset[str]]] = {
+    DeviationTrace.MOTION: frozenset({SHAFT_ANGLE.name, *DISPLACEMENTS}),
+    DeviationTrace.SHAFT: frozenset({SHAFT_ANGLE.name}),
 }
 
 
-def shown(problem: Problem) -> frozenset[Trace]:
+def shown(problem: Problem) -> frozenset[DeviationTrace]:
     """Return what deviates over all runs, the motion judged without what comes after it.
 
     Where the shaft is not recorded, the struts speak for it, and forces where nothing else is.
@@ -48,7 +48,7 @@ def shown(problem: Problem) -> frozenset[Trace]:
     seen = [one for one, rows in kinds.items() if _deviates(left, rows)]
     found = {trace for trace, own in _PARTS.items() if any(one.part in own for one in seen)}
     steady = [one.channel for one in seen if one.part in STEADY_PARTS]
-    motion = _CHANNELS[Trace.MOTION] & {one.channel for one in kinds}
+    motion = _CHANNELS[DeviationTrace.MOTION] & {one.channel for one in kinds}
     for trace, own in _CHANNELS.items():
         if _show(steady, own & motion or motion):
             found.add(trace)
@@ -66,7 +66,7 @@ def _deviates(left: FloatArray, rows: list[int]) -> bool:
     return bool(own @ own > limit or np.abs(own).max() > _LONE)
 
 
-def worth_a_look(kind: type[Effect], seen: Set[Trace]) -> bool:
+def worth_a_look(kind: type[Effect], seen: Set[DeviationTrace]) -> bool:
     """Tell whether an effect can be among what deviates; always so if a look at it is cheap."""
     if kind.shows_in:
         return not seen.isdisjoint(kind.shows_in)

@@ -9,7 +9,7 @@ import numpy as np
 from analysis.gap.components import GapRun, Observation
 from analysis.gap.spectrum import loudness
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.rig import SimulatedRig
 
 
@@ -31,7 +31,7 @@ def as_recorded(
         if one.name in recorded
     }
     heard = {name: _as_loud(one, runs, name) for name, one in lines.items()}
-    pulses = None if reference_channel is not None else rig.photocell or Photocell()
+    pulses = None if reference_channel is not None else rig.photocell or PhotocellStage()
     return replace(rig, acquisition=replace(rig.acquisition, **heard), photocell=pulses)
 
 

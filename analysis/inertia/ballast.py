@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from analysis.inertia.numeric import Value
-from analysis.inertia.parts import Part, combined
+from analysis.inertia.parts import BodyPart, combined
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
@@ -38,7 +38,7 @@ class Weight:
 
 
 @dataclass(frozen=True)
-class Target:
+class BallastTarget:
     """What is wanted; ``None`` where anything will do.
 
     Attributes
@@ -67,7 +67,7 @@ class Ballasting:
     positions_m
         Shape ``(weights, 3)``.
     body
-        The ballasted model's ten parameters, as :class:`analysis.inertia.parts.Part` has them.
+        The ballasted model's ten parameters, as :class:`analysis.inertia.parts.BodyPart` has them.
     errors
         Reached less wanted, by name (``mass_kg``, ``x_m``, ``yaw_m`` ...), for what was asked.
     feasible
@@ -84,7 +84,7 @@ class Ballasting:
 
 
 def place_ballast(
-    base: Part, weights: Sequence[Weight], target: Target, *, seed: int = 0
+    base: BodyPart, weights: Sequence[Weight], target: BallastTarget, *, seed: int = 0
 ) -> Ballasting:
     """Find the weights' places by bounded least squares from several starts.
 
@@ -154,7 +154,7 @@ def _check(weights: Sequence[Weight]) -> None:
             )
 
 
-def _body(base: Part, weights: Sequence[Weight], place: FloatArray) -> FloatArray:
+def _body(base: BodyPart, weights: Sequence[Weight], place: FloatArray) -> FloatArray:
     rows = [base.parameters]
     for one, where in zip(weights, place.reshape(-1, 3), strict=True):
         own = one.mass_kg * np.array(one.gyradii_m) ** 2
@@ -162,7 +162,7 @@ def _body(base: Part, weights: Sequence[Weight], place: FloatArray) -> FloatArra
     return combined(np.array(rows), np.ones(len(rows)))
 
 
-def _errors(body: FloatArray, target: Target) -> dict[str, float]:
+def _errors(body: FloatArray, target: BallastTarget) -> dict[str, float]:
     errors = {}
     if target.mass_kg is not None:
         errors["mass_kg"] = float(body[0] - target.mass_kg)
@@ -177,7 +177,7 @@ def _errors(body: FloatArray, target: Target) -> dict[str, float]:
 
 
 def _slopes(
-    body: FloatArray, weights: Sequence[Weight], place: FloatArray, target: Target
+    body: FloatArray, weights: Sequence[Weight], place: FloatArray, target: BallastTarget
 ) -> FloatArray:
     """Return the scaled errors' derivatives by all coordinates, shape ``(errors, 3 weights)``.
 
@@ -200,11 +200,11 @@ def _slopes(
     return np.reshape(rows, (-1, place.size))
 
 
-def _scaled(key: str, error: Value, target: Target) -> Any:
+def _scaled(key: str, error: Value, target: BallastTarget) -> Any:
     return error / (target.tolerance_mass_kg if key == "mass_kg" else target.tolerance_m)
 
 
-def _message(worst: dict[str, float], target: Target) -> str:
+def _message(worst: dict[str, float], target: BallastTarget) -> str:
     if not worst:
         return "all targets are met within their tolerances"
     parts = [

@@ -24,7 +24,7 @@ _STEP = 0.01  # of the standard uncertainty: nonlinearity is the Monte Carlo's t
 
 
 @dataclass(frozen=True)
-class Share:
+class BudgetShare:
     """One line of a budget.
 
     Attributes
@@ -57,7 +57,7 @@ class Budget:
 
     name: str
     result: Estimate
-    shares: tuple[Share, ...]
+    shares: tuple[BudgetShare, ...]
     correlations: Correlations
 
     def table(self) -> list[dict[str, float | str]]:
@@ -197,13 +197,15 @@ def _shares(
     slopes: FloatArray,
     contributions: FloatArray,
     matrix: FloatArray,
-) -> tuple[Share, ...]:
+) -> tuple[BudgetShare, ...]:
     parts = contributions * (matrix @ contributions)
     total = float(parts.sum())
     lines = [
-        Share(key, estimate, float(slopes[k]), float(contributions[k]), float(parts[k]) / total)
+        BudgetShare(
+            key, estimate, float(slopes[k]), float(contributions[k]), float(parts[k]) / total
+        )
         if total > 0.0
-        else Share(key, estimate, float(slopes[k]), 0.0, 0.0)
+        else BudgetShare(key, estimate, float(slopes[k]), 0.0, 0.0)
         for k, (key, estimate) in enumerate(inputs.items())
     ]
     return tuple(sorted(lines, key=lambda line: -abs(line.share)))

@@ -3,13 +3,13 @@
 import numpy as np
 
 from analysis.inertia.numeric import inner
-from analysis.inertia.projection import Problem, derivative, inverse_gram
+from analysis.inertia.projection import ProjectionProblem, derivative, inverse_gram
 from analysis.inertia.residuals import ResidualDiagnostics
 from hardware.description.arrays import FloatArray
 
 
 def covariance(
-    problem: Problem,
+    problem: ProjectionProblem,
     omega: FloatArray,
     decay: FloatArray,
     matrix: FloatArray,
@@ -29,7 +29,7 @@ def covariance(
         The model's linear columns there, their parameters, and what is left over.
     """
     count, extra = omega.size, problem.base.shape[1]
-    free = Problem(problem.time_s, problem.values, problem.base, damped=True)
+    free = ProjectionProblem(problem.time_s, problem.values, problem.base, damped=True)
     slope = derivative(free, matrix, linear)
     jacobian = np.empty((residual.size, 4 * count + extra), order="F")
     for k in range(count):

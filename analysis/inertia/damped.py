@@ -15,7 +15,7 @@ import numpy as np
 from analysis.inertia.covariance import covariance
 from analysis.inertia.projection import (
     NEAR_START,
-    Problem,
+    ProjectionProblem,
     Solution,
     columns,
     iterate,
@@ -31,7 +31,7 @@ _ROUGH_ITERATIONS = 10  # enough to tell the starts apart
 
 
 @dataclass(frozen=True)
-class Mode:
+class DampedMode:
     """One damped oscillation ``A exp(-lambda t) cos(2 pi t/T + phi)``, t from the fit's start.
 
     Attributes
@@ -84,7 +84,7 @@ class DampedFit:
         Where amplitudes and phases are counted from: the first sample's time.
     """
 
-    modes: tuple[Mode, ...]
+    modes: tuple[DampedMode, ...]
     offset: float
     trend: float
     covariance: FloatArray
@@ -165,7 +165,7 @@ def _problem(
     damped: bool,
     modes: int,
     where: str,
-) -> tuple[Problem, float]:
+) -> tuple[ProjectionProblem, float]:
     good = np.isfinite(values)
     t, y = np.asarray(time_s)[good], np.asarray(values, dtype=np.float64)[good]
     unknown = 4 * modes + offset + trend
@@ -183,10 +183,12 @@ def _problem(
     base = [np.ones(t.size)] if offset else []
     base += [centred / centred[-1]] if offset and trend else []
     columns_ = np.column_stack(base) if base else np.empty((t.size, 0))
-    return Problem(centred, y, columns_, damped), float(t[0])
+    return ProjectionProblem(centred, y, columns_, damped), float(t[0])
 
 
-def _finish(problem: Problem, solution: Solution, start_s: float, where: str) -> DampedFit:
+def _finish(
+    problem: ProjectionProblem, solution: Solution, start_s: float, where: str
+) -> DampedFit:
     cycles = solution.omega_rad_s * problem.span_s / (2.0 * np.pi)
     if cycles.min() < 1.5:
         raise DataError(
@@ -218,14 +220,14 @@ def _finish(problem: Problem, solution: Solution, start_s: float, where: str) ->
     )
 
 
-def _mode(omega: float, decay: float, pair: FloatArray, first_s: float) -> Mode:
+def _mode(omega: float, decay: float, pair: FloatArray, first_s: float) -> DampedMode:
     """Turn amplitudes at mid-record into amplitude and phase at the first sample."""
     start = complex(pair[0], -pair[1]) * np.exp((-decay + 1j * omega) * first_s)
-    return Mode(2.0 * math.pi / omega, decay, float(abs(start)), float(np.angle(start)))
+    return DampedMode(2.0 * math.pi / omega, decay, float(abs(start)), float(np.angle(start)))
 
 
 def _flags(
-    solution: Solution, diagnostics: ResidualDiagnostics, modes: tuple[Mode, ...], where: str
+    solution: Solution, diagnostics: ResidualDiagnostics, modes: tuple[DampedMode, ...], where: str
 ) -> tuple[Flag, ...]:
     flags = []
     if not solution.converged:

@@ -104,7 +104,7 @@ def pitch_from_periods(
     )
 
 
-class Reading(StrEnum):
+class LineLengthReading(StrEnum):
     """How "best line length" is read."""
 
     FIXED = "fixed"  # l_1 and l_2 known: the paper's figures 16 and 17
@@ -116,7 +116,7 @@ def gyradius_error_per_period(
     depth_m: float,
     line_m: float,
     gravity_m_s2: float,
-    reading: Reading = Reading.FIXED,
+    reading: LineLengthReading = LineLengthReading.FIXED,
 ) -> float:
     """Error of the gyradius per error of both periods, m/s (eq 19, figure 16)."""
 
@@ -127,7 +127,7 @@ def gyradius_error_per_period(
     by_k = (both(gyradius_m * (1 + step), depth_m) - both(gyradius_m * (1 - step), depth_m)) / (
         2.0 * step * gyradius_m
     )
-    if reading is Reading.FIXED:
+    if reading is LineLengthReading.FIXED:
         return float(np.hypot(*(1.0 / by_k)))
     by_depth = (both(gyradius_m, depth_m * (1 + step)) - both(gyradius_m, depth_m * (1 - step))) / (
         2.0 * step * depth_m
@@ -140,7 +140,7 @@ def best_line_length(
     gyradius_m: float,
     depth_m: float,
     gravity_m_s2: float,
-    reading: Reading = Reading.FIXED,
+    reading: LineLengthReading = LineLengthReading.FIXED,
 ) -> float:
     """Return the line length that makes that error least (figure 17), in metres.
 

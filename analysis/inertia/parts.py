@@ -20,7 +20,7 @@ MADE_OF = ("mass_kg", "x_m", "y_m", "z_m", "k_roll_m", "k_pitch_m", "k_yaw_m")
 
 
 @dataclass(frozen=True)
-class Part:
+class BodyPart:
     """A rigid body with its covariance.
 
     Attributes
@@ -101,7 +101,7 @@ def part(
     products_kg_m2: tuple[float, float, float] = (0.0, 0.0, 0.0),
     *,
     correlations: Correlations = MappingProxyType({}),
-) -> Part:
+) -> BodyPart:
     """Make a part from mass, centre of gravity and gyradii.
 
     Parameters
@@ -134,10 +134,10 @@ def part(
     for (first, second), r in correlations.items():
         i, k = MADE_OF.index(first), MADE_OF.index(second)
         tied[i, k] = tied[k, i] = r
-    return Part(name, np.asarray(turn(at)), slope @ (tied * np.outer(spread, spread)) @ slope.T)
+    return BodyPart(name, np.asarray(turn(at)), slope @ (tied * np.outer(spread, spread)) @ slope.T)
 
 
-def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -> Part:
+def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart] = ()) -> BodyPart:
     """Put parts together and take others away.
 
     What is taken away is taken to be independent of the whole that it was measured in.
@@ -173,7 +173,7 @@ def combine(name: str, parts: Sequence[Part], *, without: Sequence[Part] = ()) -
     for k, one in enumerate(everything):
         block = slice(k * _SIZE, (k + 1) * _SIZE)
         covariance[block, block] = one.covariance
-    return Part(name, np.asarray(put(at)), slope @ covariance @ slope.T)
+    return BodyPart(name, np.asarray(put(at)), slope @ covariance @ slope.T)
 
 
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
@@ -203,7 +203,7 @@ def _shifted(place: FloatArray) -> FloatArray:
     return np.stack([y * y + z * z, z * z + x * x, x * x + y * y, x * y, x * z, y * z], axis=1)
 
 
-def inertia_about(body: Part, point: tuple[float, float, float]) -> tuple[Estimate, ...]:
+def inertia_about(body: BodyPart, point: tuple[float, float, float]) -> tuple[Estimate, ...]:
     """Return roll, pitch and yaw inertia about axes through a point, kg m2."""
 
     def moved(given: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ CONVERGED = 1e-13  # relative change of the sum of squares, with a step below 1e
 
 
 @dataclass(frozen=True)
-class Problem:
+class ProjectionProblem:
     """What is fitted to what.
 
     Attributes
@@ -83,7 +83,7 @@ class Solution:
     iterations: int
 
 
-def columns(problem: Problem, omega: FloatArray, decay: FloatArray) -> FloatArray:
+def columns(problem: ProjectionProblem, omega: FloatArray, decay: FloatArray) -> FloatArray:
     """Return the model's linear columns, shape ``(samples, 2 modes + B)``."""
     count = omega.size
     matrix = np.empty((problem.time_s.size, 2 * count + problem.base.shape[1]), order="F")
@@ -94,7 +94,7 @@ def columns(problem: Problem, omega: FloatArray, decay: FloatArray) -> FloatArra
     return matrix
 
 
-def _wave(problem: Problem, exponent: complex) -> ComplexArray:
+def _wave(problem: ProjectionProblem, exponent: complex) -> ComplexArray:
     """Return ``exp(exponent t)``: on a grid, as products of a coarse one's and a fine one's."""
     places = problem.places
     if places is None:
@@ -108,7 +108,9 @@ def _wave(problem: Problem, exponent: complex) -> ComplexArray:
     return np.asarray(whole[:size] if size == places.size else whole[places])
 
 
-def project(problem: Problem, matrix: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def project(
+    problem: ProjectionProblem, matrix: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the linear parameters, the residual, and the inverse of the columns' Gram matrix."""
     inverse = inverse_gram(matrix)
     linear = inverse @ (matrix.T @ problem.values)
@@ -126,7 +128,7 @@ def inverse_gram(matrix: FloatArray) -> FloatArray:
     return np.asarray((turned / values[kept]) @ turned.T)
 
 
-def derivative(problem: Problem, matrix: FloatArray, linear: FloatArray) -> FloatArray:
+def derivative(problem: ProjectionProblem, matrix: FloatArray, linear: FloatArray) -> FloatArray:
     """Return the model's slope in each frequency, then in each decay rate."""
     count = (matrix.shape[1] - problem.base.shape[1]) // 2
     slope = np.empty((matrix.shape[0], 2 * count if problem.damped else count), order="F")
@@ -140,7 +142,7 @@ def derivative(problem: Problem, matrix: FloatArray, linear: FloatArray) -> Floa
 
 
 def iterate(
-    problem: Problem,
+    problem: ProjectionProblem,
     omega: FloatArray,
     decay: FloatArray,
     most_iterations: int = MOST_ITERATIONS,

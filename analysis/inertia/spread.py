@@ -36,7 +36,7 @@ def said_of(cause: str, foretells: float) -> str:
 
 
 @dataclass(frozen=True)
-class Geometry:
+class SuspensionGyradius:
     """One suspension: the gyradius that came out, half spacing and line length in m."""
 
     name: str
@@ -46,7 +46,7 @@ class Geometry:
 
 
 @dataclass(frozen=True)
-class Cause:
+class SpreadCause:
     """A possible cause of the spread, or two of them together.
 
     Attributes
@@ -100,11 +100,11 @@ class Spread:
     chi_squared: float
     probability: float
     agree: bool
-    causes: tuple[Cause, ...]
+    causes: tuple[SpreadCause, ...]
     flags: tuple[Flag, ...]
 
 
-def compare_geometries(geometries: Sequence[Geometry]) -> Spread:
+def compare_geometries(geometries: Sequence[SuspensionGyradius]) -> Spread:
     """Compare the gyradii of one body on several suspensions.
 
     Raises
@@ -142,7 +142,7 @@ def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, F
     }
 
 
-def _causes(geometries: Sequence[Geometry]) -> tuple[Cause, ...]:
+def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]:
     """Fit each cause, and each pair where enough geometries are there, with the gyradius."""
     d = np.array([one.half_spacing_m for one in geometries])
     line = np.array([one.line_m for one in geometries])
@@ -162,7 +162,7 @@ def _causes(geometries: Sequence[Geometry]) -> tuple[Cause, ...]:
             sizes = tuple(solved[1:].tolist())
             own = k * math.exp(float(solved[0]))
             share = _foretells(matrix, target, weight)
-            found.append(Cause(names, sizes, units, own, float(left @ left), freedom, share))
+            found.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))
     # a second cause has to pay for itself (Akaike)
     return tuple(sorted(found, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
 
@@ -184,7 +184,9 @@ def _left_out(matrix: FloatArray, target: FloatArray) -> FloatArray:
     return np.array(found)
 
 
-def _flag(values: FloatArray, misfit: float, causes: tuple[Cause, ...], scatter: float) -> Flag:
+def _flag(
+    values: FloatArray, misfit: float, causes: tuple[SpreadCause, ...], scatter: float
+) -> Flag:
     why = ""
     if causes:
         best = causes[0]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.inertia.projection import Problem, columns, iterate, project
+from analysis.inertia.projection import ProjectionProblem, columns, iterate, project
 from analysis.inertia.spectrum import spectrum
 from hardware.description.arrays import FloatArray
 
@@ -16,7 +16,7 @@ _MOST_SAMPLES = 2048  # starting values need no more
 
 
 def starting_points(
-    problem: Problem, modes: int, guess_s: Sequence[float] | None = None
+    problem: ProjectionProblem, modes: int, guess_s: Sequence[float] | None = None
 ) -> list[Start]:
     """Return pairs of angular frequencies and decay rates, each of shape ``(modes,)``.
 
@@ -35,7 +35,7 @@ def starting_points(
     return [(np.maximum(omega, np.pi / problem.span_s), rates) for omega, rates in points]
 
 
-def _peeled(problem: Problem, modes: int) -> FloatArray:
+def _peeled(problem: ProjectionProblem, modes: int) -> FloatArray:
     """Find one line after another in what the fit so far leaves over."""
     found: list[float] = []
     residual = problem.values - problem.values.mean()
@@ -61,7 +61,7 @@ def _strongest_hz(time_s: FloatArray, values: FloatArray) -> float:
     return spectrum(even, 1.0 / step, tapered=False).peak_hz(slowest)
 
 
-def thinned(problem: Problem) -> Problem:
+def thinned(problem: ProjectionProblem) -> ProjectionProblem:
     """Average neighbouring samples, as far as the strongest line allows."""
     most = problem.time_s.size // _MOST_SAMPLES
     if most < 2:
@@ -76,4 +76,6 @@ def thinned(problem: Problem) -> Problem:
     def mean(rows: FloatArray) -> FloatArray:
         return np.asarray(rows[:whole].reshape(whole // block, block, *rows.shape[1:]).mean(axis=1))
 
-    return Problem(mean(problem.time_s), mean(problem.values), mean(problem.base), problem.damped)
+    return ProjectionProblem(
+        mean(problem.time_s), mean(problem.values), mean(problem.base), problem.damped
+    )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from analysis.inertia.bifilar import resonance_flags, sway_period, yaw_gyradius, yaw_period
 from analysis.inertia.budget import linear_budget
 from analysis.inertia.double_pendulum import (
-    Reading,
+    LineLengthReading,
     best_line_length,
     gyradius_from_periods,
     mode_periods,
@@ -96,7 +96,8 @@ def forecast_suspension(
         "gravity_m_s2": gravity,
     }
     best = {
-        str(reading): best_line_length(pitch_gyradius_m, depth_m, g, reading) for reading in Reading
+        str(reading): best_line_length(pitch_gyradius_m, depth_m, g, reading)
+        for reading in LineLengthReading
     }
     return SuspensionForecast(
         sway,

@@ -27,7 +27,7 @@ _PROMPTS = {
 
 
 @dataclass(frozen=True)
-class Reading:
+class StepResult:
     """What a step gave: pivot inertia or first moment, from repeated runs."""
 
     step: Step
@@ -62,7 +62,7 @@ class WorkflowResult:
     flags: tuple[Flag, ...]
 
 
-def next_step(readings: tuple[Reading, ...]) -> tuple[Step, str] | None:
+def next_step(readings: tuple[StepResult, ...]) -> tuple[Step, str] | None:
     """Return the step to make next with what to do, or ``None`` when all are made.
 
     Raises
@@ -83,7 +83,7 @@ def next_step(readings: tuple[Reading, ...]) -> tuple[Step, str] | None:
 
 
 def assess_workflow(
-    readings: tuple[Reading, ...], known: Estimate, *, scale_relative: float = 0.0
+    readings: tuple[StepResult, ...], known: Estimate, *, scale_relative: float = 0.0
 ) -> WorkflowResult:
     """Bring the four steps together.
 

@@ -33,7 +33,7 @@ class Driven:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class MotionWaves:
     """Motion of the model; waves over the instants.
 
     Attributes
@@ -56,7 +56,7 @@ class Motion:
     rate: Waves
 
 
-def motion(geometry: Geometry, driven: Driven) -> Motion:
+def motion(geometry: Geometry, driven: Driven) -> MotionWaves:
     """Return the model's motion in body axes.
 
     Raises
@@ -75,7 +75,7 @@ def motion(geometry: Geometry, driven: Driven) -> Motion:
     u_rate = acceleration[0] * cosine + acceleration[1] * sine + turning * v
     v_rate = acceleration[1] * cosine - acceleration[0] * sine - turning * u
     side = geometry.side
-    return Motion(
+    return MotionWaves(
         line,
         side * (line + on_struts + rig),
         across,

@@ -21,7 +21,7 @@ def loads(geometry: Geometry, line_rad: Waves, readings: Waves) -> Waves:
     Parameters
     ----------
     line_rad
-        :attr:`analysis.kinematics.motion.Motion.line_rad`, shape ``(..., instants)``.
+        :attr:`analysis.kinematics.motion.MotionWaves.line_rad`, shape ``(..., instants)``.
     readings
         Shape ``(..., 3, instants)``, or ``(..., 2, instants)`` without an X gauge.
 

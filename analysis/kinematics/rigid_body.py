@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Driven, Motion, motion
+from analysis.kinematics.motion import Driven, MotionWaves, motion
 from analysis.kinematics.projection import readings
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -34,7 +34,7 @@ def moments(body: Body) -> FloatArray:
     return np.array([mass, mass * body.cg_x_m, mass * body.cg_z_m, body.inertia_kg_m2])
 
 
-def inertia(body: Body, motion: Motion, plane: Plane) -> Waves:
+def inertia(body: Body, motion: MotionWaves, plane: Plane) -> Waves:
     """Return what the body's inertia asks, shape ``(..., 3, instants)``.
 
     With the centre of gravity x_G ahead and z_G down (nothing to the side):
@@ -47,7 +47,7 @@ def inertia(body: Body, motion: Motion, plane: Plane) -> Waves:
     return _sum(moments(body), inertia_terms(motion, plane))
 
 
-def inertia_terms(motion: Motion, plane: Plane) -> Waves:
+def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
     """Return what each of the :func:`moments` asks, shape ``(..., 4, 3, instants)``."""
     u, v, r = np.moveaxis(motion.velocity, -2, 0)
     u_rate, v_rate, r_rate = np.moveaxis(motion.rate, -2, 0)
@@ -63,7 +63,7 @@ def inertia_terms(motion: Motion, plane: Plane) -> Waves:
     )
 
 
-def weight(body: Body, motion: Motion, buoyancy: Buoyancy | None = None) -> Waves:
+def weight(body: Body, motion: MotionWaves, buoyancy: Buoyancy | None = None) -> Waves:
     """Return what weight and buoyancy ask of the struts in the vertical plane.
 
     Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)`` of the weight alone.
@@ -75,7 +75,7 @@ def weight(body: Body, motion: Motion, buoyancy: Buoyancy | None = None) -> Wave
     return _sum(hanging, weight_terms(motion))
 
 
-def weight_terms(motion: Motion) -> Waves:
+def weight_terms(motion: MotionWaves) -> Waves:
     """Return what mass, m x_G and m z_G ask as weight, shape ``(..., 3, 3, instants)``."""
     sine = STANDARD_GRAVITY_M_S2 * np.sin(motion.rotation_rad)
     cosine = STANDARD_GRAVITY_M_S2 * np.cos(motion.rotation_rad)

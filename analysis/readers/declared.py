@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any, Final
 
-from analysis.limits import Limits, limits
+from analysis.limits import ReadingLimits, limits
 from hardware.description.dataset import EDGE_TIME
 
 _PACKING: Final = 1032  # bytes of zeros that deflate keeps in one: more is not in the file
@@ -28,7 +28,7 @@ def check_declared(path: Path) -> None:
                 _check(one, f"{path}: the variable {name!r}", allowed)
 
 
-def _check(one: Any, where: str, allowed: Limits) -> None:
+def _check(one: Any, where: str, allowed: ReadingLimits) -> None:
     stored, chunk = one.id.get_storage_size(), math.prod(one.chunks or ()) * one.dtype.itemsize
     if one.chunks and chunk > _LARGEST_CHUNK:
         raise allowed.too_large(where, f"its chunks of {chunk} bytes, where 2^26 are the most")

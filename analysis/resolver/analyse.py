@@ -15,7 +15,7 @@ from analysis.resolver.opening import check_opening, with_own_gate
 from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
 from analysis.resolver.saturation import saturation_flags
 from analysis.resolver.set_point import set_point_flags
-from analysis.resolver.settings import Settings as Settings
+from analysis.resolver.settings import ResolverSettings as ResolverSettings
 from analysis.resolver.settings import check_settings
 from analysis.resolver.signal_reference import JUMP_CYCLES
 from analysis.resolver.steady import Stretch, find_steady, limits
@@ -44,7 +44,7 @@ class Analysis:
 
     recording: Recording
     reference: PhaseReference
-    settings: Settings
+    settings: ResolverSettings
     sums: PeriodSums
     stretch: Stretch
     readings: tuple[Harmonics, ...]
@@ -59,7 +59,7 @@ class Analysis:
 def analyse(
     recording: Recording,
     choice: ReferenceChoice = ReferenceChoice(),
-    settings: Settings = Settings(),
+    settings: ResolverSettings = ResolverSettings(),
 ) -> Analysis:
     """Resolve a recording.
 
@@ -119,7 +119,7 @@ def _default_channels(recording: Recording, reference: PhaseReference) -> tuple[
 
 
 def _reference(
-    recording: Recording, choice: ReferenceChoice, settings: Settings, *, fixed: bool
+    recording: Recording, choice: ReferenceChoice, settings: ResolverSettings, *, fixed: bool
 ) -> PhaseReference:
     """Return what tells the phase; a signal does so by what it shows within a given gate.
 
@@ -141,7 +141,7 @@ def _reference(
 
 
 def _edges(
-    recording: Recording, reference: PhaseReference, settings: Settings, *, fixed: bool
+    recording: Recording, reference: PhaseReference, settings: ResolverSettings, *, fixed: bool
 ) -> FloatArray:
     """Return where periods begin and end; those of run control's own gate as far as they fit.
 
@@ -164,7 +164,7 @@ def _edges(
 
 
 def _stretch(
-    recording: Recording, values: PeriodValues, settings: Settings
+    recording: Recording, values: PeriodValues, settings: ResolverSettings
 ) -> tuple[Stretch, tuple[Flag, ...]]:
     """The steady periods; all of them where they were given, or where none are steady."""
     everything = Stretch(0, len(values.ramp), 0.0, 0)
@@ -185,7 +185,7 @@ def _stretch(
 
 
 def _limit_flags(
-    recording: Recording, values: PeriodValues, found: Stretch, settings: Settings
+    recording: Recording, values: PeriodValues, found: Stretch, settings: ResolverSettings
 ) -> tuple[Flag, ...]:
     """Say where one channel alone ends the steady stretch, and how far it strays there."""
     beside: dict[int, list[str]] = {}
@@ -212,7 +212,7 @@ def _reading(
     reference: PhaseReference,
     gate: PeriodSums,
     steady: PeriodSums,
-    settings: Settings,
+    settings: ResolverSettings,
 ) -> Harmonics:
     if settings.hann:
         result = _under_hann(recording, reference, gate, settings)
@@ -224,7 +224,7 @@ def _reading(
 
 
 def _under_hann(
-    recording: Recording, reference: PhaseReference, gate: PeriodSums, settings: Settings
+    recording: Recording, reference: PhaseReference, gate: PeriodSums, settings: ResolverSettings
 ) -> Harmonics:
     return resolve_hann(
         recording,

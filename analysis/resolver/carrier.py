@@ -25,7 +25,7 @@ _BLOCK_SAMPLES = 1 << 18
 
 
 @dataclass(frozen=True)
-class LowPass:
+class DecimationFilter:
     """A symmetric FIR low-pass with decimation.
 
     Attributes
@@ -70,7 +70,7 @@ def design_low_pass(
     carrier_hz: float,
     bandwidth_hz: float,
     output_rate_hz: float | None = None,
-) -> LowPass:
+) -> DecimationFilter:
     """Design the filter: flat to 1e-6 up to the bandwidth, carrier and image down by over 100 dB.
 
     The stop band (Kaiser window, 140 dB) begins a bandwidth below the lowest of the carrier, the
@@ -134,7 +134,7 @@ def _decimation(sample_rate_hz: float, bandwidth_hz: float, output_rate_hz: floa
     return decimation
 
 
-def _kaiser(band: float, lowest: float, decimation: int) -> LowPass:
+def _kaiser(band: float, lowest: float, decimation: int) -> DecimationFilter:
     """Low-pass from ``band`` to ``lowest - band``, both over the sample rate."""
     from scipy.signal import firwin, kaiser_beta
 
@@ -142,7 +142,7 @@ def _kaiser(band: float, lowest: float, decimation: int) -> LowPass:
     length = (ATTENUATION_DB - 7.95) / (2.285 * 2.0 * np.pi * transition)
     half = decimation * int(np.ceil(length / 2.0 / decimation))
     window = ("kaiser", float(kaiser_beta(ATTENUATION_DB)))
-    return LowPass(
+    return DecimationFilter(
         np.asarray(firwin(2 * half + 1, lowest / 2.0, window=window, fs=1.0)), half, decimation
     )
 
@@ -220,7 +220,7 @@ def demodulate(
 
 
 def _filtered(
-    recording: Recording, rows: list[int], carrier_hz: float, low_pass: LowPass
+    recording: Recording, rows: list[int], carrier_hz: float, low_pass: DecimationFilter
 ) -> tuple[FloatArray, ComplexArray]:
     """All channels low-passed, and those in ``rows`` detected as ``E e_c exp(i phi)``."""
     count, step = low_pass.outputs(recording.sample_count), low_pass.decimation
@@ -270,7 +270,7 @@ def _phase(name: str, signal: ComplexArray, given_rad: float | None) -> tuple[fl
     return phase, flags
 
 
-def _ends_flag(recording: Recording, low_pass: LowPass) -> Flag:
+def _ends_flag(recording: Recording, low_pass: DecimationFilter) -> Flag:
     lost_s = low_pass.half / recording.sample_rate_hz
     return Flag(
         "carrier_ends_dropped",

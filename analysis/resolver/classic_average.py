@@ -25,7 +25,7 @@ SETTLED_AFTER = 4.6  # time constants: 1 % of the step is left
 
 
 @dataclass(frozen=True)
-class Needles:
+class NeedleReadings:
     """Where the needles stand over time.
 
     Attributes
@@ -126,7 +126,7 @@ class RunningAverage:
         state: AverageState,
         values: FloatArray,
         cycles: Callable[[FloatArray], FloatArray],
-    ) -> tuple[AverageState, Needles]:
+    ) -> tuple[AverageState, NeedleReadings]:
         """Take a block of samples; the needles are the same however a record is cut into blocks.
 
         The filter is exact for products that run straight from sample to sample.
@@ -150,7 +150,7 @@ class RunningAverage:
         inputs = products(values, cycles(times_s), self.harmonics)
         shown, memory = self._low_pass(inputs, state.memory)
         waited = numbers / self.sample_rate_hz >= SETTLED_AFTER * self.time_constant_s
-        needles = Needles(times_s, shown[:, 0::2], shown[:, 1::2], waited)
+        needles = NeedleReadings(times_s, shown[:, 0::2], shown[:, 1::2], waited)
         return AverageState(state.start_s, state.taken + len(numbers), memory), needles
 
     def _refuse_missing(self, values: FloatArray, times_s: FloatArray) -> None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.resolver.classic import check_harmonics, check_values, products
-from analysis.resolver.classic_gate_state import GateReading, GateState, IntegratorState
+from analysis.resolver.classic_gate_state import GateReading, GatingState, IntegratorState
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
@@ -101,7 +101,7 @@ class GatedIntegrator:
 
     def reset(self, state: IntegratorState) -> IntegratorState:
         """Press the reset button: integrators to zero, the next pulse opens the gate."""
-        return replace(state, gate=GateState.ARMED, reading=None)
+        return replace(state, gate=GatingState.ARMED, reading=None)
 
     def _number(self, state: IntegratorState, time_s: float) -> float:
         number = (time_s - state.start_s) * self.sample_rate_hz
@@ -144,21 +144,21 @@ class GatedIntegrator:
         cycles: Callable[[FloatArray], FloatArray],
     ) -> IntegratorState:
         """Let a pulse act on the gate."""
-        if state.gate is GateState.ARMED:
+        if state.gate is GatingState.ARMED:
             zero = np.zeros((len(self.channel_names), 2 * self.harmonics))
             return replace(
                 state,
-                gate=GateState.OPEN,
+                gate=GatingState.OPEN,
                 opened_s=pulse_s,
                 pulses=0,
                 reached=number,
                 integral=zero,
             )
-        if state.gate is GateState.HOLD:
+        if state.gate is GatingState.HOLD:
             return state
         if state.pulses + 1 < self.periods:
             return replace(state, pulses=state.pulses + 1)
-        return replace(state, gate=GateState.HOLD, reading=self._read(state, pulse_s, cycles))
+        return replace(state, gate=GatingState.HOLD, reading=self._read(state, pulse_s, cycles))
 
     def _read(
         self, state: IntegratorState, closed_s: float, cycles: Callable[[FloatArray], FloatArray]
@@ -199,7 +199,7 @@ def _integrate(
     state: IntegratorState, first: int, inputs: FloatArray, number: float
 ) -> IntegratorState:
     """Carry an open gate's integral on to a fractional sample number."""
-    if state.gate is not GateState.OPEN:
+    if state.gate is not GatingState.OPEN:
         return state
     pieces = _trapezoids(inputs, state.reached - first, number - first)
     # One after the other, so that the sum does not depend on where blocks are cut.

@@ -9,7 +9,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 
 
-class GateState(StrEnum):
+class GatingState(StrEnum):
     """State of the gating circuit."""
 
     ARMED = "armed"  # closed; the next pulse opens it
@@ -66,7 +66,7 @@ class IntegratorState:
     """
 
     start_s: float
-    gate: GateState = GateState.ARMED
+    gate: GatingState = GatingState.ARMED
     taken: int = 0
     waiting_pulses_s: tuple[float, ...] = ()
     opened_s: float = np.nan

@@ -9,7 +9,7 @@ from analysis.resolver.classic import check_harmonics, products
 from analysis.resolver.classic_average import (
     LEAST_TIME_CONSTANT_PERIODS,
     AverageState,
-    Needles,
+    NeedleReadings,
     RunningAverage,
 )
 from analysis.resolver.classic_gate import SAMPLE_SLACK, GatedIntegrator
@@ -28,7 +28,7 @@ def running_average(
     time_constant_s: float | None = None,
     harmonics: int = 3,
     keep_every: int = 1,
-) -> Needles:
+) -> NeedleReadings:
     """Watch the needles over a whole recording.
 
     Parameters
@@ -60,7 +60,7 @@ def running_average(
         values = recording.samples[:, start : start + length]
         state, needles = mode.advance(state, values, reference.cycles_at)
         parts.append(_thinned(needles, keep_every))
-    return Needles(
+    return NeedleReadings(
         np.concatenate([part.times_s for part in parts]),
         np.concatenate([part.in_phase for part in parts], axis=-1),
         np.concatenate([part.quadrature for part in parts], axis=-1),
@@ -68,10 +68,10 @@ def running_average(
     )
 
 
-def _thinned(needles: Needles, every: int) -> Needles:
+def _thinned(needles: NeedleReadings, every: int) -> NeedleReadings:
     """Copy, so that what is not kept can be freed."""
     kept = slice(None, None, every)
-    return Needles(
+    return NeedleReadings(
         needles.times_s[kept].copy(),
         needles.in_phase[..., kept].copy(),
         needles.quadrature[..., kept].copy(),

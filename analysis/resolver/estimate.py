@@ -40,7 +40,7 @@ class PeriodValues:
 
 
 @dataclass(frozen=True)
-class Scatter:
+class GateScatter:
     """What the periods of a stretch tell of a gate's uncertainty.
 
     Attributes
@@ -207,14 +207,14 @@ def _mean_variance(left: FloatArray) -> FloatArray:
     return np.asarray((left[:, :, 1:] ** 2).sum(axis=0).mean(axis=1) / 2.0)
 
 
-def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> Scatter:
+def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> GateScatter:
     """Return the scatter of a gate's coefficients from the periods of the stretch around it."""
     values = solve_periods(stretch)
     count, channels, size = values.coefficients.shape
     freedom = np.full(size, max(count - 1.0, 0.0))
     if count < 2:
         nothing = np.full((count, channels, size), np.nan)
-        return Scatter(nothing, freedom, np.ones((channels, size)))
+        return GateScatter(nothing, freedom, np.ones((channels, size)))
     drifting = drift.source is not DriftSource.NONE
     left = _about_line(values, _line(values)[0] if drifting else np.zeros(channels))
     if drifting:
@@ -223,10 +223,10 @@ def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> Scatter:
     own, all_told = (left**2).sum(axis=0), (wider**2).sum(axis=0)
     ratio = np.divide(all_told, own, out=np.ones_like(own), where=own > 0.0)
     known = np.where(freedom > 0.0, freedom, np.nan) * gate.period_count
-    return Scatter(wider / np.sqrt(known), freedom, np.sqrt(ratio))
+    return GateScatter(wider / np.sqrt(known), freedom, np.sqrt(ratio))
 
 
-def _deviations(scatter: Scatter, drift: Drift, ramp: FloatArray) -> FloatArray:
+def _deviations(scatter: GateScatter, drift: Drift, ramp: FloatArray) -> FloatArray:
     """Return what moves all channels' coefficients: the periods' scatter, and the drift's slopes.
 
     The slopes are correlated between channels as their means are.

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 from analysis.recording import Recording
-from analysis.resolver.settings import Settings
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import ConfigurationError
 
 
-def with_own_gate(recording: Recording, settings: Settings) -> Settings:
+def with_own_gate(recording: Recording, settings: ResolverSettings) -> ResolverSettings:
     """Take the gate that run control had, where it closed within the record."""
     told = recording.provenance
     if settings.opens_s is not None or not {GATE_OPENED, GATE_PERIODS} <= set(told):
@@ -22,7 +22,7 @@ def with_own_gate(recording: Recording, settings: Settings) -> Settings:
     return replace(settings, opens_s=opened_s, periods=periods)
 
 
-def check_opening(recording: Recording, settings: Settings) -> None:
+def check_opening(recording: Recording, settings: ResolverSettings) -> None:
     """Refuse a gate that cannot open within the record.
 
     Raises

@@ -6,7 +6,7 @@ from hardware.description.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
-class Settings:
+class ResolverSettings:
     """How to analyse a recording.
 
     Attributes
@@ -36,7 +36,7 @@ class Settings:
     hann: bool = False
 
 
-def check_settings(settings: Settings) -> None:
+def check_settings(settings: ResolverSettings) -> None:
     """Refuse settings that contradict each other.
 
     Raises

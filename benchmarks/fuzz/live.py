@@ -15,7 +15,7 @@ from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -69,7 +69,7 @@ class _Bus:
         self._open = ExitStack()
         name = f"fuzzed-{next(self._names)}"
         configuration = read_rig(tables(name), DRIVERS)
-        world = World(configuration, Scene(vertical_rig(), Surroundings(1.2), 0.02, 0.5))
+        world = World(configuration, Scene(vertical_rig(), PlantConditions(1.2), 0.02, 0.5))
         self._open.enter_context(running(name, world))
         rig = Rig(configuration, lambda: world.time_s, FreeRunning(), lambda _: None)
         self._open.enter_context(rig)

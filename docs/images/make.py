@@ -12,7 +12,7 @@ from time import sleep
 
 from analysis.readers import read_recording
 from analysis.readers.columns_toml import read_column_map
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from pmm.report.plots import FIGURES
 from pmm.report.style import drawing
 
@@ -36,7 +36,7 @@ speeds_m_s = 1.2
 def main() -> None:
     """Draw the gate and the phasors of the example."""
     recording = read_recording(EXAMPLE / "heave.csv.gz", read_column_map(EXAMPLE / "heave.toml"))
-    analysis = analyse(recording, settings=Settings(channels=("force_aft", "force_fore")))
+    analysis = analyse(recording, settings=ResolverSettings(channels=("force_aft", "force_fore")))
     for name in ("gate", "phasors"):
         with drawing():
             FIGURES[name](analysis, 0).savefig(HERE / f"{name}.png", dpi=90)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from analysis.resolver.analyse import Settings
+from analysis.resolver.analyse import ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 
 
@@ -50,7 +50,7 @@ class AnalyseOptions:
             given["angle_offset_rad"] = math.radians(self.angle_offset)
         return replace(base, **given)
 
-    def settings(self, base: Settings) -> Settings:
+    def settings(self, base: ResolverSettings) -> ResolverSettings:
         """Return the settings wanted, on top of what a campaign says."""
         given: dict[str, Any] = {
             "channels": tuple(dict.fromkeys(self.channels)) or None,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from analysis.readers import write_recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import NoReferenceError
 from analysis.threads import cores
@@ -208,7 +208,7 @@ def _analyse_recording(
 
     campaign = source.as_recorded
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
-    settings = request.settings(campaign.analysis if campaign else Settings())
+    settings = request.settings(campaign.analysis if campaign else ResolverSettings())
     _check_channels(recording, (*settings.channels, choice.channel), columns)
     if request.save is not None:
         folder = Path(request.save)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from analysis.exchange.simman import Description, deliverables_of
+from analysis.exchange.simman import SimmanDescription, deliverables_of
 from analysis.exchange.simman_files import write_simman
 from hardware.description.errors import DataError
 from pmm.coefficients.workflow import Outcome
@@ -23,7 +23,7 @@ def write_deliverables(outcome: Outcome, folder: Path, *, overwrite: bool = Fals
     periods = {one.name: one.periods for one in outcome.runs}
     body, ship = outcome.body, outcome.settings.ship
     for cycle in moving:
-        description = Description(
+        description = SimmanDescription(
             run=cycle.name,
             campaign=", ".join(outcome.names),
             scale=ship.scale,

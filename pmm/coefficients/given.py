@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from analysis.coefficients.campaign_plan import OWN_MODEL
-from analysis.coefficients.cycle import Cycle
-from analysis.coefficients.stated import STATED, Stated
+from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.stated import STATED, StatedUncertainties
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import FORCES
@@ -107,7 +107,9 @@ def body_of(
     return campaign.model, tuple(dict.fromkeys(known))
 
 
-def with_own_body(cycle: Cycle, campaign: Campaign, settings: Settings, body: Body | None) -> Cycle:
+def with_own_body(
+    cycle: BodyCycle, campaign: Campaign, settings: Settings, body: Body | None
+) -> BodyCycle:
     """Return a cycle with what is to be taken off: the body, or the one it was recorded with.
 
     Parameters
@@ -154,7 +156,7 @@ def stated_of(
     calibrations: Sequence[Calibration],
     *,
     motion_asked: bool,
-) -> Stated:
+) -> StatedUncertainties:
     """Return the standard uncertainties: the settings', else those of inertia, gauges, set-points.
 
     Parameters
@@ -166,24 +168,27 @@ def stated_of(
         Whether set-points stand in for displacements that were not measured: only then does it
         matter how well eccentricity and phase were set.
     """
-    set_points = Stated(**(_of_set_points(campaign.runs) if motion_asked else {}))
-    known = [*(Stated(**_of_model(one)) for one in models), *map(_of_gauges, calibrations)]
+    set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if motion_asked else {}))
+    known = [
+        *(StatedUncertainties(**_of_model(one)) for one in models),
+        *map(_of_gauges, calibrations),
+    ]
     by_files = largest([set_points, *known])
     own, other = settings.uncertainty, by_files
     freedom = (other if own.inertia_kg_m2 == 0.0 else own).inertia_degrees_of_freedom
     return _stated(np.where(own.vector == 0.0, other.vector, own.vector), freedom)
 
 
-def largest(every: Sequence[Stated]) -> Stated:
+def largest(every: Sequence[StatedUncertainties]) -> StatedUncertainties:
     """Return the largest of each standard uncertainty."""
     inertia = max(every, key=lambda one: one.inertia_kg_m2)
     vector = np.max([one.vector for one in every], axis=0)
     return _stated(vector, inertia.inertia_degrees_of_freedom)
 
 
-def _stated(vector: FloatArray, freedom: float) -> Stated:
+def _stated(vector: FloatArray, freedom: float) -> StatedUncertainties:
     found = dict(zip(STATED, vector.tolist(), strict=True))
-    return Stated(**found, inertia_degrees_of_freedom=freedom)
+    return StatedUncertainties(**found, inertia_degrees_of_freedom=freedom)
 
 
 def _of_model(model: ModelUncertainty) -> dict[str, float]:
@@ -200,11 +205,11 @@ def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
     }
 
 
-def _of_gauges(one: Calibration) -> Stated:
+def _of_gauges(one: Calibration) -> StatedUncertainties:
     """Return what a calibration leaves open, of the struts' gauges that it was made of."""
     rows = {name: one.channels.index(name) for name in FORCES if name in one.channels}
     spread = one.force_uncertainty
-    return Stated(
+    return StatedUncertainties(
         **{
             _GAUGES[force, loaded]: float(spread[i, j])
             for force, i in rows.items()
@@ -213,7 +218,7 @@ def _of_gauges(one: Calibration) -> Stated:
     )
 
 
-def without_dry(cycle: Cycle, dry: Sequence[Cycle], campaign: Campaign) -> Cycle:
+def without_dry(cycle: BodyCycle, dry: Sequence[BodyCycle], campaign: Campaign) -> BodyCycle:
     """Return a cycle less the dry run of its motion, made with its model.
 
     Raises

@@ -7,14 +7,14 @@ from datetime import datetime
 from pathlib import Path
 
 from analysis.coefficients.corrections import (
+    AmplifierFilter,
     Delay,
-    LowPass,
     Response,
     ZeroReading,
     zero_at,
     zero_reading,
 )
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.first_harmonics import seen_in
@@ -152,7 +152,7 @@ def _towed(task: Task, recording: Recording) -> Done:
     return _done(task, recording, _model(task, struts), None, 0, flags)
 
 
-def _model(task: Task, struts: StrutCycle) -> Cycle:
+def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     chain = task.chain
     if chain.matrix is not None:
         struts = struts.calibrated(chain.matrix)
@@ -170,7 +170,7 @@ def response_of(one: Amplifier) -> Response:
     late = Delay(one.lag_s, one.gain)
     if one.cutoff_hz is None:
         return late
-    filtered = LowPass(one.cutoff_hz, one.order, one.kind)
+    filtered = AmplifierFilter(one.cutoff_hz, one.order, one.kind)
     return lambda s: late(s) * filtered(s)
 
 
@@ -250,7 +250,7 @@ def _note(code: str, text: str, name: str) -> Flag:
 def _done(
     task: Task,
     recording: Recording,
-    cycle: Cycle | None,
+    cycle: BodyCycle | None,
     zero: Zero | None,
     periods: int = 0,
     flags: tuple[Flag, ...] = (),

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -136,7 +136,7 @@ class Settings:
     trials: int = 0
     seed: int = 0
     ship: Ship = field(default_factory=Ship)
-    uncertainty: Stated = field(default_factory=Stated)
+    uncertainty: StatedUncertainties = field(default_factory=StatedUncertainties)
     amplifiers: dict[str, Amplifier] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
 

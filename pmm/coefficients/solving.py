@@ -13,8 +13,8 @@ import numpy as np
 from analysis.coefficients.campaign import assemble
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request, check_campaign, plan
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.campaign_solve import Block, solve_group
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import block_sizes, columns, draw_cycles
 from analysis.coefficients.linear import linear_fit
@@ -31,7 +31,7 @@ class GroupSolver:
 
     request: Request
 
-    def __call__(self, group: Group) -> Block:
+    def __call__(self, group: Group) -> GroupCoefficients:
         """Return the group's block; the trials of a linear group are drawn in blocks."""
         linear = group.kind is GroupKind.LINEAR
         return solve_group(group, replace(self.request, trials=0) if linear else self.request)
@@ -59,7 +59,7 @@ def draw_block(one: TrialBlock) -> FloatArray:
 
 
 def solve_campaign(
-    cycles: Sequence[Cycle], request: Request, executor: Executor, progress: Progress
+    cycles: Sequence[BodyCycle], request: Request, executor: Executor, progress: Progress
 ) -> CampaignCoefficients:
     """Return all coefficients of a campaign.
 
@@ -80,20 +80,20 @@ def solve_campaign(
 
 
 def _counted(
-    results: Iterator[Block], total: int, what: str, progress: Progress
-) -> Iterator[Block]:
+    results: Iterator[GroupCoefficients], total: int, what: str, progress: Progress
+) -> Iterator[GroupCoefficients]:
     for k, one in enumerate(results, 1):
         progress(k, total, what)
         yield one
 
 
 def _with_trials(
-    blocks: Sequence[Block],
+    blocks: Sequence[GroupCoefficients],
     groups: Sequence[Group],
     request: Request,
     executor: Executor,
     progress: Progress,
-) -> list[Block]:
+) -> list[GroupCoefficients]:
     """Draw the trials of all linear groups; results come in order, one group after the other."""
     linear = [
         k for k, group in enumerate(groups) if group.kind is GroupKind.LINEAR and blocks[k].entries

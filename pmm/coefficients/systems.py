@@ -6,7 +6,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import System as BySpeed
 from analysis.coefficients.campaign_systems import without_dimensions
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
@@ -20,7 +20,11 @@ _NEEDS = {
 
 
 def in_system(
-    found: CampaignCoefficients, system: System, ship: Ship, body: Body | None, stated: Stated
+    found: CampaignCoefficients,
+    system: System,
+    ship: Ship,
+    body: Body | None,
+    stated: StatedUncertainties,
 ) -> tuple[CampaignCoefficients, tuple[Flag, ...]]:
     """Return the campaign in a system; what has no meaning there is left out, and said.
 

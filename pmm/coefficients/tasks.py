@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from analysis.coefficients.corrections import ZeroReading
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.plausibility import Seen
-from analysis.resolver.analyse import Settings as ResolverSettings
+from analysis.resolver.analyse import ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
@@ -124,7 +124,7 @@ class Done:
 
     name: str
     file: str
-    cycle: Cycle | None
+    cycle: BodyCycle | None
     zero: Zero | None
     periods: int
     sample_rate_hz: float

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.measured import MOTION_ASKED
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
@@ -50,13 +50,13 @@ class Outcome:
 
     names: tuple[str, ...]
     result: CampaignCoefficients
-    cycles: tuple[Cycle, ...]
+    cycles: tuple[BodyCycle, ...]
     runs: tuple[Done, ...]
     failed: tuple[Failed, ...]
     not_recorded: tuple[str, ...]
     flags: Mapping[str, tuple[Flag, ...]]
     left_out: tuple[Flag, ...]
-    stated: Stated
+    stated: StatedUncertainties
     body: Body | None
     settings: Settings
 
@@ -89,11 +89,11 @@ class _Read:
     """One campaign's recordings, read."""
 
     campaign: Campaign
-    cycles: tuple[Cycle, ...]
+    cycles: tuple[BodyCycle, ...]
     runs: tuple[Done, ...]
     failed: tuple[Failed, ...]
     work: Work
-    stated: Stated
+    stated: StatedUncertainties
     body: Body | None
 
     @property
@@ -159,7 +159,7 @@ def coefficients_of(
     )
 
 
-def request_of(settings: Settings, stated: Stated) -> Request:
+def request_of(settings: Settings, stated: StatedUncertainties) -> Request:
     """Return what is wanted of the campaign."""
     return Request(
         settings.form,
@@ -252,7 +252,7 @@ def _recordings(
     return [*zeros, *found]
 
 
-def _asked(cycles: Sequence[Cycle]) -> bool:
+def _asked(cycles: Sequence[BodyCycle]) -> bool:
     """Whether a set-point's motion stands in for one that was not measured."""
     return any(flag.code == MOTION_ASKED.code for one in cycles for flag in one.flags)
 
@@ -271,7 +271,9 @@ def _all(
     return found
 
 
-def _sorted(found: Sequence[Done | Failed], dry: set[str]) -> tuple[list[Cycle], list[Cycle]]:
+def _sorted(
+    found: Sequence[Done | Failed], dry: set[str]
+) -> tuple[list[BodyCycle], list[BodyCycle]]:
     cycles = [one.cycle for one in found if isinstance(one, Done) and one.cycle is not None]
     wet = [one for one in cycles if one.name not in dry]
     return wet, [one for one in cycles if one.name in dry]

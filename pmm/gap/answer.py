@@ -25,7 +25,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from pmm.gap.case import HeldOut
 from pmm.gap.prepare import shares_of
-from sim.effects.effect import Measurement
+from sim.effects.effect import FurtherMeasurement
 
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
@@ -120,9 +120,9 @@ def next_run(one: Proposal) -> dict[str, Any]:
 
 
 def _besides(one: Proposal) -> dict[str, Any]:
-    if one.kind == Measurement.CHECK_WEIGHT:
+    if one.kind == FurtherMeasurement.CHECK_WEIGHT:
         return {"weight_n": one.force_n, "strut": one.strut}
-    if one.kind == Measurement.INJECTION:
+    if one.kind == FurtherMeasurement.INJECTION:
         return {"frequency_hz": INJECTED_HZ, "force_n": one.force_n}
     return {}
 

@@ -13,7 +13,7 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium
 from pmm.campaign import Asked, Campaign
 from pmm.configuration import Fault, as_error, read_toml, validate
-from sim.effects.effect import Measurement
+from sim.effects.effect import FurtherMeasurement
 
 CASE_FILE = "case.toml"
 
@@ -34,7 +34,7 @@ class RigChoices:
     carriage_speed_m_s: Range = field(default_factory=lambda: Range(0.0, 0.0))
     strut_phase_rad: tuple[float, ...] = (0.0,)
     media: tuple[Medium, ...] = (Medium.WATER,)
-    special: tuple[Measurement, ...] = ()
+    special: tuple[FurtherMeasurement, ...] = ()
 
 
 @dataclass(frozen=True)

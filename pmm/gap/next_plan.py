@@ -8,7 +8,7 @@ from analysis.gap.propose import Proposal, dead_weight
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import Medium
 from pmm.toml_text import toml_table, toml_value
-from sim.effects.effect import Measurement
+from sim.effects.effect import FurtherMeasurement
 
 RIG_FILE: Final = "rig.toml"
 
@@ -55,9 +55,9 @@ def _entry(one: Proposal, name: str) -> dict[str, Any]:
 
 
 def _special(one: Proposal, name: str) -> dict[str, Any]:
-    if one.kind == Measurement.REST:
+    if one.kind == FurtherMeasurement.REST:
         return {"kind": str(RunKind.ZERO), "name": name, "duration_s": REST_S}
-    if one.kind == Measurement.CHECK_WEIGHT:
+    if one.kind == FurtherMeasurement.CHECK_WEIGHT:
         loads_n = [0.0, 0.5 * one.force_n, one.force_n]
         return {
             "kind": str(RunKind.CHECK_WEIGHT),

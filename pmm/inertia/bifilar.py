@@ -7,7 +7,7 @@ from itertools import combinations
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment
-from analysis.inertia.spread import Geometry, compare_geometries
+from analysis.inertia.spread import SuspensionGyradius, compare_geometries
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -124,7 +124,9 @@ def _results(
         gyradii[axis] = used[axis].result
         if len(chosen) > 1:
             rows = [
-                Geometry(one.table.name, found.result, one.table.half_spacing_m, one.table.line_m)
+                SuspensionGyradius(
+                    one.table.name, found.result, one.table.half_spacing_m, one.table.line_m
+                )
                 for one, found in chosen
             ]
             spread = compare_geometries(rows)

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from analysis.inertia.ballast import Target, Weight, place_ballast
+from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment
-from analysis.inertia.parts import Part, combine
+from analysis.inertia.parts import BodyPart, combine
 from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag, Severity
@@ -141,7 +141,7 @@ def _budgeted(
     )
 
 
-def _axes(whole: Part) -> PlaneAxes | None:
+def _axes(whole: BodyPart) -> PlaneAxes | None:
     """Return the principal axes in the centre plane, where the body has an extent in it."""
     mass, xx, zz, xz = (float(whole.parameters[k]) for k in (0, 4, 6, 8))
     if min(xx, zz) <= 0.0 or xx == zz:
@@ -165,7 +165,7 @@ def run_ballast(path: str) -> Outcome:
     """
     table = read_job(path, BallastJob).table
     wanted, base = table.wanted, table.base.part()
-    target = Target(
+    target = BallastTarget(
         wanted.mass_kg,
         (wanted.cg_x_m, wanted.cg_y_m, wanted.cg_z_m),
         (wanted.k_roll_m, wanted.k_pitch_m, wanted.k_yaw_m),
@@ -216,7 +216,7 @@ def _exact(bare: list[str]) -> tuple[Flag, ...]:
     return (Flag("no_uncertainty", Severity.NOTE, message),)
 
 
-def _findings(whole: Part) -> tuple[Finding, ...]:
+def _findings(whole: BodyPart) -> tuple[Finding, ...]:
     rows = [Finding("mass_kg", "mass", whole.mass)]
     places = zip("xyz", ("forward", "to starboard", "down"), whole.centre_of_gravity, strict=True)
     rows += [Finding(f"cg_{axis}_m", f"CG {words}", value) for axis, words, value in places]
@@ -227,7 +227,7 @@ def _findings(whole: Part) -> tuple[Finding, ...]:
     return tuple(rows)
 
 
-def _body(name: str, whole: Part, flags: tuple[Flag, ...]) -> InertiaResult:
+def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> InertiaResult:
     """Return the mass properties; what has no gyradius there was given none."""
     x, y, z = whole.centre_of_gravity
     gyradii: dict[str, Estimate] = {

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from analysis.inertia.double_pendulum import Reading, gyradius_error_per_period
+from analysis.inertia.double_pendulum import LineLengthReading, gyradius_error_per_period
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspension
 from analysis.inertia.swing import SwingState, forecast_swing
@@ -205,5 +205,5 @@ def _line_errors(table: PlanJob) -> dict[str, list[tuple[float, float]]]:
             (line, gyradius_error_per_period(gyradius, depth, line, gravity, reading))
             for line in lines
         ]
-        for reading in Reading
+        for reading in LineLengthReading
     }

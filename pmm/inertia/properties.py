@@ -8,7 +8,7 @@ from typing import Any
 from analysis.inertia.budget import Budget, Correlations
 from analysis.inertia.corrections import square_frame
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.parts import MADE_OF, Part, combine, part
+from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag
 from pmm.inertia.given import given, given_or_none
@@ -65,7 +65,7 @@ class PartTable:
         values = (given(self, key) for key in MADE_OF[:4])
         return dict(zip(MADE_OF, (*values, *gyradii), strict=True)), tied
 
-    def part(self) -> Part:
+    def part(self) -> BodyPart:
         """Return it with its covariance."""
         own, tied = self.measured()
         mass, x, y, z, roll, pitch, yaw = (own[key] for key in MADE_OF)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.workflow import Reading, Step, assess_workflow, next_step
+from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Finding
@@ -39,7 +39,7 @@ def guide(
     ConfigurationError
         If all steps are made but the known body's inertia is not given.
     """
-    readings = tuple(Reading(step, measured[step]) for step in Step if step in measured)
+    readings = tuple(StepResult(step, measured[step]) for step in Step if step in measured)
     following = next_step(readings)
     if following is not None:
         step, what = following

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from analysis.kinematics.motion import Driven, Motion, motion
+from analysis.kinematics.motion import Driven, MotionWaves, motion
 from hardware.description import kinds
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -67,7 +67,7 @@ def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
         yield Finding(one.verdict, quantity, one.value, one.limit, run.name, text, check.source)
 
 
-def motion_of(run: RunPlan, rig: RigFile) -> Motion:
+def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
     """Return a run's exact motion over one turn of the shaft, struts moving as sines."""
     point, omega = run.set_point, omega_of(run)
     angle = np.linspace(0.0, 2.0 * math.pi, _INSTANTS, endpoint=False)
@@ -77,7 +77,7 @@ def motion_of(run: RunPlan, rig: RigFile) -> Motion:
     return motion(geometry_of(run, rig.oscillator), driven)
 
 
-def _of_motion(run: RunPlan, made: Motion) -> Iterator[_Condition]:
+def _of_motion(run: RunPlan, made: MotionWaves) -> Iterator[_Condition]:
     if run.oscillates:
         yield _Condition(table.ROTATION, math.degrees(float(np.abs(made.rotation_rad).max())))
     if run.set_point.carriage_speed_m_s:
@@ -85,7 +85,7 @@ def _of_motion(run: RunPlan, made: Motion) -> Iterator[_Condition]:
         yield _Condition(table.ANGLE_TO_FLOW, math.degrees(float(np.abs(beta).max())))
 
 
-def _of_waves(run: RunPlan, rig: RigFile, made: Motion) -> Iterator[_Condition]:
+def _of_waves(run: RunPlan, rig: RigFile, made: MotionWaves) -> Iterator[_Condition]:
     speed, omega = run.set_point.carriage_speed_m_s, omega_of(run)
     if not speed:
         return
@@ -128,7 +128,7 @@ def _of_depth(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
         yield _below(table.BLOCKAGE, blockage, table.BLOCKAGE.numbers[0])
 
 
-def _of_room(rig: RigFile, made: Motion) -> Iterator[_Condition]:
+def _of_room(rig: RigFile, made: MotionWaves) -> Iterator[_Condition]:
     tank, model = rig.tank, rig.model
     if tank is None or model is None or model.length_m is None:
         return

@@ -59,14 +59,14 @@ def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
 
 def _analysis_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what the analysis would refuse, while there is time to change it."""
-    from analysis.resolver.analyse import Settings
+    from analysis.resolver.analyse import ResolverSettings
 
-    known = tuple(Settings.__dataclass_fields__)
+    known = tuple(ResolverSettings.__dataclass_fields__)
     yield from (
         Fault(("analysis", key), unknown((key,), known)) for key in table if key not in known
     )
     inner: list[Fault] = []
-    validate(Settings, table, inner)
+    validate(ResolverSettings, table, inner)
     yield from (Fault(("analysis", *one.place), one.message) for one in inner)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
 from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
@@ -123,7 +123,7 @@ class _Found:
         wanted = replace(request_of(self._settings, stated), wanted=())
         return campaign_coefficients(cycles, wanted)
 
-    def _evaluate(self, task: Task, done: Done, cycle: Cycle) -> None:
+    def _evaluate(self, task: Task, done: Done, cycle: BodyCycle) -> None:
         if task.kind is not RunKind.RESTORING:
             self._towed.append(done)
             self.tows.append(tow_of(task.kind, cycle))

@@ -96,7 +96,7 @@ def _low_pass_hold(filter_: LowPass, step_s: float) -> Hold:
 
 
 @dataclass(frozen=True)
-class Carrier:
+class BridgeCarrier:
     """A carrier on the bridge.
 
     Amplitude modulation, band-limited amplifier and phase-sensitive rectifier together act on the

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray, FloatArray
 
 
-class Line(NamedTuple):
+class RecordedChannel(NamedTuple):
     """One recorded channel: what it is called, what it measures, and how."""
 
     channel: Channel
@@ -62,10 +62,12 @@ class Acquisition:
     name: ClassVar[str] = "acquisition"
 
     @cached_property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[RecordedChannel, ...]:
         """The channels that are recorded, in their order."""
         found = ((channel, getattr(self, channel.name)) for channel in _SOURCES)
-        return tuple(Line(channel, _SOURCES[channel], how) for channel, how in found if how)
+        return tuple(
+            RecordedChannel(channel, _SOURCES[channel], how) for channel, how in found if how
+        )
 
     @cached_property
     def reads(self) -> tuple[Signal, ...]:

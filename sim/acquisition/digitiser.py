@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.acquisition.amplifier import Carrier, LowPass, delay_weights
+from sim.acquisition.amplifier import BridgeCarrier, LowPass, delay_weights
 from sim.acquisition.noise import NoiseState, draw_normal
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -69,7 +69,7 @@ class Digitiser:
     offset: float = 0.0
     gain: float = 1.0
     low_pass: LowPass | None = None
-    carrier: Carrier | None = None
+    carrier: BridgeCarrier | None = None
     delay_s: float = 0.0
     hum: float = 0.0
     hum_hz: float = 50.0

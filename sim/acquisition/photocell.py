@@ -39,7 +39,7 @@ class PhotocellState:
 
 
 @dataclass(frozen=True)
-class Photocell:
+class PhotocellStage:
     """Times at which the shaft passes the mark, found between samples.
 
     Between two samples the angle is the polynomial of fifth degree that has the angle, speed and

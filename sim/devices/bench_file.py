@@ -12,7 +12,7 @@ from hardware.driver import GROUP, read_settings
 from hardware.rig_configuration import TABLES as DEVICES
 from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.simulated import SimulatedTables
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.stated_rig import TABLES, stated_rig
 from sim.devices.world import Scene, World
 
@@ -93,7 +93,7 @@ def read_bench(path: Path) -> Bench:
     simulated = stated_rig(rig, own, folder, str(path))
     scene = Scene(
         simulated.rig,
-        Surroundings(settings.carriage_speed_m_s, settings.medium, settings.seed),
+        PlantConditions(settings.carriage_speed_m_s, settings.medium, settings.seed),
         settings.eccentricity_m,
         settings.strut_phase_rad,
     )

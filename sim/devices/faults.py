@@ -12,7 +12,7 @@ from sim.devices.axis_drive import AxisDrive
 from sim.devices.drive import SimulatedDrive
 from sim.devices.node import SimulatedNode
 from sim.devices.shaft_drive import ShaftDrive
-from sim.devices.talkers import Inclinometer, Talker, held
+from sim.devices.talkers import SimulatedInclinometer, Talker, held
 from sim.devices.world import World
 
 _UNDERVOLTAGE: Final = 0x3220
@@ -160,7 +160,7 @@ def _push(world: World, channel: str, force: str) -> None:
 def _tilt(world: World, part: str, angle_rad: str) -> None:
     """Somebody holds the inclinometer at an angle in radians."""
     talker = _talker(world, part)
-    if isinstance(talker, Inclinometer):
+    if isinstance(talker, SimulatedInclinometer):
         talker.angles = held(float(angle_rad))
 
 

@@ -11,14 +11,14 @@ import can
 from hardware.description.errors import ConfigurationError
 from sim.devices.bench_file import Bench
 from sim.devices.faults import inject
-from sim.devices.terminal import Terminal
+from sim.devices.terminal import PseudoTerminal
 
 _POLL_S = 0.05
 _CHUNK = 4096
 _IDLE_PERIODS = 3  # without SYNC for so long, time goes on by the clock
 
 
-class Carrier(Protocol):
+class FrameCarrier(Protocol):
     """What carries frames: a bus of python-can that can be waited for, or the slcan adapter."""
 
     def fileno(self) -> int:
@@ -50,7 +50,7 @@ class Host:
     def __init__(
         self,
         bench: Bench,
-        carrier: Carrier,
+        carrier: FrameCarrier,
         commands: TextIO,
         answers: TextIO,
         clock: Callable[[], float] | None = None,
@@ -61,7 +61,7 @@ class Host:
         self._serving = True
         self._rest = b""
         self._reset()
-        self._terminals = {name: Terminal() for name in self.world.talkers}
+        self._terminals = {name: PseudoTerminal() for name in self.world.talkers}
         self._lived_s = clock() if clock else 0.0
 
     @property

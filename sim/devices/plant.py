@@ -22,7 +22,7 @@ SHAFT_FRICTION: Final = Friction(time_constant_s=2.0, deceleration=1.0)
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class PlantConditions:
     """What the rig does not decide: carriage speed, medium, seed of all noise, drift angle."""
 
     carriage_speed_m_s: float = 0.0
@@ -74,7 +74,7 @@ class Plant:
     def __init__(
         self,
         rig: SimulatedRig,
-        around: Surroundings,
+        around: PlantConditions,
         sample_rate_hz: float,
         eccentricity_m: float = 0.0,
         strut_phase_rad: float = 0.0,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.prescribed import DriveSettings, Shaft
+from sim.drive.prescribed import DriveSettings, ShaftMotion
 
 
 @dataclass(frozen=True)
@@ -32,14 +32,14 @@ class SpeedProfile:
         """How long the ramp takes."""
         return abs(self.target_rad_s - self.speed_rad_s) / self.acceleration_rad_s2
 
-    def at(self, time_s: FloatArray) -> Shaft:
+    def at(self, time_s: FloatArray) -> ShaftMotion:
         """Return angle, speed and acceleration at each time, none before the start."""
         since = time_s - self.start_s
         in_ramp = np.minimum(since, self.ramp_s)
         slope = math.copysign(self.acceleration_rad_s2, self.target_rad_s - self.speed_rad_s)
         angle = self.angle_rad + (self.speed_rad_s + slope / 2.0 * in_ramp) * in_ramp
         ramping = since < self.ramp_s
-        return Shaft(
+        return ShaftMotion(
             angle + self.target_rad_s * (since - in_ramp),
             np.where(ramping, self.speed_rad_s + slope * in_ramp, self.target_rad_s),
             np.where(ramping, slope, 0.0),
@@ -95,14 +95,14 @@ class Coasting(SpeedProfile):
         """How long it coasts."""
         return self.friction.stops_after_s(self.speed_rad_s)
 
-    def at(self, time_s: FloatArray) -> Shaft:
+    def at(self, time_s: FloatArray) -> ShaftMotion:
         """Return angle, speed and acceleration at each time, none before the start."""
         tau = self.friction.time_constant_s
         dry = math.copysign(self.friction.deceleration * tau, self.speed_rad_s)
         since = np.minimum(time_s - self.start_s, self.ramp_s)
         left = np.exp(-since / tau)
         coasting = time_s - self.start_s < self.ramp_s
-        return Shaft(
+        return ShaftMotion(
             self.angle_rad + (self.speed_rad_s + dry) * tau * (1.0 - left) - dry * since,
             np.where(coasting, (self.speed_rad_s + dry) * left - dry, 0.0),
             np.where(coasting, -(self.speed_rad_s + dry) * left / tau, 0.0),
@@ -115,11 +115,11 @@ class ProfiledDrive(DriveSettings):
 
     profile: SpeedProfile = field(default_factory=SpeedProfile)
 
-    def commanded(self, set_hz: float, time_s: FloatArray) -> Shaft:
+    def commanded(self, set_hz: float, time_s: FloatArray) -> ShaftMotion:
         """Return the motion that the drive is told to make, its ripple and speed error included."""
         told, share = self.profile.at(time_s), 1.0 + self.speed_error
         return self._rippled(
-            Shaft(
+            ShaftMotion(
                 self.initial_angle_rad + share * told.angle,
                 share * told.speed,
                 share * told.acceleration,

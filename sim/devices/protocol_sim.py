@@ -13,7 +13,7 @@ from sim.devices.registry import give_back, take
 if TYPE_CHECKING:
     from typing_extensions import Buffer
 
-    from sim.devices.talkers import Cable
+    from sim.devices.talkers import SerialCable
 
 
 class Serial(serial.SerialBase):
@@ -39,7 +39,7 @@ class Serial(serial.SerialBase):
             raise serial.SerialException(
                 f"{self._rig} has no serial device {part!r}; plugged in: {known or 'none'}"
             )
-        self._cable: Cable = talkers[part].cable
+        self._cable: SerialCable = talkers[part].cable
         self._world.lookers.append(self)
         self.is_open = True
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import can
 
-from sim.devices.terminal import Terminal
+from sim.devices.terminal import PseudoTerminal
 
 _OK: Final = b"\r"
 _SENT: Final = b"z\r"
@@ -22,7 +22,7 @@ class SlcanAdapter:
     """An adapter that carries standard frames, with data or remote."""
 
     def __init__(self) -> None:
-        self._terminal = Terminal()
+        self._terminal = PseudoTerminal()
         self._rest = b""
         self._frames: deque[can.Message] = deque()
         self._open = False

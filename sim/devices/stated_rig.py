@@ -35,7 +35,7 @@ _CONVERTER_STEPS: Final = 2**16  # of the nominal rig's 16 bit converters, from 
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedRig:
     """What is simulated, and the tables that it was read from."""
 
     rig: SimulatedRig
@@ -44,7 +44,7 @@ class Stated:
 
 def stated_rig(
     rig_file: Mapping[str, Any], own: Mapping[str, Any], folder: Path, where: str
-) -> Stated:
+) -> StatedRig:
     """Return the rig that is simulated.
 
     Parameters
@@ -73,7 +73,7 @@ def stated_rig(
         base[name] = base[name] | table if name in _BY_SENSOR else table
     tables = merged(base, own)
     rig = _built(_none_for_false(tables), folder, where)
-    return Stated(rig, _as_tables(rig) | {"radiation": tables.get("radiation")})
+    return StatedRig(rig, _as_tables(rig) | {"radiation": tables.get("radiation")})
 
 
 def _nominal(plane: str, rig_file: Mapping[str, Any]) -> dict[str, Any]:

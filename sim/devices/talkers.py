@@ -11,7 +11,7 @@ _MARK_EVERY_S = 1.0
 _BLOCK = 256
 
 
-class Cable:
+class SerialCable:
     """What a talker has said and nobody has read yet, and whether the plug is in.
 
     Attributes
@@ -32,7 +32,7 @@ class Talker(Protocol):
     ``mute`` is a fault: it says nothing, but goes on living.
     """
 
-    cable: Cable
+    cable: SerialCable
     mute: bool
 
     def tick(self, time_s: float, passages: tuple[Passage, ...]) -> None:
@@ -42,7 +42,7 @@ class Talker(Protocol):
 
 class _Sayer:
     def __init__(self) -> None:
-        self.cable = Cable()
+        self.cable = SerialCable()
         self.mute = False
         self._sequence = 0
 
@@ -109,7 +109,7 @@ class Swinging:
         return self._angles[number - self._first]
 
 
-class Inclinometer(_Sayer):
+class SimulatedInclinometer(_Sayer):
     """Says its angle at its own rate.
 
     Attributes

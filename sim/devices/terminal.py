@@ -6,7 +6,7 @@ import tty
 _CHUNK = 65536
 
 
-class Terminal:
+class PseudoTerminal:
     """The far end of a serial line; :attr:`path` is the near end's device."""
 
     def __init__(self) -> None:

@@ -18,9 +18,9 @@ from hardware.shaft import ShaftSettings
 from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.network import Wire
-from sim.devices.plant import Passage, Plant, Surroundings
+from sim.devices.plant import Passage, Plant, PlantConditions
 from sim.devices.shaft_drive import ShaftDrive
-from sim.devices.talkers import Angles, Inclinometer, Talker, Timestamper, held
+from sim.devices.talkers import Angles, SimulatedInclinometer, Talker, Timestamper, held
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Scene:
     """
 
     rig: SimulatedRig
-    around: Surroundings = field(default_factory=Surroundings)
+    around: PlantConditions = field(default_factory=PlantConditions)
     eccentricity_m: float = 0.0
     strut_phase_rad: float = 0.0
     angles: Angles = field(default_factory=held)
@@ -155,7 +155,7 @@ class World:
             self._check_photocell(part.name)
             self.talkers[part.name] = Timestamper()
         elif isinstance(settings, InclinometerSettings):
-            self.talkers[part.name] = Inclinometer(
+            self.talkers[part.name] = SimulatedInclinometer(
                 settings.sample_rate_hz, settings.rad_per_unit, scene.angles
             )
         elif isinstance(settings, ProbeSettings):

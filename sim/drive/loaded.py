@@ -12,7 +12,7 @@ from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive.gear import geared
 from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
-from sim.drive.prescribed import SHAFT, DriveSettings, Shaft, shaft_over
+from sim.drive.prescribed import SHAFT, DriveSettings, ShaftMotion, shaft_over
 from sim.signals import Signal, Signals
 from sim.solve.coupled_march import TORQUE_DEGREE, ShaftSystem
 from sim.solve.linear import Hold, LinearSystem, causal_hold
@@ -80,7 +80,7 @@ class LoadedDrive:
         states[:known] = state.states
         states[known:] = hold.run(np.array(state.states), joined)
         deviation = states @ system.C.T + torque[:, np.newaxis] @ system.D.T
-        shaft = Shaft(*(given + more for given, more in zip(told, deviation.T, strict=True)))
+        shaft = ShaftMotion(*(given + more for given, more in zip(told, deviation.T, strict=True)))
         tail = tuple((value,) for value in joined[-TORQUE_DEGREE:, 0].tolist())
         return LoadedState(tuple(states[-1].tolist()), tail), shaft.signals
 

@@ -17,7 +17,7 @@ from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 SHAFT = (signals.SHAFT_ANGLE, signals.SHAFT_SPEED, signals.SHAFT_ACCELERATION)
 
 
-class Shaft(NamedTuple):
+class ShaftMotion(NamedTuple):
     """Angle (rad), speed (rad/s) and acceleration (rad/s2) of the shaft, one value a sample."""
 
     angle: FloatArray
@@ -96,7 +96,7 @@ class DriveSettings:
         """Return the frequency at which the shaft turns without load if ``set_hz`` is set."""
         return set_hz * (1.0 + self.speed_error)
 
-    def commanded(self, set_hz: float, time_s: FloatArray) -> Shaft:
+    def commanded(self, set_hz: float, time_s: FloatArray) -> ShaftMotion:
         """Return the motion that the drive is told to make, ramps and ripple included.
 
         During a ramp the speed follows the fifth-order step 10 u^3 - 15 u^4 + 6 u^5 of
@@ -111,10 +111,12 @@ class DriveSettings:
             fraction = fraction - started * less[1]
             rate = rate - less[2]
         omega = 2.0 * math.pi * self.frequency_hz(set_hz)
-        steady = Shaft(self.initial_angle_rad + omega * turned, omega * fraction, omega * rate)
+        steady = ShaftMotion(
+            self.initial_angle_rad + omega * turned, omega * fraction, omega * rate
+        )
         return self._rippled(steady)
 
-    def _rippled(self, shaft: Shaft) -> Shaft:
+    def _rippled(self, shaft: ShaftMotion) -> ShaftMotion:
         if not self.ripple:
             return shaft
         angle = shaft.angle.copy()
@@ -124,7 +126,7 @@ class DriveSettings:
             angle += (ripple.relative / ripple.order) * np.sin(phase)
             factor += ripple.relative * np.cos(phase)
             change -= ripple.relative * ripple.order * np.sin(phase)
-        return Shaft(
+        return ShaftMotion(
             angle, shaft.speed * factor, shaft.acceleration * factor + shaft.speed**2 * change
         )
 

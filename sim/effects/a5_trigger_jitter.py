@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -29,7 +29,7 @@ class TriggerJitter(Effect):
     stage: ClassVar[StageName] = StageName.PHOTOCELL
     repeats: ClassVar[bool] = False
     by_chance: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.PERIODS, Trace.CYCLES)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.PERIODS, DeviationTrace.CYCLES)
 
     jitter_rad: float = parameter(
         5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft", one_sign=OneSign.SCATTER

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.measured import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -25,7 +25,7 @@ class MissedPulse(Effect):
     title: ClassVar[str] = "Missed pulses of the photocell"
     stage: ClassVar[StageName] = StageName.PHOTOCELL
     repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.PULSES,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.PULSES,)
 
     every: float = parameter(
         20.0,

@@ -10,13 +10,13 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser
 from sim.effects.effect import (
+    DeviationTrace,
     Effect,
+    FurtherMeasurement,
     Lines,
-    Measurement,
     OneSign,
     Signature,
     StageName,
-    Trace,
     parameter,
 )
 from sim.effects.measured import with_force_channels
@@ -39,8 +39,11 @@ class Hum(Effect):
     stage: ClassVar[StageName] = StageName.ACQUISITION
     repeats: ClassVar[bool] = False
     by_chance: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES)
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST, Measurement.INJECTION)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.BESIDE, DeviationTrace.CYCLES)
+    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (
+        FurtherMeasurement.REST,
+        FurtherMeasurement.INJECTION,
+    )
 
     amplitude_n: float = parameter(
         0.2, 0.0, 20.0, "N", "amplitude in both force channels", one_sign=OneSign.AMPLITUDE

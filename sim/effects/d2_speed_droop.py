@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import droop
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -24,7 +24,7 @@ class SpeedDroop(Effect):
     name: ClassVar[str] = "speed-droop"
     title: ClassVar[str] = "Mean speed that falls under load"
     stage: ClassVar[StageName] = StageName.DRIVE
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.MOTION,)
 
     droop_rad_s_n_m: float = parameter(
         0.02,

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import droop
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import Yielding
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -26,7 +26,7 @@ class LoadRipple(Effect):
     name: ClassVar[str] = "load-ripple"
     title: ClassVar[str] = "Speed that varies with the load over a revolution"
     stage: ClassVar[StageName] = StageName.DRIVE
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.MOTION,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.MOTION,)
 
     inertia_kg_m2: float = parameter(
         5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank", one_sign=OneSign.MASS

@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.drive.gear import Gear
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
@@ -32,7 +32,7 @@ class GearBacklash(Effect):
     title: ClassVar[str] = "Backlash of the gear before the cranks"
     stage: ClassVar[StageName] = StageName.DRIVE
     costly: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.SHAFT,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.SHAFT,)
 
     # The nominal gear does not give way at all. Beside it the clearance of a good gear shows, and
     # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain

@@ -10,7 +10,7 @@ from sim.rig import SimulatedRig
 
 
 @dataclass(frozen=True)
-class FrequencyError(Effect):
+class SetFrequencyError(Effect):
     """``-2 d M w^2 y`` in phase and ``d B w y`` in quadrature, for the real over the set frequency.
 
     Analysed at the wrong frequency over N periods a harmonic is also sinc(n N d) as large.

@@ -38,7 +38,7 @@ class StageName(StrEnum):
     CARRIAGE = "carriage"
 
 
-class Trace(StrEnum):
+class DeviationTrace(StrEnum):
     """Where in recordings something deviates by more than noise."""
 
     STEADY = "steady"  # means, harmonics and the frequency, whatever the channel
@@ -52,7 +52,7 @@ class Trace(StrEnum):
     SHAFT = "shaft"  # it turns unevenly, or at another frequency
 
 
-class Measurement(StrEnum):
+class FurtherMeasurement(StrEnum):
     """What can be measured besides plain oscillations."""
 
     REST = "rest"
@@ -210,8 +210,8 @@ class Effect(ABC):
     changes_others: ClassVar[bool] = False
     by_chance: ClassVar[bool] = False
     costly: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[Trace, ...]] = ()
-    shown_by: ClassVar[tuple[Measurement, ...]] = ()
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = ()
+    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = ()
     taken_up: ClassVar[bool] = False
 
     def __post_init__(self) -> None:

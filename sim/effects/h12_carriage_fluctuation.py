@@ -10,7 +10,15 @@ from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive.carriage import Fluctuation
-from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import (
+    DeviationTrace,
+    Effect,
+    Lines,
+    OneSign,
+    Signature,
+    StageName,
+    parameter,
+)
 from sim.effects.hydrodynamic import per_speed
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.rig import SimulatedRig
@@ -30,7 +38,11 @@ class CarriageFluctuation(Effect):
     repeats: ClassVar[bool] = False
     by_chance: ClassVar[bool] = True
     # A wave of few periods is a trend, too.
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (
+        DeviationTrace.BESIDE,
+        DeviationTrace.CYCLES,
+        DeviationTrace.TREND,
+    )
 
     relative: float = parameter(
         0.003, 0.0, 0.05, "1", "r, of the mean speed", one_sign=OneSign.AMPLITUDE

@@ -9,13 +9,13 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import (
+    DeviationTrace,
     Effect,
+    FurtherMeasurement,
     Lines,
-    Measurement,
     OneSign,
     Signature,
     StageName,
-    Trace,
     parameter,
 )
 from sim.effects.hydrodynamic import with_laws
@@ -43,8 +43,12 @@ class ResidualWaves(Effect):
     repeats: ClassVar[bool] = False
     by_chance: ClassVar[bool] = True
     # A wave of few periods is a trend, too.
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.BESIDE, Trace.CYCLES, Trace.TREND)
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (
+        DeviationTrace.BESIDE,
+        DeviationTrace.CYCLES,
+        DeviationTrace.TREND,
+    )
+    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (FurtherMeasurement.REST,)
 
     force_n: float = parameter(
         3.0, 0.0, 100.0, "N", "amplitude when the run before has ended", one_sign=OneSign.AMPLITUDE

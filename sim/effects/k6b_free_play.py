@@ -7,10 +7,10 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.situation import Situation, at_struts
-from sim.model.mounting import Joint, Mounting
+from sim.model.mounting import Mounting, StrutJoint
 from sim.rig import SimulatedRig
 
 HIGHEST = 3
@@ -31,7 +31,7 @@ class FreePlay(Effect):
     name: ClassVar[str] = "free-play"
     title: ClassVar[str] = "Play in the struts' last joints, crossed by inertia"
     stage: ClassVar[StageName] = StageName.MECHANISM
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.STEADY,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.STEADY,)
     taken_up: ClassVar[bool] = True
 
     half_play_m: float = parameter(
@@ -60,7 +60,7 @@ class FreePlay(Effect):
         half, preload = self.half_play_m, self.preload_n
         if old is not None:
             half, preload = half + old.half_play_m, preload + old.preload_n
-        return replace(rig, mounting=replace(mounting, joint=Joint(half, preload)))
+        return replace(rig, mounting=replace(mounting, joint=StrutJoint(half, preload)))
 
     def _gauges(self, mounting: Mounting) -> Mounting:
         if mounting.gauge_stiffness_n_m is not None:

@@ -8,7 +8,7 @@ from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
-from sim.gauges.dynamometer import Gauge
+from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 
@@ -41,7 +41,7 @@ class CrossTalk(Effect):
         )
         felt = self._felt_drag(set_point)
 
-        def loaded(one: Gauge, _: int) -> Gauge:
+        def loaded(one: Dynamometer, _: int) -> Dynamometer:
             return replace(one, offset_n=one.offset_n + one.gain * felt)
 
         return with_gauges(replace(rig, dynamometers=dynamometers), loaded)

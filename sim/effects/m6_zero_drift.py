@@ -6,7 +6,14 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Measurement, Signature, StageName, Trace, parameter
+from sim.effects.effect import (
+    DeviationTrace,
+    Effect,
+    FurtherMeasurement,
+    Signature,
+    StageName,
+    parameter,
+)
 from sim.effects.measured import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
@@ -27,8 +34,8 @@ class ZeroDrift(Effect):
     title: ClassVar[str] = "Drift of the dynamometers' zero"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
     repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.TREND, Trace.MEAN)
-    shown_by: ClassVar[tuple[Measurement, ...]] = (Measurement.REST,)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.TREND, DeviationTrace.MEAN)
+    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (FurtherMeasurement.REST,)
 
     aft_n_s: float = parameter(1e-3, -0.2, 0.2, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.2, 0.2, "N/s", "drift of the fore dynamometer")

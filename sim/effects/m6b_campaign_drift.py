@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.effects.effect import Effect, OneSign, Signature, StageName, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.measured import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
@@ -32,7 +32,7 @@ class CampaignDrift(Effect):
     title: ClassVar[str] = "Drift of the dynamometers' zero over the campaign"
     stage: ClassVar[StageName] = StageName.DYNAMOMETERS
     repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[Trace, ...]] = (Trace.TREND, Trace.MEAN)
+    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.TREND, DeviationTrace.MEAN)
 
     aft_n_s: float = parameter(2e-4, -0.01, 0.01, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.01, 0.01, "N/s", "drift of the fore dynamometer")

@@ -10,7 +10,7 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.measured import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
-from sim.gauges.dynamometer import Gauge
+from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 
@@ -46,7 +46,7 @@ class Saturation(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these limits, or the narrower ones that the gauges have."""
 
-        def limited(one: Gauge, _: int) -> Gauge:
+        def limited(one: Dynamometer, _: int) -> Dynamometer:
             lowest = -np.inf if one.lowest_n is None else one.lowest_n
             highest = np.inf if one.highest_n is None else one.highest_n
             return replace(

@@ -12,7 +12,7 @@ from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamic import radiation_of, scaled, through_water
 from sim.effects.measured import of_forces, with_gauges
 from sim.effects.situation import Situation
-from sim.gauges.dynamometer import Gauge
+from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 SECONDS_AN_HOUR = 3600.0
@@ -71,7 +71,7 @@ class Temperature(Effect):
         """Return the rig as it is when warm."""
         gain, zero = 1.0 + self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
 
-        def warm(one: Gauge, _: int) -> Gauge:
+        def warm(one: Dynamometer, _: int) -> Dynamometer:
             return replace(one, gain=one.gain * gain, offset_n=one.offset_n + zero)
 
         dense, viscous = self._factors

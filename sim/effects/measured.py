@@ -12,7 +12,7 @@ from hardware.description.arrays import ComplexArray
 from sim.acquisition.channels import Digitiser
 from sim.effects.effect import Signature
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
-from sim.gauges.dynamometer import Gauge
+from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 HIGHEST = 3  # order that a signature names
@@ -21,7 +21,9 @@ MOST = 12  # order up to which the nominal force is known
 Pair = tuple[float, float]
 
 
-def with_gauges(rig: SimulatedRig, change: Callable[[Gauge, int], Gauge]) -> SimulatedRig:
+def with_gauges(
+    rig: SimulatedRig, change: Callable[[Dynamometer, int], Dynamometer]
+) -> SimulatedRig:
     """Return the rig with both gauges changed; ``change`` is given 0 for aft and 1 for fore."""
     old = rig.dynamometers
     return replace(rig, dynamometers=replace(old, aft=change(old.aft, 0), fore=change(old.fore, 1)))

@@ -17,7 +17,7 @@ DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
 
 
 @dataclass(frozen=True)
-class Gauge:
+class Dynamometer:
     """One dynamometer: reading = gain * (force + curvature * force^2 + hysteresis) + offset.
 
     Attributes
@@ -70,11 +70,11 @@ class Gauge:
     def _drifts(self) -> bool:
         return bool(self.zero_drift_n_s or self.zero_drifted_n)
 
-    def without_drift(self) -> "Gauge":
+    def without_drift(self) -> "Dynamometer":
         """Return the gauge with a zero that stays where it was taken."""
         return replace(self, zero_drift_n_s=0.0, zero_drifted_n=0.0) if self._drifts else self
 
-    def drifting_from(self, time_s: float) -> "Gauge":
+    def drifting_from(self, time_s: float) -> "Dynamometer":
         """Return the gauge with a zero that drifts by as much at this time as before at time 0."""
         if not self.zero_drift_n_s:
             return self
@@ -91,8 +91,8 @@ class Dynamometers:
         What the gauge at that strut feels of the other strut's force.
     """
 
-    aft: Gauge = Gauge()
-    fore: Gauge = Gauge()
+    aft: Dynamometer = Dynamometer()
+    fore: Dynamometer = Dynamometer()
     cross_talk_aft: float = 0.0
     cross_talk_fore: float = 0.0
 

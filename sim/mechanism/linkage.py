@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.mechanism.play import Motion, PlayState, follow_with_play
+from sim.mechanism.play import JointMotion, PlayState, follow_with_play
 from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
@@ -118,7 +118,7 @@ class Mechanism:
         after = list(state or (None, None))
         for i, (strut, names) in enumerate(zip(self.struts, _WRITES, strict=True)):
             d, slope, curvature = self._strut(strut, angle)
-            motion = Motion(d, slope * speed, curvature * speed**2 + slope * acceleration)
+            motion = JointMotion(d, slope * speed, curvature * speed**2 + slope * acceleration)
             values: tuple[FloatArray, ...] = (*motion, slope)
             if strut[0].half_play_m and block.count:
                 after[i], behind = follow_with_play(
@@ -139,7 +139,7 @@ class Mechanism:
                 speed = period.values(inputs[signals.SHAFT_SPEED.name])
                 gained = period.values(inputs[signals.SHAFT_ACCELERATION.name])
                 in_front = (d, slope * speed, curvature * speed**2 + slope * gained)
-                twice = Motion(*(np.tile(one, 2) for one in in_front))
+                twice = JointMotion(*(np.tile(one, 2) for one in in_front))
                 _, behind = follow_with_play(None, twice, strut[0].half_play_m, period.step_s)
                 d, slope = behind.position[period.points :], slope * behind.contact[period.points :]
             motion, lever = period.harmonics(np.column_stack([d, slope])).T

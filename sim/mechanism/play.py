@@ -18,7 +18,7 @@ class PlayState(NamedTuple):
     owed: float = 0.0
 
 
-class Motion(NamedTuple):
+class JointMotion(NamedTuple):
     """Position, velocity and acceleration in front of the joint, one value a sample."""
 
     position: FloatArray
@@ -36,7 +36,7 @@ class Follower(NamedTuple):
 
 
 def follow_with_play(
-    state: PlayState | None, motion: Motion, half_play_m: float, step_s: float
+    state: PlayState | None, motion: JointMotion, half_play_m: float, step_s: float
 ) -> tuple[PlayState, Follower]:
     """Return the motion behind a joint with friction, which stays put within the clearance.
 
@@ -86,7 +86,7 @@ def follow_with_play(
 
 
 def _contact(
-    motion: Motion, held: FloatArray, half_play_m: float, step_s: float
+    motion: JointMotion, held: FloatArray, half_play_m: float, step_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return velocity and time of the next contact, seen from each sample: m/s, and in samples."""
     d, v, a = motion

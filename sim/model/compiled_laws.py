@@ -82,7 +82,7 @@ def law_value(
     at
         Position, velocity and load at the law's point.
     half
-        See :attr:`sim.model.force_law.Motion.half_change`.
+        See :attr:`sim.model.force_law.LawInput.half_change`.
     """
     kind = int(p[i, 0])
     x, v, load = at

@@ -17,7 +17,7 @@ CREEP_M_S: Final = 1e-4
 
 
 class Argument(IntEnum):
-    """What of a :class:`Motion` a law may jump or bend over."""
+    """What of a :class:`LawInput` a law may jump or bend over."""
 
     POSITION = 0
     VELOCITY = 1
@@ -37,7 +37,7 @@ TURNS: Final = (Corner(Argument.VELOCITY, -CREEP_M_S), Corner(Argument.VELOCITY,
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class LawInput:
     """What a law may depend on: one value per sample each.
 
     Attributes
@@ -95,7 +95,7 @@ class ForceLaw(ABC):
         return ()
 
     @abstractmethod
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force that has to be exerted, shape ``(samples,)``."""
 
     def scaled(self, factor: float) -> Self:

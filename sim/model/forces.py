@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.mechanism import geometry
 from sim.model.acting import Acting, Point
-from sim.model.laws import Motion
+from sim.model.laws import LawInput
 from sim.model.numbers import (
     corners_only,
     geometry_only,
@@ -67,7 +67,9 @@ def law_forces(
         if through:
             velocity, acceleration = at.v, at.v_rate
         force = acting.law.force(
-            Motion(motion.position @ along, velocity, acceleration, motion.load @ share, *instants)
+            LawInput(
+                motion.position @ along, velocity, acceleration, motion.load @ share, *instants
+            )
         )
         if through:
             across += force

@@ -18,9 +18,9 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.model.force_law import CREEP_M_S, TURNS, Argument, Corner, ForceLaw, Motion
+from sim.model.force_law import CREEP_M_S, TURNS, Argument, Corner, ForceLaw, LawInput
 
-__all__ = ["CREEP_M_S", "ForceLaw", "Motion"]
+__all__ = ["CREEP_M_S", "ForceLaw", "LawInput"]
 
 # Of the Stribeck speed: beyond it exp(-9), 1e-4 of the force, is left. It only parts the period.
 _STRIBECK_ENDS = 3.0
@@ -34,7 +34,7 @@ class Viscous(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("viscous_n_s_m",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         return self.viscous_n_s_m * motion.velocity
 
@@ -53,7 +53,7 @@ class Quadratic(ForceLaw):
         """Return where the flow turns."""
         return (Corner(Argument.VELOCITY, -self.drift_m_s),)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         velocity = motion.velocity + self.drift_m_s
         return self.quadratic_n_s2_m2 * velocity * np.abs(velocity)
@@ -67,7 +67,7 @@ class Cubic(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("cubic_n_s3_m3",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         return self.cubic_n_s3_m3 * motion.velocity**3
 
@@ -90,7 +90,7 @@ class Coulomb(ForceLaw):
         """Return where the motion turns."""
         return TURNS
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         return self.coulomb_n * motion.direction + self.uneven_n
 
@@ -110,7 +110,7 @@ class Stribeck(ForceLaw):
         rest = _STRIBECK_ENDS * self.stribeck_speed_m_s
         return (*TURNS, Corner(Argument.VELOCITY, rest), Corner(Argument.VELOCITY, -rest))
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force that has to be exerted: its mean over the sample, by its integral."""
         from scipy.special import erf
 
@@ -138,7 +138,7 @@ class LoadFriction(ForceLaw):
             return TURNS
         return (*TURNS, Corner(Argument.LOAD, -self.side_load_n / self.load_share))
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         normal = np.abs(self.load_share * motion.load + self.side_load_n)
         return self.friction * normal * motion.direction
@@ -160,7 +160,7 @@ class Spring(ForceLaw):
         "preload_n",
     )
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         x = motion.position
         slope = self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3)
@@ -180,7 +180,7 @@ class RubbingSpring(ForceLaw):
         """Return where the motion turns, and its middle."""
         return (*TURNS, Corner(Argument.POSITION))
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         return self.rubbing_n_m * np.abs(motion.position) * motion.direction
 
@@ -196,7 +196,7 @@ class Proximity(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("proximity_n",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         ratio = self.clearance_m / (self.clearance_m - motion.position)
         return (
@@ -216,7 +216,7 @@ class Exponential(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("suction_n",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         dynamic = _dynamic(motion, self.reference_speed_m_s)
         return self.suction_n * dynamic * np.expm1(self.rate_1_m * motion.position)
@@ -239,7 +239,7 @@ class Tone(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("tone_n",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         """Return the force."""
         turned = 2.0 * math.pi * self.tone_hz * motion.time_s + self.tone_phase_rad
         decay = 1.0 if self.decay_s is None else np.exp(-motion.time_s / self.decay_s)
@@ -247,7 +247,7 @@ class Tone(ForceLaw):
         return tone
 
 
-def _dynamic(motion: Motion, reference_speed_m_s: float | None) -> FloatArray | float:
+def _dynamic(motion: LawInput, reference_speed_m_s: float | None) -> FloatArray | float:
     """Return (U/U_0)^2, or 1 where the law does not depend on the speed."""
     if reference_speed_m_s is None:
         return 1.0

@@ -24,7 +24,7 @@ class Elastic(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Joint:
+class StrutJoint:
     """The last joint of each strut, with a clearance that only forces take up.
 
     Attributes
@@ -78,7 +78,7 @@ class Mounting:
     frame_stiffness_n_m: float | None = None
     frame_damping_n_s_m: float = 0.0
     frame_mass_kg: float = 500.0
-    joint: Joint | None = None
+    joint: StrutJoint | None = None
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
-from sim.model.mounting import Elastic, Joint
+from sim.model.mounting import Elastic, StrutJoint
 from sim.model.water.radiation import Radiation
 from sim.solve.linear import Hold, LinearSystem, causal_hold, hermite_hold
 
@@ -56,7 +56,7 @@ class HullSystem:
     to_motion: FloatArray
     radiation: Radiation
     elastic: Elastic
-    joint: Joint | None = None
+    joint: StrutJoint | None = None
 
     @property
     def elastic_count(self) -> int:

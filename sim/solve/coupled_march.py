@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.drive.prescribed import SHAFT, DriveSettings, Shaft
+from sim.drive.prescribed import SHAFT, DriveSettings, ShaftMotion
 from sim.mechanism.linkage import Mechanism
 from sim.model.blocks import HullState, marched_state
 from sim.model.hull import Hull
@@ -116,7 +116,7 @@ class CoupledMarch:
                 f"try another sample rate"
             )
 
-    def _course(self, told: Shaft, state: HullState, known: int) -> "Course":
+    def _course(self, told: ShaftMotion, state: HullState, known: int) -> "Course":
         struts = self._struts(told)
         forces = self.hull.forces_over(self.block, self.flow_m_s)
         if not self.hull.system.states:  # a model that remembers nothing
@@ -129,15 +129,15 @@ class CoupledMarch:
         more = np.full(len(self.shaft.system.B.T), torque)
         return course._replace(scale=np.concatenate([course.scale, more]))
 
-    def _struts(self, told: Shaft) -> FloatArray:
+    def _struts(self, told: ShaftMotion) -> FloatArray:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion[one.name] for one in self.hull.reads[:6]])
 
-    def _levers(self, told: Shaft) -> FloatArray:
+    def _levers(self, told: ShaftMotion) -> FloatArray:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
-    def _shaft_loop(self, told: Shaft) -> "ShaftLoop":
+    def _shaft_loop(self, told: ShaftMotion) -> "ShaftLoop":
         from sim.drive.shaft_loop import ShaftLoop
 
         one, count = self.shaft, self.block.count

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.campaign import Request, campaign_coefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import Form
 from analysis.coefficients.reference import compared, table_of_matrices
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.model.hull import HullCoefficients
@@ -38,14 +38,14 @@ def hull(name: str, plane: Plane) -> RadiationTable:
     return read_hull_csv(TABLES / "hulls.csv", plane, name)
 
 
-def run(rig: SimulatedRig, point: SetPoint, name: str) -> Cycle:
+def run(rig: SimulatedRig, point: SetPoint, name: str) -> BodyCycle:
     record = simulate(rig, point, periods=20, sample_rate_hz=100.0, seed=5, name=name)
-    settings = Settings(channels=CHANNELS, harmonics=1)
+    settings = ResolverSettings(channels=CHANNELS, harmonics=1)
     cycle = measured_cycle(analyse(from_dataset(record), settings=settings), rig.oscillator).model()
     return cycle.without(rig.body, np.array(rig.water.restoring))
 
 
-def campaign(table: RadiationTable) -> list[Cycle]:
+def campaign(table: RadiationTable) -> list[BodyCycle]:
     """Three frequencies of the table, both motions."""
     vertical = table.plane is Plane.VERTICAL
     rig = vertical_rig() if vertical else horizontal_rig()

@@ -9,7 +9,7 @@ from typing import Any, get_args
 import pytest
 from click.testing import CliRunner
 
-from analysis.resolver.analyse import Settings
+from analysis.resolver.analyse import ResolverSettings
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
@@ -20,10 +20,10 @@ from pmm.campaign import AtRest, Campaign, Run, Simulation, SwitchedOn
 from pmm.campaign_file import read_campaign
 from pmm.cli import cli
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.prescribed import DriveSettings
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Setting
 from sim.model.acting import Acting, AnyLaw
 from sim.model.hull import HullCoefficients
@@ -67,12 +67,12 @@ def test_there_are_examples() -> None:
         HullCoefficients,
         DriveSettings,
         Dynamometers,
-        Gauge,
+        Dynamometer,
         Acquisition,
         Digitiser,
-        Photocell,
+        PhotocellStage,
         ReferenceChoice,
-        Settings,
+        ResolverSettings,
         CarriageSettings,
         Fluctuation,
         Setting,
@@ -140,7 +140,7 @@ def test_defaults_are_those_of_the_page(tmp_path: Path) -> None:
     assert campaign.runs[0].set_point == SetPoint(0.8, 0.02, 0.0, 0.0, Medium.WATER)
     assert (campaign.runs[0].periods, campaign.runs[0].file) == (10, None)
     assert campaign.simulation == Simulation(200.0, 3, 1)
-    assert campaign.photocell == Photocell()
+    assert campaign.photocell == PhotocellStage()
 
 
 def test_the_columns_of_the_page_reach_the_reader(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.chain import Chain
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 
 COUNT = 200_000
@@ -78,7 +78,8 @@ def test_converter_rounds_and_limits() -> None:
 
 def test_gauge_has_gain_and_offset() -> None:
     chain = Chain(
-        (Dynamometers(aft=Gauge(1.01, 2.0), fore=Gauge(0.99, -1.0)),), (FORCE_AFT, FORCE_FORE)
+        (Dynamometers(aft=Dynamometer(1.01, 2.0), fore=Dynamometer(0.99, -1.0)),),
+        (FORCE_AFT, FORCE_FORE),
     )
     force = np.array([0.0, 100.0])
     fed = {FORCE_AFT.name: force, FORCE_FORE.name: force}

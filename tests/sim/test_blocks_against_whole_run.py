@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain, join
 from sim.drive.prescribed import DriveSettings
 from sim.mechanism.linkage import Mechanism
@@ -46,7 +46,7 @@ def busy_rig() -> SimulatedRig:
     return replace(
         horizontal_rig(rod_length_m=1.0),
         drive=DriveSettings(initial_angle_rad=0.2, start_ramp_s=1.7),
-        photocell=Photocell(mark_angle_rad=0.1, latency_s=1e-3, jitter_rms_s=1e-3),
+        photocell=PhotocellStage(mark_angle_rad=0.1, latency_s=1e-3, jitter_rms_s=1e-3),
         acquisition=Acquisition(noisy, noisy, noisy, noisy, noisy, noisy),
     )
 

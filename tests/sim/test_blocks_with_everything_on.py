@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
+from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.chain import join
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Cogging, Guides, ShuntMotor
 from sim.drive.prescribed import DriveSettings, SpeedRipple
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.model.acting import Acting, Point
 from sim.model.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
 from sim.model.mounting import Mounting
@@ -41,11 +41,11 @@ def everything() -> SimulatedRig:
         offset=0.3,
         gain=1.01,
         low_pass=LowPass(15.0, FilterKind.BUTTERWORTH, 4),
-        carrier=Carrier(phase_error_rad=0.1),
+        carrier=BridgeCarrier(phase_error_rad=0.1),
         delay_s=0.013,
         hum=0.5,
     )
-    gauge = Gauge(1.01, 0.5, 500.0, 1e-5, 1e-5, 0.01, -300.0, 300.0)
+    gauge = Dynamometer(1.01, 0.5, 500.0, 1e-5, 1e-5, 0.01, -300.0, 300.0)
     return replace(
         vertical_rig(),
         drive=DriveSettings(start_ramp_s=1.1, ripple=(SpeedRipple(2, 0.01),), speed_error=0.01),
@@ -61,7 +61,7 @@ def everything() -> SimulatedRig:
         ),
         dynamometers=Dynamometers(gauge, gauge, 0.01, -0.01),
         acquisition=Acquisition(channel, channel, channel, channel, channel, channel),
-        photocell=Photocell(0.1, 1e-3, 1e-3, missed_every=3, extra_every=2),
+        photocell=PhotocellStage(0.1, 1e-3, 1e-3, missed_every=3, extra_every=2),
     )
 
 

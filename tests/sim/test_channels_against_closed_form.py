@@ -8,13 +8,13 @@ import pytest
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
+from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
 from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
 from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 from sim.solve.period import Period
@@ -69,9 +69,9 @@ def test_delay_is_a_pure_delay(delay: float) -> None:
 
 def test_carrier_demodulated_and_as_it_is() -> None:
     signal = np.linspace(1.0, 2.0, 50)
-    equivalent = record(Digitiser(carrier=Carrier(phase_error_rad=0.2)), signal)
+    equivalent = record(Digitiser(carrier=BridgeCarrier(phase_error_rad=0.2)), signal)
     np.testing.assert_allclose(equivalent, signal * math.cos(0.2))
-    ridden = record(Digitiser(carrier=Carrier(frequency_hz=30.0, demodulated=False)), signal)
+    ridden = record(Digitiser(carrier=BridgeCarrier(frequency_hz=30.0, demodulated=False)), signal)
     time = np.arange(50) / RATE
     np.testing.assert_allclose(ridden, signal * np.cos(60 * math.pi * time), atol=1e-12)
 
@@ -97,7 +97,7 @@ def read(dynamometers: Dynamometers, orders: dict[int, complex]) -> np.ndarray:
 def test_quadratic_gauge() -> None:
     """q F^2: q F^2/2 in the mean, and at twice the frequency with twice the phase."""
     force = 80.0 * np.exp(0.7j)
-    found = read(Dynamometers(aft=Gauge(curvature_1_n=1e-4)), {1: force})
+    found = read(Dynamometers(aft=Dynamometer(curvature_1_n=1e-4)), {1: force})
     assert found[0] == pytest.approx(1e-4 * 80.0**2 / 2.0)
     assert found[1] == pytest.approx(force)
     assert found[2] == pytest.approx(1e-4 * force**2 / 2.0)
@@ -106,7 +106,7 @@ def test_quadratic_gauge() -> None:
 def test_hysteresis_lags_the_force_by_a_rayleigh_loop() -> None:
     """In force phase -(4/3 pi) beta F_m^2 and -(4/15 pi) beta F_m^2 at order 3."""
     beta, peak = 1e-4, 80.0
-    found = read(Dynamometers(aft=Gauge(hysteresis_1_n=beta)), {1: -1j * peak})
+    found = read(Dynamometers(aft=Dynamometer(hysteresis_1_n=beta)), {1: -1j * peak})
     assert found[1].real == pytest.approx(-4 / (3 * math.pi) * beta * peak**2, rel=1e-3)
     assert found[3].real == pytest.approx(-4 / (15 * math.pi) * beta * peak**2, rel=1e-2)
     assert -found[1].imag == pytest.approx(peak, rel=1e-9)
@@ -114,9 +114,9 @@ def test_hysteresis_lags_the_force_by_a_rayleigh_loop() -> None:
 
 def test_cross_talk_and_a_stop() -> None:
     assert read(Dynamometers(cross_talk_aft=0.02), {1: 10.0})[1] == pytest.approx(10.4)
-    clipped = read(Dynamometers(aft=Gauge(highest_n=9.0, lowest_n=-9.0)), {1: 10.0})
+    clipped = read(Dynamometers(aft=Dynamometer(highest_n=9.0, lowest_n=-9.0)), {1: 10.0})
     assert abs(clipped[3]) / abs(clipped[1]) == pytest.approx(0.032, abs=2e-3)
-    one_sided = read(Dynamometers(aft=Gauge(highest_n=9.0)), {1: 10.0})
+    one_sided = read(Dynamometers(aft=Dynamometer(highest_n=9.0)), {1: 10.0})
     assert abs(one_sided[2]) > 0.1
 
 
@@ -148,7 +148,7 @@ def test_tilted_slot_and_offset_rod() -> None:
 
 def test_photocell_misses_and_doubles() -> None:
     drive = ConstantSpeedDrive(1.0, DriveSettings(initial_angle_rad=-0.5))
-    chain = Chain((drive, Photocell(missed_every=3, extra_every=4, extra_after_s=0.1)))
+    chain = Chain((drive, PhotocellStage(missed_every=3, extra_every=4, extra_after_s=0.1)))
     found = chain.run(chain.start(50.0, 0), 420)[1]["photocell_edge_time"]
     turns = found - 0.5 / (2 * math.pi)
     np.testing.assert_allclose(turns, [0, 1, 3, 3.1, 4, 6, 7, 7.1], atol=1e-12)

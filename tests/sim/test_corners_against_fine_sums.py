@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hardware.description.setpoint import SetPoint
 from sim.model.acting import Acting, Point
-from sim.model.force_law import Motion
+from sim.model.force_law import LawInput
 from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
 from sim.model.law_table import table_of
 from sim.model.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
@@ -145,7 +145,7 @@ def test_a_law_that_jumps_has_corners() -> None:
     jumping = set()
     for law in CORNERED:
         short, long = (
-            law.force(Motion(one, np.array([1e-3]), one, one, one, step_s, one))
+            law.force(LawInput(one, np.array([1e-3]), one, one, one, step_s, one))
             for step_s in (0.0, 0.1)
         )
         if short != long:

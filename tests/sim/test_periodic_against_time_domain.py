@@ -10,8 +10,8 @@ import pytest
 from hardware.description.arrays import ComplexArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.acquisition.amplifier import Carrier, FilterKind, LowPass
-from sim.acquisition.photocell import Photocell
+from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
+from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
 from sim.drive.motor import Cogging, Guides, Servo, ShuntMotor
 from sim.drive.prescribed import DriveSettings, SpeedRipple
@@ -130,7 +130,9 @@ def test_coefficients_put_in_come_out_to_1e_9_with_memory_and_filter() -> None:
     low_pass = LowPass(20.0, FilterKind.BESSEL, 4)
     acquisition = IDEAL.acquisition
     assert acquisition.force_aft is not None
-    channel = replace(acquisition.force_aft, low_pass=low_pass, delay_s=0.002, carrier=Carrier())
+    channel = replace(
+        acquisition.force_aft, low_pass=low_pass, delay_s=0.002, carrier=BridgeCarrier()
+    )
     rig = replace(
         IDEAL,
         radiation=MEMORY,
@@ -150,7 +152,7 @@ def test_coefficients_put_in_come_out_to_1e_9_with_memory_and_filter() -> None:
 
 def test_photocell_turns_the_phases() -> None:
     """Angle alpha and delay t_d together: order n is turned by n (alpha + w t_d)."""
-    rig = replace(IDEAL, photocell=Photocell(mark_angle_rad=0.1, latency_s=0.003))
+    rig = replace(IDEAL, photocell=PhotocellStage(mark_angle_rad=0.1, latency_s=0.003))
     straight, turned = steady_run(IDEAL, SET_POINT), steady_run(rig, SET_POINT)
     angle = 0.1 + straight.period.omega_rad_s * 0.003
     for name in ("force_aft", "displacement_fore"):

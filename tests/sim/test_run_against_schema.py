@@ -16,7 +16,7 @@ from hardware.description import dataset as schema
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.drive.prescribed import DriveSettings
-from sim.gauges.dynamometer import Dynamometers, Gauge
+from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
 
@@ -142,7 +142,7 @@ def test_arguments_out_of_range_are_refused(arguments: dict[str, Any], message: 
 
 
 def test_overloaded_dynamometer_is_flagged() -> None:
-    weak = Dynamometers(aft=Gauge(full_scale_n=5.0), fore=Gauge(full_scale_n=1e4))
+    weak = Dynamometers(aft=Dynamometer(full_scale_n=5.0), fore=Dynamometer(full_scale_n=1e4))
     run = simulate(replace(vertical_rig(), dynamometers=weak), SET_POINT, periods=2, seed=0)
     (flag,) = json.loads(run.attrs[schema.ATTR_FLAGS])
     assert (flag["code"], flag["channel"]) == ("dynamometer-overload", "force_aft")

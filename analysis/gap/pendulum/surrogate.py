@@ -28,7 +28,7 @@ _STAGES = (
 _PERIODS = (
     (RestoringError,),
     (RestoringError, effects.AmplitudePeriod),
-    (RestoringError, effects.AmplitudePeriod, effects.NonlinearRestoring),
+    (RestoringError, effects.AmplitudePeriod, effects.CubicRestoring),
 )
 _OF_PERIODS = ("restoring", "amplitude_period")
 

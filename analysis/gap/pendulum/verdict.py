@@ -30,10 +30,10 @@ LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
     "dry friction": (body.BearingFriction,),
     "linear": (body.ViscousDamping,),
     "quadratic": (body.QuadraticDrag,),
-    "cubic": (body.CubicDamping,),
+    "cubic": (body.CubicRateDamping,),
     "linear and quadratic": (body.ViscousDamping, body.QuadraticDrag),
-    "linear and cubic": (body.ViscousDamping, body.CubicDamping),
-    "quadratic and cubic": (body.QuadraticDrag, body.CubicDamping),
+    "linear and cubic": (body.ViscousDamping, body.CubicRateDamping),
+    "quadratic and cubic": (body.QuadraticDrag, body.CubicRateDamping),
     "dry friction and quadratic": (body.BearingFriction, body.QuadraticDrag),
     "any power": (body.PowerDrag,),
 }

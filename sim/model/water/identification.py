@@ -20,7 +20,7 @@ _GOOD_ENOUGH: Final = 2e-6
 
 
 @dataclass(frozen=True)
-class Target:
+class MemoryTarget:
     """What a memory of m degrees of freedom has to reproduce at k frequencies.
 
     Attributes
@@ -70,7 +70,7 @@ class Target:
 
 
 def best_ladder(
-    target: Target, states: int, starts: int, generator: np.random.Generator
+    target: MemoryTarget, states: int, starts: int, generator: np.random.Generator
 ) -> tuple[Ladder, FloatArray]:
     """Return the ladder of one degree of freedom that comes nearest from several starts."""
     ladder = Ladder(states, 1)
@@ -79,7 +79,7 @@ def best_ladder(
 
 
 def best_joint_ladder(
-    target: Target,
+    target: MemoryTarget,
     first: tuple[Ladder, FloatArray],
     second: tuple[Ladder, FloatArray],
     starts: int,
@@ -96,7 +96,7 @@ def best_joint_ladder(
     return ladder, _best(target, ladder, (pair + size * one for one in spread))
 
 
-def _best(target: Target, ladder: Ladder, candidates: Iterable[FloatArray]) -> FloatArray:
+def _best(target: MemoryTarget, ladder: Ladder, candidates: Iterable[FloatArray]) -> FloatArray:
     """Refine the candidates and return the best result that fades."""
     best, least = None, np.inf
     for start in candidates:
@@ -113,7 +113,7 @@ def _best(target: Target, ladder: Ladder, candidates: Iterable[FloatArray]) -> F
     return best
 
 
-def _fades(target: Target, ladder: Ladder, numbers: FloatArray) -> bool:
+def _fades(target: MemoryTarget, ladder: Ladder, numbers: FloatArray) -> bool:
     """Tell whether the slowest state fades; one that does not is an artefact of the fit."""
     slowest = np.linalg.eigvals(ladder.matrices(numbers).state).real.max()
     return bool(slowest < -_SLOWEST_FADING * target.omega[0])
@@ -134,7 +134,7 @@ def joint_ladder(
     return ladder, ladder.join(skew, lower, inner, added)
 
 
-def _draw(ladder: Ladder, target: Target, generator: np.random.Generator) -> FloatArray:
+def _draw(ladder: Ladder, target: MemoryTarget, generator: np.random.Generator) -> FloatArray:
     """Draw numbers around those of a memory that peaks where the damping does."""
     peak = target.omega[np.argmax(target.damping[:, 0, 0])]
     size = np.sqrt(np.ptp(target.added_mass) + np.ptp(target.damping) / peak)

@@ -14,7 +14,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from sim.model.water.identification import Target, best_joint_ladder, best_ladder
+from sim.model.water.identification import MemoryTarget, best_joint_ladder, best_ladder
 from sim.model.water.ladder import Ladder
 from sim.model.water.radiation import Radiation, constant
 from sim.model.water.tables import RadiationTable
@@ -142,14 +142,14 @@ class _Targets:
         parts = zip(both, self.scales, strict=True)
         return float(max(np.abs(x[self.rows] / s)[:, 0, 1].max() for x, s in parts))
 
-    def of(self, dofs: tuple[int, ...]) -> Target:
+    def of(self, dofs: tuple[int, ...]) -> MemoryTarget:
         """Return what has to be reproduced for some degrees of freedom."""
         pick = np.ix_(range(self.table.omega_rad_s[self.rows].size), dofs, dofs)
         mass = np.outer(self.mass, self.mass)
         a, b = self.table.added_mass[self.rows] / mass, self.table.damping[self.rows] / mass
         scale_a, scale_b = self.scales
         infinite = self.table.added_mass_infinite
-        return Target(
+        return MemoryTarget(
             self.table.omega_rad_s[self.rows] / self.middle,
             a[pick],
             b[pick] / self.middle,

@@ -87,7 +87,7 @@ class QuadraticDrag:
 
 
 @dataclass(frozen=True)
-class CubicDamping:
+class CubicRateDamping:
     """Damping with the third power of the rate.
 
     Attributes
@@ -174,7 +174,7 @@ class AmplitudePeriod:
 
 
 @dataclass(frozen=True)
-class NonlinearRestoring:
+class CubicRestoring:
     """Restoring that changes with the square of the displacement, as the righting arm of a hull.
 
     Attributes

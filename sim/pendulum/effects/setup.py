@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class InertiaError:
+class StatedInertiaError:
     """The body's inertia is other than stated, by a share of the whole."""
 
     share: float = parameter("1", -0.3, 0.3, 0.01)

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from hardware.description.setpoint import Medium, SetPoint
 from sim.rig import SimulatedRig
 from sim.run import simulate
@@ -24,14 +24,14 @@ def strut_cycle(
     rate_hz: float = 200.0, channels: tuple[str, ...] = CHANNELS,
 ) -> StrutCycle:  # fmt: skip
     record = simulate(rig, set_point, periods=periods, sample_rate_hz=rate_hz, seed=seed, name=name)
-    settings = Settings(channels=channels, harmonics=3)
+    settings = ResolverSettings(channels=channels, harmonics=3)
     analysis = analyse(from_dataset(record), settings=settings)
     return measured_cycle(analysis, rig.oscillator)
 
 
 def loaded(
     rig: SimulatedRig, set_point: SetPoint, *, dry: bool = False, **options: object
-) -> Cycle:
+) -> BodyCycle:
     """A run with the body's inertia and the water's restoring named."""
     run = strut_cycle(rig, set_point, **options).model()  # type: ignore[arg-type]
     if dry or set_point.medium is Medium.AIR:

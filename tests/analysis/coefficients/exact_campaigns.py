@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.arrangement import Arrangement
@@ -88,7 +88,7 @@ def struts_of(rig: ExactRig, name: str, orders: int) -> StrutCycle:
     return StrutCycle(name, oscillator, point, hertz, phasors, orders, mean_known=True)
 
 
-def cycle_of(rig: ExactRig, name: str, orders: int) -> Cycle:
+def cycle_of(rig: ExactRig, name: str, orders: int) -> BodyCycle:
     """Return a rig's cycle with its body to be taken off."""
     found = struts_of(rig, name, orders).model(drift_rad=rig.drift_rad)
     return found.without(body_of(rig.body))

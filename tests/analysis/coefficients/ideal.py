@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.motion import LinearHull, ideal_run
@@ -68,7 +68,7 @@ def with_factors(run: StrutCycle, aft: complex, fore: complex) -> StrutCycle:
     return replace(run, phasors=run.phasors.mapped(np.diag(factors)))
 
 
-def net(run: StrutCycle) -> Cycle:
+def net(run: StrutCycle) -> BodyCycle:
     loaded = run.model()
     return loaded if loaded.medium is Medium.AIR else loaded.without(BODY, RESTORING)
 

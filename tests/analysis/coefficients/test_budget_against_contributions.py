@@ -8,7 +8,7 @@ from analysis.coefficients.campaign_budget import budget, correlation
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated import STATED as NAMES
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     RESTORING,
     VERTICAL,
@@ -18,14 +18,14 @@ from benchmarks.coefficients_campaigns import (
 )
 from hardware.description.oscillator import Plane
 
-STATED = Stated(
+STATED = StatedUncertainties(
     mass_kg=0.1, inertia_kg_m2=0.2, lag_s=2e-4, force_gain_relative=1e-3, cross_talk_aft=1e-3,
     midpoint_x_m=1e-3, density_relative=1e-3,
 )  # fmt: skip
 MADE = Made(VERTICAL, Plane.VERTICAL, restoring=RESTORING)
 
 
-def campaign(frequency_hz: float, stated: Stated = STATED) -> CampaignCoefficients:
+def campaign(frequency_hz: float, stated: StatedUncertainties = STATED) -> CampaignCoefficients:
     generator = np.random.default_rng(9)
     cycles = [
         made_up(p, MADE, name, generator)
@@ -50,7 +50,7 @@ def test_lines_add_up_to_gtcs_uncertainty(name: str) -> None:
 
 def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
     """Of the inertia alone: u is its own, and Student's t of four degrees of freedom around it."""
-    stated = Stated(inertia_kg_m2=0.2, inertia_degrees_of_freedom=4.0)
+    stated = StatedUncertainties(inertia_kg_m2=0.2, inertia_degrees_of_freedom=4.0)
     cycles = [made_up(p, MADE, name) for name, p in
               zip(("heave", "pitch"), pure_pair(0.8, 0.02, 0.0), strict=True)]  # fmt: skip
     request = Request(Form.SEAKEEPING, stated, trials=40_000, seed=2, nonlinear=False)
@@ -75,7 +75,7 @@ def test_what_two_coefficients_share_is_their_correlation() -> None:
     """Added masses at two frequencies, of a mass alone: one and the same error."""
     exact = [made_up(pure_pair(f, 0.02, 0.0)[0], MADE, f"heave {f}") for f in (0.6, 0.9)]
     found = campaign_coefficients(
-        exact, Request(Form.SEAKEEPING, Stated(mass_kg=0.1), zero_frequency=False)
+        exact, Request(Form.SEAKEEPING, StatedUncertainties(mass_kg=0.1), zero_frequency=False)
     )
     first, second = found.rows("a33")
     assert correlation(found, first, second) == pytest.approx(1.0)

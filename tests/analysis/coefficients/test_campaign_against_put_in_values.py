@@ -14,11 +14,11 @@ from analysis.coefficients.campaign_nonlinear import QUASI, STATIC_DRIFT
 from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import with_dimensions, without_dimensions
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
 from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     BODY,
     CUBIC,
@@ -38,13 +38,13 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 
 ALL = {**HORIZONTAL, **CUBIC}
-STATED = Stated(mass_kg=0.05, speed_m_s=0.003, density_relative=1e-3, lag_s=1e-4)
+STATED = StatedUncertainties(mass_kg=0.05, speed_m_s=0.003, density_relative=1e-3, lag_s=1e-4)
 UPRIGHT = Made(VERTICAL, Plane.VERTICAL, restoring=RESTORING)
 
 
 def heave_and_pitch(
     made: Made = UPRIGHT, speed_m_s: float = 0.0, frequencies: tuple[float, ...] = (0.4, 0.6, 0.8)
-) -> list[Cycle]:
+) -> list[BodyCycle]:
     generator = np.random.default_rng(3)
     return [
         made_up(point, made, f"{kind} {f:g}", generator)
@@ -57,7 +57,7 @@ SEAKEEPING = Request(Form.SEAKEEPING, zero_frequency=False)
 SMALL = campaign_coefficients(heave_and_pitch(frequencies=(0.8,)), SEAKEEPING)
 
 
-def static(generator: np.random.Generator) -> list[Cycle]:
+def static(generator: np.random.Generator) -> list[BodyCycle]:
     still = SetPoint(0.0, 0.0, 0.0, 1.2)
     truth = {"Y_v": -120.0, "Y_vvv": -900.0, "N_v": -40.0, "N_vvv": 90.0}
     return [
@@ -173,7 +173,7 @@ def test_density_and_speed_act_in_the_system_too(horizontal: CampaignCoefficient
 
 
 def test_seakeeping_campaign_with_restoring_and_monte_carlo() -> None:
-    request = Request(Form.SEAKEEPING, Stated(mass_kg=0.05), trials=3000, seed=4)
+    request = Request(Form.SEAKEEPING, StatedUncertainties(mass_kg=0.05), trials=3000, seed=4)
     found = campaign_coefficients(heave_and_pitch(), request)
     names = {"a33": 75.0, "b33": 190.0, "a55": 22.0, "b55": 55.0, "a35": 3.0, "b53": 12.0}
     for name, put_in in names.items():
@@ -212,7 +212,7 @@ def test_a_wrong_body_shows_as_the_closed_form_says_and_in_the_budget(
     heavier = replace(BODY, **{key: getattr(BODY, key) + part for key, part in wrong.items()})
     exact = [made_up(p, replace(UPRIGHT, body=heavier), n) for n, p in
              zip(("heave", "pitch"), pure_pair(0.8, 2e-6, 0.0), strict=True)]  # fmt: skip
-    stated = Stated(**wrong)
+    stated = StatedUncertainties(**wrong)
     found = campaign_coefficients(exact, Request(Form.SEAKEEPING, stated))
     truth = {"a33": 75.0, "b33": 190.0, "a55": 22.0}[name]
     k = found.row(name)
@@ -228,7 +228,7 @@ def test_a_wrong_lag_and_phase_show_as_the_closed_form_says() -> None:
         for n in exact.phasors.names
     ])  # fmt: skip
     late = taken(replace(exact, phasors=exact.phasors.mapped(np.diag(turn))), UPRIGHT)
-    found = campaign_coefficients([late], Request(Form.SEAKEEPING, Stated(lag_s=lag)))
+    found = campaign_coefficients([late], Request(Form.SEAKEEPING, StatedUncertainties(lag_s=lag)))
     dynamic = 6900.0 - omega**2 * (70.0 + 75.0) + 1j * omega * 190.0
     seen = dynamic * np.exp(-1j * omega * lag)
     a33 = (6900.0 - seen.real) / omega**2 - 70.0

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import prime
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.terms import term_of
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
@@ -31,11 +31,11 @@ def agree(found: np.ndarray, put_in: np.ndarray, tolerance: float = EXACT) -> No
     np.testing.assert_allclose(found, put_in, atol=tolerance * np.abs(put_in).max())
 
 
-def solved(runs: list[Cycle], form: Form = Form.SEAKEEPING) -> CycleFit:
-    return linear_fit(runs, form, Stated()).fit
+def solved(runs: list[BodyCycle], form: Form = Form.SEAKEEPING) -> CycleFit:
+    return linear_fit(runs, form, StatedUncertainties()).fit
 
 
-def both(runs: list[Cycle], form: Form) -> tuple[np.ndarray, np.ndarray]:
+def both(runs: list[BodyCycle], form: Form) -> tuple[np.ndarray, np.ndarray]:
     fit = solved(runs, form)
     return matrix(fit, inertial=True), matrix(fit, inertial=False)
 
@@ -110,7 +110,7 @@ def test_set_points_stand_in_for_displacements() -> None:
         loaded(rig, point, name=f"{k}", channels=forces)
         for k, point in enumerate(pure(0.8, SMALL_M, 1.0))
     ]
-    found = linear_fit(runs, Form.MANOEUVRING, Stated())
+    found = linear_fit(runs, Form.MANOEUVRING, StatedUncertainties())
     agree(matrix(found.fit, inertial=False), -np.array(rig.water.damping))
     assert {flag.code for flag in found.flags} >= {"motion_from_set_point"}
 

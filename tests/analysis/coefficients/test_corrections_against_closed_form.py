@@ -9,20 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.coefficients.corrections import (
+    AmplifierFilter,
     Delay,
-    LowPass,
     ZeroReading,
     response_at,
     zero_at,
     zero_reading,
 )
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.in_place import in_place
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import Phasors
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.recording import Recording
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCES
 from hardware.description.errors import ConfigurationError, DataError
@@ -44,13 +44,19 @@ OMEGA = 2.0 * math.pi * 0.8
 AIR = replace(HEAVE, medium=Medium.AIR)
 
 
-def solve(cycles: list[Cycle]) -> CycleFit:
-    return linear_fit(cycles, Form.SEAKEEPING, Stated()).fit
+def solve(cycles: list[BodyCycle]) -> CycleFit:
+    return linear_fit(cycles, Form.SEAKEEPING, StatedUncertainties()).fit
 
 
 @pytest.mark.parametrize(
     "response",
-    [Delay(0.004), LowPass(10.0), LowPass(10.0, 4), LowPass(8.0, 4, "bessel"), Delay(0.0, 1.03)],
+    [
+        Delay(0.004),
+        AmplifierFilter(10.0),
+        AmplifierFilter(10.0, 4),
+        AmplifierFilter(8.0, 4, "bessel"),
+        Delay(0.0, 1.03),
+    ],
     ids=str,
 )
 def test_a_known_response_is_taken_out(response) -> None:  # type: ignore[no-untyped-def]
@@ -64,12 +70,14 @@ def test_a_known_response_is_taken_out(response) -> None:  # type: ignore[no-unt
 
 
 def test_filters_against_their_formulas() -> None:
-    assert response_at(LowPass(10.0), OMEGA) == pytest.approx(1.0 / (1.0 + 0.08j), rel=1e-12)
+    assert response_at(AmplifierFilter(10.0), OMEGA) == pytest.approx(
+        1.0 / (1.0 + 0.08j), rel=1e-12
+    )
     assert response_at(Delay(0.01), OMEGA) == pytest.approx(np.exp(-0.01j * OMEGA))
-    half_power = abs(response_at(LowPass(10.0, 4, "bessel"), 20.0 * math.pi))
+    half_power = abs(response_at(AmplifierFilter(10.0, 4, "bessel"), 20.0 * math.pi))
     assert half_power == pytest.approx(0.5**0.5, rel=1e-6)
     for kind, lag_s in (("butterworth", 0.0416), ("bessel", 0.0336)):  # effect A1's catalogue
-        lag = -np.angle(response_at(LowPass(10.0, 4, kind), 0.01)) / 0.01
+        lag = -np.angle(response_at(AmplifierFilter(10.0, 4, kind), 0.01)) / 0.01
         assert lag == pytest.approx(lag_s, abs=5e-5)
 
 
@@ -77,7 +85,7 @@ def test_systems_of_python_control_are_responses() -> None:
     control = pytest.importorskip("control")
     cutoff = 20.0 * math.pi
     system = control.TransferFunction([cutoff], [1.0, cutoff])
-    assert response_at(system, OMEGA) == pytest.approx(response_at(LowPass(10.0), OMEGA))
+    assert response_at(system, OMEGA) == pytest.approx(response_at(AmplifierFilter(10.0), OMEGA))
     sampled = control.TransferFunction([0.5, 0.5], [1.0, 0.0], 0.005)  # mean of two samples
     expected = (1.0 + np.exp(-0.005j * OMEGA)) / 2.0
     assert response_at(sampled, OMEGA) == pytest.approx(expected)
@@ -92,11 +100,11 @@ def test_a_lag_left_in_is_the_closed_form() -> None:
 
 def test_a_channel_that_lets_nothing_through_is_refused() -> None:
     with pytest.raises(DataError, match=r"force_aft lets 0\.0"):
-        ideal_struts(HEAVE).without_response({"force_aft": LowPass(0.05)})
+        ideal_struts(HEAVE).without_response({"force_aft": AmplifierFilter(0.05)})
     with pytest.raises(ConfigurationError, match="no phasor 'force_x 0'"):
         ideal_struts(HEAVE).without_response({"force_x": Delay(0.1)})
     with pytest.raises(ConfigurationError, match="known are butterworth"):
-        LowPass(10.0, 2, "elliptic")
+        AmplifierFilter(10.0, 2, "elliptic")
 
 
 @given(st.lists(st.floats(0.9, 1.1), min_size=2, max_size=2),

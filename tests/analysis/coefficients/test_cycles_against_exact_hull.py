@@ -8,7 +8,7 @@ import pytest
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import HULLS, borne, campaign, cycle_of
@@ -63,7 +63,7 @@ def test_linear_coefficients_of_small_motions(
         )
         for k, one in enumerate(rigs)
     ]
-    fit = linear_fit(cycles, form, Stated()).fit
+    fit = linear_fit(cycles, form, StatedUncertainties()).fit
     added, damping = (
         -np.array([[terms[f"{load}_{move}{dot}"] for move in letters[2:]] for load in letters[:2]])
         for dot in ("dot", "")

@@ -8,10 +8,10 @@ import pytest
 
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.corrections import zero_reading
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.strut_cycle import measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCE_X
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser
@@ -32,17 +32,19 @@ def with_gauge(rig: SimulatedRig, **more: object) -> SimulatedRig:
     return replace(rig, acquisition=acquisition, surge=ALONG, **more)  # type: ignore[arg-type]
 
 
-def moving(rig: SimulatedRig, point: SetPoint, name: str, drift_rad: float = 0.0) -> Cycle:
+def moving(rig: SimulatedRig, point: SetPoint, name: str, drift_rad: float = 0.0) -> BodyCycle:
     record = simulate(
         rig, point, periods=8, sample_rate_hz=100.0, seed=len(name), name=name, drift_rad=drift_rad
     )
-    analysis = analyse(from_dataset(record), settings=Settings(channels=CHANNELS, harmonics=3))
+    analysis = analyse(
+        from_dataset(record), settings=ResolverSettings(channels=CHANNELS, harmonics=3)
+    )
     cycle = measured_cycle(analysis, rig.oscillator).model(drift_rad=drift_rad)
     cycle = replace(cycle, mean_known=True)  # as after zero runs that found no offset
     return cycle.without(rig.body, np.array(rig.water.restoring))
 
 
-def still(rig: SimulatedRig, drift_rad: float, name: str, speed_m_s: float = SPEED) -> Cycle:
+def still(rig: SimulatedRig, drift_rad: float, name: str, speed_m_s: float = SPEED) -> BodyCycle:
     point = SetPoint(0.5, 0.0, 0.0, speed_m_s)
     record = simulate(
         rig, point, periods=10, sample_rate_hz=100.0, seed=len(name), name=name,

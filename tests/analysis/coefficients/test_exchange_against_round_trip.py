@@ -9,8 +9,8 @@ import pytest
 
 from analysis.coefficients.campaign_records import (
     LINEAR,
-    Check,
-    Entry,
+    CoefficientEntry,
+    ConsistencyCheck,
     FormChoice,
     Missing,
     OtherArrangement,
@@ -32,9 +32,13 @@ from hardware.description.oscillator import Plane
 
 def campaign(*, drawn: bool = True) -> CampaignCoefficients:
     entries = (
-        Entry("Y_v", "N s/m", LINEAR, 0.2, 1.2, 0.1, 0.0, ("sway 1", "sway 2"), 0.4, math.nan),
-        Entry("Y_vvv", "N s3/m3", "higher", math.nan, 1.2, 0.2, 0.1, ("sway 1",), math.nan, 1.1),
-        Entry("Y_v", "N s/m", LINEAR, 0.1, 1.2, 0.1, 0.0, ("sway 3",), 0.4, math.nan),
+        CoefficientEntry(
+            "Y_v", "N s/m", LINEAR, 0.2, 1.2, 0.1, 0.0, ("sway 1", "sway 2"), 0.4, math.nan
+        ),
+        CoefficientEntry(
+            "Y_vvv", "N s3/m3", "higher", math.nan, 1.2, 0.2, 0.1, ("sway 1",), math.nan, 1.1
+        ),
+        CoefficientEntry("Y_v", "N s/m", LINEAR, 0.1, 1.2, 0.1, 0.0, ("sway 3",), 0.4, math.nan),
     )
     scatter = Contribution(
         "scatter of sway 1", 7.0, np.array([1, 0]), np.array([[1.0, 0.2, 0.1], [0.3, 0.0, -0.5]])
@@ -58,7 +62,9 @@ def campaign(*, drawn: bool = True) -> CampaignCoefficients:
             ),
         ),
         checks=(
-            Check("two tests", "Y_v", "N s/m", "one", "other", 1.0, 2.0, -1.0, 0.5, 8.0, True, ""),
+            ConsistencyCheck(
+                "two tests", "Y_v", "N s/m", "one", "other", 1.0, 2.0, -1.0, 0.5, 8.0, True, ""
+            ),
         ),
         outliers=(Outlier("sway 2", ("sway 1", "sway 3"), "force", 9.0, 4.0, "stands off"),),
         arrangements=(

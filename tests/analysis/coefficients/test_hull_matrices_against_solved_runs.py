@@ -6,7 +6,7 @@ import pytest
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.of_hull import as_reported
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from sim.model.water.manoeuvring import from_added_mass_and_damping
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.analysis.coefficients.campaign import loaded, pure
@@ -22,7 +22,7 @@ def test_names_signs_point_and_incidence(
 ) -> None:
     points = pure(0.8, 1e-6, speed_m_s)  # matrices are those of small angles
     runs = [loaded(rig, one, name=str(k)).about(ahead_m) for k, one in enumerate(points)]
-    solved = linear_fit(runs, form, Stated()).fit
+    solved = linear_fit(runs, form, StatedUncertainties()).fit
     said = as_reported(
         np.array(rig.water.added_mass),
         np.array(rig.water.damping),

@@ -7,7 +7,7 @@ import pytest
 
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
 from tests.analysis.coefficients.campaign import loaded, pure
@@ -39,7 +39,7 @@ def test_coverage_of_closed_form_runs(points: list[SetPoint], periods: int) -> N
     clean = [ideal_struts(point, name=f"{k}") for k, point in enumerate(points)]
     for _ in range(count):
         runs = [net(scattered(run, covariance(), periods, generator)) for run in clean]
-        fit = linear_fit(runs, Form.MANOEUVRING, Stated()).fit
+        fit = linear_fit(runs, Form.MANOEUVRING, StatedUncertainties()).fit
         order = [fit.names.index(name) for name in names]
         miss = np.abs(fit.values[order] - truth)
         hits += miss <= fit.uncertain.half_width()[order]
@@ -60,7 +60,7 @@ def test_coverage_of_simulated_campaigns() -> None:
             loaded(rig, point, name=f"{k}", seed=2 * seed + k, rate_hz=50.0)
             for k, point in enumerate(pure(0.8, 0.005))
         ]
-        fit = linear_fit(runs, Form.SEAKEEPING, Stated()).fit
+        fit = linear_fit(runs, Form.SEAKEEPING, StatedUncertainties()).fit
         assert set(fit.names) == set(names)
         order = [fit.names.index(name) for name in names]
         miss = np.abs(fit.values[order] - truth)

@@ -7,7 +7,7 @@ from analysis.coefficients.measured import reading_phasors
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.resolver import estimate
-from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.analyse import Analysis, ResolverSettings, analyse
 from hardware.description.channels import FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
@@ -21,7 +21,7 @@ POINT = SetPoint(0.8, 0.02, 0.4, 1.0)
 
 def resolved(**options: object) -> Analysis:
     record = simulate(RIG, POINT, periods=9, seed=4, name="mixed")
-    return analyse(from_dataset(record), settings=Settings(channels=CHANNELS, **options))  # type: ignore[arg-type]
+    return analyse(from_dataset(record), settings=ResolverSettings(channels=CHANNELS, **options))  # type: ignore[arg-type]
 
 
 def test_what_channels_share_is_what_their_periods_share(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ import pytest
 from analysis.coefficients.cycle_fit import FIRST, HIGHER, QUASI_STEADY, STATIC, fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.normalisation import mmg, prime
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.terms import term_of
 from benchmarks.coefficients_campaigns import (
     CUBIC,
@@ -201,7 +201,7 @@ def test_monte_carlo_beside_the_budget_of_a_fit() -> None:
     cycles = [
         made_up(p, Made(ALL), n, generator, Scatter(periods=200)) for n, p in amplitudes()[:3]
     ]
-    stated = Stated(mass_kg=0.1, lag_s=1e-4, amplitude_relative=1e-3)
+    stated = StatedUncertainties(mass_kg=0.1, lag_s=1e-4, amplitude_relative=1e-3)
     fit = fit_cycles(cycles, ("Y_vdot", "Y_v", "Y_vvv"), stated=stated)
     drawn = cycle_trials(fit, 4000, seed=1)
     ratio = drawn.standard_uncertainty / fit.uncertain.standard_uncertainty
@@ -214,12 +214,12 @@ def test_monte_carlo_beside_the_budget_of_a_fit() -> None:
 def test_a_stated_mass_moves_only_what_it_should() -> None:
     sway = [made_up(p, Made(ALL), n) for n, p in amplitudes()[:3]]
     names = ("Y_vdot", "Y_v", "Y_vvv")
-    fit = fit_cycles(sway, names, stated=Stated(mass_kg=0.1, alignment_rad=1e-3))
+    fit = fit_cycles(sway, names, stated=StatedUncertainties(mass_kg=0.1, alignment_rad=1e-3))
     spread = dict(zip(fit.names, fit.uncertain.standard_uncertainty, strict=True))
     assert spread["Y_vdot"] == pytest.approx(0.1, rel=1e-6)
     assert spread["Y_vvv"] == pytest.approx(0.0, abs=0.1)
     drifting = [made_up(p, Made(ALL, drift_rad=0.1), n) for n, p in amplitudes()]
-    turned = fit_cycles(drifting, tuple(ALL), stated=Stated(alignment_rad=1e-3))
+    turned = fit_cycles(drifting, tuple(ALL), stated=StatedUncertainties(alignment_rad=1e-3))
     spread = dict(zip(turned.names, turned.uncertain.standard_uncertainty, strict=True))
     # v0 = -U sin(drift): a heading wrong by d is a Y_v wrong by 2 * 3 Y_vvv v0 U d, at the least
     assert spread["Y_v"] > 0.05

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.campaign import Request, campaign_coefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.linear import LinearFit, lacking_places, linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.uncertainty import Contribution
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
@@ -24,12 +24,12 @@ HEAVE = SetPoint(0.8, ECCENTRICITY_M, 0.0, 1.2)
 
 def run(
     set_point: SetPoint = HEAVE, name: str = "heave-0.8", plane: Plane = Plane.VERTICAL
-) -> Cycle:
+) -> BodyCycle:
     return net(ideal_struts(set_point, plane, name=name))
 
 
-def solve(cycles: list[Cycle], form: Form = Form.SEAKEEPING) -> LinearFit:
-    return linear_fit(cycles, form, Stated())
+def solve(cycles: list[BodyCycle], form: Form = Form.SEAKEEPING) -> LinearFit:
+    return linear_fit(cycles, form, StatedUncertainties())
 
 
 def test_heave_only_then_asking_for_a55() -> None:
@@ -81,7 +81,7 @@ def test_unknown_names_get_the_nearest() -> None:
         (replace(run(name="x"), frequency_hz=0.0), "x is static and tells through its mean"),
     ],
 )
-def test_runs_that_do_not_belong_together(other: Cycle, words: str) -> None:
+def test_runs_that_do_not_belong_together(other: BodyCycle, words: str) -> None:
     with pytest.raises(ConfigurationError, match=words):
         fit_cycles([run(), other], ("Z_w",), FIRST)
 

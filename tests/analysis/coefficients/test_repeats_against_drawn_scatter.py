@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.repeats import outliers, repeatability, with_repeats
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from benchmarks.coefficients_campaigns import BODY, RESTORING, VERTICAL, Made, Scatter, made_up
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
@@ -19,13 +19,13 @@ HEAVE = Made(VERTICAL, Plane.VERTICAL, orders=1, restoring=RESTORING)
 QUIET = Scatter(motion_m=1e-6, force_n=0.035)
 
 
-def solved(cycles: list[Cycle]) -> CycleFit:
-    return linear_fit(cycles, Form.SEAKEEPING, Stated()).fit
+def solved(cycles: list[BodyCycle]) -> CycleFit:
+    return linear_fit(cycles, Form.SEAKEEPING, StatedUncertainties()).fit
 
 
 def repeats(
     count: int, between: float, generator: np.random.Generator, *, frequency_hz: float = 0.8
-) -> list[Cycle]:
+) -> list[BodyCycle]:
     """Heave runs whose loads are off by a common relative error each."""
     point = SetPoint(frequency_hz, 0.02)
     found = []

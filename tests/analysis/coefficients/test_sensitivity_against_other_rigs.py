@@ -13,7 +13,7 @@ import pytest
 
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles
 from analysis.coefficients.measured import MOTION_ASKED
-from analysis.coefficients.stated import STATED, Stated
+from analysis.coefficients.stated import STATED, StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.oscillator import Plane
@@ -81,7 +81,7 @@ Chain = Callable[[StrutCycle], StrutCycle]
 def fitted(
     rigs: Rigs,
     said: Rigs,
-    stated: Stated = Stated(),  # noqa: B008
+    stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008
     chain: Chain = lambda one: one,
 ) -> CycleFit:
     plane = said[0].plane
@@ -190,7 +190,7 @@ EVERY = [
 
 def of_budget(name: str, rigs: Rigs) -> np.ndarray:
     """The budget's change of each coefficient per unit of a stated quantity."""
-    fit = fitted(rigs, rigs, Stated(**{name: 1.0}))
+    fit = fitted(rigs, rigs, StatedUncertainties(**{name: 1.0}))
     found = [one.dense(len(fit.values))[:, 0] for one in fit.uncertain.contributions]
     return found[0] if found else np.zeros(len(fit.values))
 

@@ -9,14 +9,14 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.corrections import ZeroReading, zero_reading
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.linear import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import Stated
+from analysis.coefficients.stated import StatedUncertainties
 from analysis.coefficients.strut_cycle import measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.uncertainty import UncertainValues
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -36,7 +36,7 @@ def at_rest(name: str, mean_n: tuple[float, float], noise_n: float) -> ZeroReadi
     return zero_reading(Recording(name, (FORCE_AFT, FORCE_FORE), samples, 100.0), 0.0)
 
 
-def drift_runs(zero: ZeroReading) -> list[Cycle]:
+def drift_runs(zero: ZeroReading) -> list[BodyCycle]:
     """Five drift angles, nearly without noise, that one noisy zero run is taken off."""
     runs = []
     for k, angle in enumerate(np.radians(ANGLES_DEG)):
@@ -84,11 +84,11 @@ def test_the_budget_and_the_trials_know_it_too(
         assert width == pytest.approx(found.half_widths[row], rel=0.06)
 
 
-def measured(name: str, medium: Medium, seed: int) -> Cycle:
+def measured(name: str, medium: Medium, seed: int) -> BodyCycle:
     rig, speed = vertical_rig(), 0.0 if medium is Medium.AIR else SPEED_M_S
     point = SetPoint(0.8, 0.02, 0.0, speed, medium)
     record = simulate(rig, point, periods=8, sample_rate_hz=100.0, seed=seed, name=name)
-    analysis = analyse(from_dataset(record), settings=Settings(channels=CHANNELS))
+    analysis = analyse(from_dataset(record), settings=ResolverSettings(channels=CHANNELS))
     return measured_cycle(analysis, rig.oscillator, set_point=point).model()
 
 
@@ -97,7 +97,10 @@ def test_a_dry_run_of_two_repeats_does_not_average_out() -> None:
     wet = [measured(f"wet {k}", Medium.WATER, k) for k in (1, 2)]
     restoring = np.array(rig.water.restoring)
     cycles = [one.without_dry(dry).without(restoring=restoring) for one in wet]
-    both = [linear_fit(some, Form.SEAKEEPING, Stated()).fit for some in (cycles[:1], cycles)]
+    both = [
+        linear_fit(some, Form.SEAKEEPING, StatedUncertainties()).fit
+        for some in (cycles[:1], cycles)
+    ]
     of_dry = [of_source(fit.uncertain, "scatter of dry") for fit in both]
     np.testing.assert_allclose(of_dry[1], of_dry[0], rtol=0.01)
     table = campaign_coefficients(cycles, Request(Form.SEAKEEPING, nonlinear=False))

@@ -10,7 +10,7 @@ from analysis.coefficients.body_axes import labels
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.form_choice import BOTH, CUBIC, LINEAR_FORM, QUADRATIC
 from analysis.coefficients.phasors import Phasors
 from analysis.kinematics.averaged import CHANNELS, UNITS
@@ -60,7 +60,7 @@ def towed(
         )
         drifting = {"drift_rad": float(angle), "mean_known": True}
         cycles.append(
-            Cycle(f"drift {k}", Plane.HORIZONTAL, 0.5, 0.0, SPEED_M_S, phasors, 0, **drifting)
+            BodyCycle(f"drift {k}", Plane.HORIZONTAL, 0.5, 0.0, SPEED_M_S, phasors, 0, **drifting)
         )
     return campaign_coefficients(cycles, Request())
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.corrections import (
+    AmplifierFilter,
     Delay,
-    LowPass,
     response_at,
     zero_reading,
 )
@@ -20,7 +20,7 @@ from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.analyse import Analysis, ResolverSettings, analyse
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -39,7 +39,7 @@ def read(
     point: SetPoint = POINT, rig: SimulatedRig = RIG, channels: tuple[str, ...] = CHANNEL_NAMES
 ) -> Analysis:
     record = simulate(rig, point, periods=8, sample_rate_hz=100.0, seed=3, name="run")
-    return analyse(from_dataset(record), settings=Settings(channels=channels, harmonics=3))
+    return analyse(from_dataset(record), settings=ResolverSettings(channels=channels, harmonics=3))
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_cross_talk(analysis: Analysis) -> None:
 
 @pytest.mark.parametrize(
     "response",
-    [Delay(2e-3, 0.98), LowPass(20.0, 2, "bessel"), control.tf([1.0], [0.004, 1.0]),
+    [Delay(2e-3, 0.98), AmplifierFilter(20.0, 2, "bessel"), control.tf([1.0], [0.004, 1.0]),
      control.ss([[-250.0]], [[250.0]], [[1.0]], [[0.0]])],
     ids=["skew", "filter", "transfer function", "state space"],
 )  # fmt: skip
@@ -106,7 +106,9 @@ def test_lag_by_transfer_function(analysis: Analysis, response) -> None:  # type
 
 def test_a_filter_that_lets_no_third_harmonic_through_is_refused(analysis: Analysis) -> None:
     with pytest.raises(DataError, match="of harmonic 3 at"):
-        measured_cycle(analysis, RIG.oscillator).without_response({"force_aft": LowPass(1.2, 4)})
+        measured_cycle(analysis, RIG.oscillator).without_response(
+            {"force_aft": AmplifierFilter(1.2, 4)}
+        )
 
 
 def still(value: float, name: str) -> Recording:

@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
-from analysis.exchange.simman import Deliverables, Description, cycle_of, deliverables_of, fourier
+from analysis.exchange.simman import (
+    Deliverables,
+    SimmanDescription,
+    cycle_of,
+    deliverables_of,
+    fourier,
+)
 from analysis.exchange.simman_files import read_simman, write_simman
 from analysis.kinematics.averaged import CHANNELS, UNITS
 from hardware.description.arrangement import Arrangement, DriftBy, Joint
@@ -18,12 +24,14 @@ from tests.analysis.coefficients.exact_campaigns import struts_of
 from tests.exact.rigs import exact_rig
 
 ORDERS, SPEED, FREQUENCY = 3, 1.2, 0.2
-ABOUT = Description(
+ABOUT = SimmanDescription(
     "yaw-1", "autumn", 45.7, 7.0, 3085.0, 9700.0, -0.02, 17.5, 998.7, 200.0, 5
 )  # fmt: skip
 
 
-def cycle(plane: Plane = Plane.HORIZONTAL, *, drift_rad: float = 0.0, surge: bool = True) -> Cycle:
+def cycle(
+    plane: Plane = Plane.HORIZONTAL, *, drift_rad: float = 0.0, surge: bool = True
+) -> BodyCycle:
     generator = np.random.default_rng(4)
     channels = CHANNELS if surge else CHANNELS[:-1]
     sizes = np.array([0.1, 0.15, 0.02, 0.3, 30.0, 12.0, 9.0])[: len(channels)]
@@ -33,10 +41,10 @@ def cycle(plane: Plane = Plane.HORIZONTAL, *, drift_rad: float = 0.0, surge: boo
     values[0, 2] += SPEED
     units = UNITS[: len(channels)] * (ORDERS + 1)
     phasors = Phasors(labels(channels, ORDERS), units, values.ravel())
-    return Cycle("yaw-1", plane, 0.5, FREQUENCY, SPEED, phasors, ORDERS, drift_rad=drift_rad)
+    return BodyCycle("yaw-1", plane, 0.5, FREQUENCY, SPEED, phasors, ORDERS, drift_rad=drift_rad)
 
 
-def turned(drift_rad: float) -> Cycle:
+def turned(drift_rad: float) -> BodyCycle:
     """A turntable that sways across the tank, exact to rounding."""
     table = Arrangement(Joint.YAW_TABLE, drift_by=DriftBy.STRUTS_OFFSET)
     rig = exact_rig(Plane.HORIZONTAL, table, rotation_rad=0.3, drift_rad=drift_rad, speed_m_s=SPEED)

@@ -21,13 +21,13 @@ from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import build, find
-from sim.effects.effect import Effect, Measurement
+from sim.effects.effect import Effect, FurtherMeasurement
 from sim.effects.k6_joint_play import JointPlay
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of, record
 
 WEIGHT_N = 100.0
-REST = Measurement.REST
+REST = FurtherMeasurement.REST
 POINT = SetPoint(0.8, 0.02)
 
 
@@ -52,11 +52,13 @@ def shown(problem: Problem, runs: Sequence[GapRun], *effects: Effect) -> list[di
 
 def weights(problem: Problem) -> tuple[GapRun, ...]:
     return tuple(
-        made(problem, Measurement.CHECK_WEIGHT, WEIGHT_N, strut) for strut in ("aft", "fore")
+        made(problem, FurtherMeasurement.CHECK_WEIGHT, WEIGHT_N, strut) for strut in ("aft", "fore")
     )
 
 
-def made(problem: Problem, kind: Measurement, force_n: float = 0.0, strut: str = "") -> GapRun:
+def made(
+    problem: Problem, kind: FurtherMeasurement, force_n: float = 0.0, strut: str = ""
+) -> GapRun:
     found = measured_besides(problem, kind, CampaignRun(), force_n, strut)
     assert found is not None
     return found
@@ -88,7 +90,7 @@ def test_a_check_weight_shows_what_a_curved_gauge_makes_of_it(problem: Problem) 
 
 
 def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: Problem) -> None:
-    runs = (made(problem, Measurement.INJECTION, 20.0),)
+    runs = (made(problem, FurtherMeasurement.INJECTION, 20.0),)
     (plain,) = shown(problem, runs)
     assert plain["force_aft 1"] == pytest.approx(20.0, rel=1e-9)
     (lags,) = shown(problem, runs, build("amplifier-lag:cutoff_hz=80.0"))
@@ -101,7 +103,7 @@ def test_an_injected_sine_shows_the_amplifiers_and_nothing_before_them(problem: 
 
 def test_a_sine_tells_a_low_pass_from_the_delay_that_it_is_to_the_shaft(problem: Problem) -> None:
     """Both are late by 1/(2 pi cutoff); at ten hertz the low-pass of 80 Hz is 0.8 % smaller."""
-    runs = (made(problem, Measurement.INJECTION, 20.0),)
+    runs = (made(problem, FurtherMeasurement.INJECTION, 20.0),)
     late_s = 1.0 / (2.0 * math.pi * 80.0)
     (lag,) = shown(problem, runs, build("amplifier-lag:cutoff_hz=80.0"))
     (skew,) = shown(problem, runs, build(f"channel-skew:aft_s={late_s},fore_s={late_s}"))
@@ -155,7 +157,7 @@ def test_no_weight_is_put_on_a_gauge_that_is_not_read(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
     one = problem_of(rig, [without_aft(run) for run in clean[:2]])
-    weight = (Measurement.CHECK_WEIGHT, CampaignRun(), WEIGHT_N)
+    weight = (FurtherMeasurement.CHECK_WEIGHT, CampaignRun(), WEIGHT_N)
     assert measured_besides(one, *weight, "aft") is None
     assert measured_besides(one, *weight, "fore") is not None
 
@@ -168,7 +170,7 @@ def test_a_weight_is_proposed_on_the_strut_whose_gauge_it_tells_of(problem: Prob
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=())
     free = free_numbers(problem.simulator.rig, Priors())
     first, *_ = proposals(problem, leading, choices, free, Priors())
-    assert (first.kind, first.strut) == (Measurement.CHECK_WEIGHT, "fore")
+    assert (first.kind, first.strut) == (FurtherMeasurement.CHECK_WEIGHT, "fore")
     assert str(first) == f"a check weight of {first.force_n:g} N on the fore dynamometer"
 
 
@@ -238,7 +240,7 @@ def only(choices: Choices, point: SetPoint, limit_n: float) -> Choices:
     """Return one set-point as all that can be run, below a strut's limit."""
     frequency = Range(point.frequency_hz, point.frequency_hz)
     radius = Range(point.eccentricity_m, point.eccentricity_m)
-    preload = (Measurement.PRELOAD,)
+    preload = (FurtherMeasurement.PRELOAD,)
     return replace(
         choices,
         frequency_hz=frequency,

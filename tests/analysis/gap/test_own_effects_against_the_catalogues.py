@@ -20,15 +20,15 @@ from analysis.gap.search import Engine, fitted
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from sim.effects.catalogue import catalogue, find, load_file
-from sim.effects.effect import Effect, Measurement, Trace, parameter
+from sim.effects.effect import DeviationTrace, Effect, FurtherMeasurement, parameter
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
 
 FREQUENCIES_HZ = (0.5, 1.0)
-SEEN: tuple[frozenset[Trace], ...] = (
+SEEN: tuple[frozenset[DeviationTrace], ...] = (
     frozenset(),
-    *(frozenset({one}) for one in Trace),
-    frozenset(Trace),
+    *(frozenset({one}) for one in DeviationTrace),
+    frozenset(DeviationTrace),
 )
 
 
@@ -101,7 +101,9 @@ def test_what_is_costly_has_to_promise_more(
 def test_the_same_measurements_show_it(
     name: str, shown: set[str], problem: Problem, tmp_path: Path
 ) -> None:
-    choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=(), special=tuple(Measurement))
+    choices = Choices(
+        Range(0.5, 1.0), Range(0.01, 0.02), media=(), special=tuple(FurtherMeasurement)
+    )
     for kind in both(name, tmp_path):
         leading = ((begun(problem, kind, 3.0), 0.6), (None, 0.4))
         free = free_numbers(problem.simulator.rig, Priors())

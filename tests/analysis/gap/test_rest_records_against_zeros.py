@@ -30,7 +30,7 @@ from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.s3_coulomb_friction import CoulombFriction
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.model.acting import Acting, Point
-from sim.model.force_law import ForceLaw, Motion
+from sim.model.force_law import ForceLaw, LawInput
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from sim.standing import standing
@@ -51,7 +51,7 @@ class Uneven(ForceLaw):
 
     strengths: ClassVar[tuple[str, ...]] = ("uneven_n",)
 
-    def force(self, motion: Motion) -> FloatArray:
+    def force(self, motion: LawInput) -> FloatArray:
         return -self.uneven_n * np.expm1(-((motion.velocity / 0.02) ** 2))
 
 

@@ -29,7 +29,7 @@ from hardware.description.errors import ConfigurationError
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, find
 from sim.effects.d2_speed_droop import SpeedDroop
-from sim.effects.effect import Effect, Trace
+from sim.effects.effect import DeviationTrace, Effect
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
 from sim.solve.periodic import steady_run
@@ -56,7 +56,7 @@ def test_nothing_costly_is_looked_at_where_nothing_shows(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
     seen = shown(_scattering(rig, clean))
-    assert Trace.BESIDE not in seen
+    assert DeviationTrace.BESIDE not in seen
     assert not worth_a_look(find("hum"), seen)
     assert not worth_a_look(find("load-ripple"), seen)
     assert worth_a_look(find("coulomb-friction"), seen)
@@ -65,7 +65,7 @@ def test_nothing_costly_is_looked_at_where_nothing_shows(
 def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
     runs = record(rig, [build("hum:amplitude_n=1,frequency_hz=7.3")], 31)
     seen = shown(_scattering(rig, runs))
-    assert Trace.BESIDE in seen
+    assert DeviationTrace.BESIDE in seen
     assert worth_a_look(find("hum"), seen)
 
 

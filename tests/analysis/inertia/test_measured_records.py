@@ -23,7 +23,7 @@ from analysis.inertia.passage_fit import fit_passages
 from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.repeats import single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
-from analysis.inertia.spread import Geometry, Spread, compare_geometries
+from analysis.inertia.spread import Spread, SuspensionGyradius, compare_geometries
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"
 pytestmark = pytest.mark.skipif(not SHARED.exists(), reason="no shared measured data")
@@ -43,7 +43,7 @@ def rods() -> Spread:
             within(line, 5e-4, "m"),
             Estimate(9.81, 0.003, "m/s2"),
         )
-        geometries.append(Geometry(path.name, k.result, spacing / 2.0, line))
+        geometries.append(SuspensionGyradius(path.name, k.result, spacing / 2.0, line))
     return compare_geometries(geometries)
 
 

@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.inertia.ballast import Target, Weight, place_ballast
+from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.parts import Part, combine, inertia_about, part
+from analysis.inertia.parts import BodyPart, combine, inertia_about, part
 from hardware.description.errors import ConfigurationError, DataError
 
 finite = st.floats(-2.0, 2.0)
 points = st.lists(st.tuples(st.floats(0.1, 9.0), finite, finite, finite), min_size=2, max_size=6)
 
 
-def point(name: str, m: float, x: float, y: float, z: float, u: float = 0.0) -> Part:
+def point(name: str, m: float, x: float, y: float, z: float, u: float = 0.0) -> BodyPart:
     zero = exactly(0.0, "m")
     place = (Estimate(x, u, "m"), Estimate(y, u, "m"), Estimate(z, u, "m"))
     return part(name, Estimate(m, u, "kg"), place, (zero, zero, zero))
@@ -44,7 +44,7 @@ def test_taking_away_undoes_putting_on(rows: list[tuple[float, float, float, flo
 def test_keelboat_of_table_4() -> None:
     zero = exactly(0.0, "m")
 
-    def body(name: str, m: float, x: float, z: float, kp: float, ky: float) -> Part:
+    def body(name: str, m: float, x: float, z: float, kp: float, ky: float) -> BodyPart:
         place = (exactly(x, "m"), zero, exactly(-z, "m"))
         return part(name, exactly(m, "kg"), place, (zero, exactly(kp, "m"), exactly(ky, "m")))
 
@@ -66,7 +66,7 @@ def test_covariance_against_monte_carlo() -> None:
     drawn = []
     for _ in range(4000):
         pair = [
-            Part(
+            BodyPart(
                 p.name,
                 rng.multivariate_normal(p.parameters, p.covariance, method="eigh"),
                 p.covariance,
@@ -97,7 +97,7 @@ def test_impossible_parts_are_refused() -> None:
         combine("none", [])
 
 
-def hull() -> Part:
+def hull() -> BodyPart:
     zero = exactly(0.0, "m")
     place = (exactly(0.02, "m"), zero, exactly(0.05, "m"))
     return part(
@@ -113,7 +113,7 @@ BOX = ((-1.2, 0.0, -0.1), (1.2, 0.0, 0.2))
 
 def test_ballast_meets_a_target_that_can_be_met() -> None:
     weights = [Weight(f"w{k}", 10.0, *BOX) for k in range(3)]
-    target = Target(70.0, (0.0, None, 0.06), (None, 0.62, None))
+    target = BallastTarget(70.0, (0.0, None, 0.06), (None, 0.62, None))
     found = place_ballast(hull(), weights, target, seed=1)
     assert found.feasible, found.message
     assert found.errors["mass_kg"] == pytest.approx(0.0)
@@ -126,7 +126,7 @@ def test_ballast_meets_a_target_that_can_be_met() -> None:
 
 def test_ballast_says_what_cannot_be_met_and_how_near_it_gets() -> None:
     weights = [Weight("w", 10.0, *BOX)]
-    found = place_ballast(hull(), weights, Target(70.0, (0.5, None, None)), seed=1)
+    found = place_ballast(hull(), weights, BallastTarget(70.0, (0.5, None, None)), seed=1)
     assert not found.feasible
     assert "mass off by -20 kg" in found.message
     assert "x off by -" in found.message
@@ -136,7 +136,7 @@ def test_ballast_says_what_cannot_be_met_and_how_near_it_gets() -> None:
 def test_of_many_equal_solutions_the_one_nearest_the_middles_is_found() -> None:
     """Four equal weights in equal boxes, x alone asked for: each goes as far as the others."""
     weights = [Weight(f"w{k}", 10.0, (-2.0, -0.3, -0.1), (2.0, 0.3, 0.2)) for k in range(4)]
-    found = place_ballast(hull(), weights, Target(80.0, (0.2, None, None)), seed=4)
+    found = place_ballast(hull(), weights, BallastTarget(80.0, (0.2, None, None)), seed=4)
     needed = (80.0 * 0.2 - 40.0 * 0.02) / 40.0
     assert found.positions_m == pytest.approx(np.tile([needed, 0.0, 0.05], (4, 1)), abs=1e-5)
 
@@ -153,15 +153,17 @@ def test_ballast_meets_what_some_places_give() -> None:
     made = combine("made", [hull(), *some])
     x, y, z = (one.value for one in made.centre_of_gravity)
     roll, pitch, yaw = (one.value for one in made.gyradii)
-    found = place_ballast(hull(), weights, Target(80.0, (x, y, z), (roll, pitch, yaw)), seed=2)
+    found = place_ballast(
+        hull(), weights, BallastTarget(80.0, (x, y, z), (roll, pitch, yaw)), seed=2
+    )
     assert found.feasible, found.message
     assert max(map(abs, found.errors.values())) < 1e-6
 
 
 def test_fixed_ballast_and_bad_boxes() -> None:
     fixed = Weight("w", 10.0, (0.1, 0.0, 0.0), (0.1, 0.0, 0.0))
-    assert place_ballast(hull(), [fixed], Target(50.0)).feasible
+    assert place_ballast(hull(), [fixed], BallastTarget(50.0)).feasible
     with pytest.raises(ConfigurationError, match="swapped in: x"):
-        place_ballast(hull(), [Weight("w", 1.0, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))], Target())
+        place_ballast(hull(), [Weight("w", 1.0, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))], BallastTarget())
     with pytest.raises(ConfigurationError, match="no weights"):
-        place_ballast(hull(), [], Target())
+        place_ballast(hull(), [], BallastTarget())

@@ -9,7 +9,7 @@ import pytest
 from analysis.inertia.budget import linear_budget
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.result import InertiaResult, compare_with_target, model_toml
-from analysis.inertia.workflow import Reading, Step, assess_workflow, next_step
+from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
@@ -80,10 +80,10 @@ def test_target_passes_fails_or_is_undecided() -> None:
         compare_with_target("k", k, 0.61, 0.0)
 
 
-def steps(tare: float, again: float, check: float) -> tuple[Reading, ...]:
+def steps(tare: float, again: float, check: float) -> tuple[StepResult, ...]:
     values = (tare, 50.0, check, again)
     return tuple(
-        Reading(step, Estimate(value, 0.05, "kg m2", 2.0))
+        StepResult(step, Estimate(value, 0.05, "kg m2", 2.0))
         for step, value in zip(Step, values, strict=True)
     )
 

@@ -18,7 +18,7 @@ from analysis.inertia.bifilar import (
 from analysis.inertia.compound import compound_pendulum, lamboley
 from analysis.inertia.corrections import gravity_in_air, square_frame, without_entrained_air
 from analysis.inertia.double_pendulum import (
-    Reading,
+    LineLengthReading,
     best_line_length,
     depth_from_periods,
     gyradius_error_per_period,
@@ -81,8 +81,12 @@ def test_double_pendulum_against_its_matrices(k: float, depth: float, line: floa
 def test_best_line_of_both_readings() -> None:
     assert best_line_length(0.352, 0.253, G) == pytest.approx(0.498, abs=1e-3)
     assert best_line_length(1.156, 1.156 / 1.5, G) == pytest.approx(1.76, abs=0.01)
-    assert best_line_length(0.352, 0.253, G, Reading.JOINT) == pytest.approx(0.29, abs=0.005)
-    assert best_line_length(1.156, 1.156 / 1.5, G, Reading.JOINT) == pytest.approx(1.16, abs=0.05)
+    assert best_line_length(0.352, 0.253, G, LineLengthReading.JOINT) == pytest.approx(
+        0.29, abs=0.005
+    )
+    assert best_line_length(1.156, 1.156 / 1.5, G, LineLengthReading.JOINT) == pytest.approx(
+        1.16, abs=0.05
+    )
     best = best_line_length(0.352, 0.253, G)
     least = gyradius_error_per_period(0.352, 0.253, best, G)
     for line in (0.8 * best, 1.25 * best):

@@ -7,7 +7,7 @@ from analysis.coefficients.phasors import interleaved
 from analysis.kinematics.averaged import in_body_axes
 from analysis.kinematics.cycle import INSTANTS, driven, waves
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.motion import Motion, motion
+from analysis.kinematics.motion import MotionWaves, motion
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from tests.exact.forces import State, state
@@ -32,7 +32,7 @@ def parts_of(rig: ExactRig) -> NDArray[np.float64]:
     return interleaved(rig.coordinates.ravel())
 
 
-def motion_of(rig: ExactRig) -> Motion:
+def motion_of(rig: ExactRig) -> MotionWaves:
     """Return the product's motion of the rig."""
     return motion(geometry_of(rig), driven(parts_of(rig), rig.omega))
 

@@ -10,7 +10,7 @@ from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.kinematics.averaged import CHANNELS
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.uncertainty import student_factor
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.channels import Channel
@@ -40,7 +40,7 @@ def resolved(rig: ExactRig, seed: int) -> Phasors:
         photocell_edges_s=run.photocell_edges_s,
         set_point=SetPoint(rig.frequency_hz, 0.1, carriage_speed_m_s=rig.speed_m_s),
     )
-    settings = Settings(channels=(*DISPLACEMENTS, *READINGS), harmonics=ORDERS)
+    settings = ResolverSettings(channels=(*DISPLACEMENTS, *READINGS), harmonics=ORDERS)
     oscillator = replace(HORIZONTAL_1963, **vars(rig.arrangement))
     struts = measured_cycle(analyse(recording, settings=settings), oscillator)
     return struts.model(drift_rad=rig.drift_rad).phasors

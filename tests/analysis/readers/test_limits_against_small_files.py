@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from analysis.limits import LONGEST_LINE, MEMORY_SETTING, MOST_COLUMNS, Limits, limits
+from analysis.limits import LONGEST_LINE, MEMORY_SETTING, MOST_COLUMNS, ReadingLimits, limits
 from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli import cli
@@ -90,7 +90,7 @@ def test_the_setting_raises_the_limit(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.setenv(MEMORY_SETTING, "0.002")
     assert read_recording(path).sample_count == 20_000
     monkeypatch.delenv(MEMORY_SETTING)
-    assert limits() == Limits()
+    assert limits() == ReadingLimits()
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "nan", "inf", "much"])

@@ -12,7 +12,7 @@ from scipy.io import savemat
 from analysis.readers import read_recording, write_recording
 from analysis.readers.conditioning import without_spikes
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
@@ -60,7 +60,7 @@ def test_one_sample_of_500_n_costs_no_period(kind: str, tmp_path: Path) -> None:
         analyse(
             read_recording(written(values, kind, folder)),
             ReferenceChoice(channel="y"),
-            Settings(channels=("F",)),
+            ResolverSettings(channels=("F",)),
         )
         for values, folder in ((spoilt, tmp_path), (force(), _made(tmp_path / "clean")))
     )

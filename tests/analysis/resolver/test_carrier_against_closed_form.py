@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.recording import Recording
-from analysis.resolver.carrier import LowPass, demodulate, design_low_pass
+from analysis.resolver.carrier import DecimationFilter, demodulate, design_low_pass
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError, DataError
@@ -121,7 +121,7 @@ def test_pass_band_is_flat_and_stop_band_is_shut(
 
 
 def test_outputs_do_not_depend_on_where_the_record_is_cut() -> None:
-    low_pass = LowPass(np.array([0.25, 0.5, 0.25]), 1, 1)
+    low_pass = DecimationFilter(np.array([0.25, 0.5, 0.25]), 1, 1)
     values = np.array([[0.0, 1.0, 0.0, 0.0, 4.0]])
     assert low_pass.valid(values) == pytest.approx(np.array([[0.5, 0.25, 1.0]]))
     long = demodulate(bridge(60.0), ["raw"], CARRIER_HZ, carrier_phase_rad=0.4)

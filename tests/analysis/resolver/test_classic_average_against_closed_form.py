@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from analysis.recording import Recording
 from analysis.resolver.classic import ClassicMode, mode_for
-from analysis.resolver.classic_average import AverageState, Needles, RunningAverage
+from analysis.resolver.classic_average import AverageState, NeedleReadings, RunningAverage
 from analysis.resolver.classic_recording import running_average
 from analysis.resolver.reference import PhaseReference, from_frequency
 from hardware.description.arrays import FloatArray
@@ -123,7 +123,7 @@ def test_needles_do_not_depend_on_blocks(lengths: list[int], seed: int) -> None:
     assert np.array_equal(joined(parts, "settled"), whole.settled)
 
 
-def joined(parts: list[Needles], name: str) -> FloatArray:
+def joined(parts: list[NeedleReadings], name: str) -> FloatArray:
     return np.concatenate([getattr(part, name) for part in parts], axis=-1)
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from analysis.recording import Recording
 from analysis.resolver.classic_gate import GatedIntegrator
-from analysis.resolver.classic_gate_state import GateState, IntegratorState
+from analysis.resolver.classic_gate_state import GatingState, IntegratorState
 from analysis.resolver.classic_recording import gated_readings
 from analysis.resolver.reference import from_frequency
 from hardware.description.arrays import FloatArray
@@ -39,23 +39,23 @@ def fed(
 def test_pulses_open_count_close_and_are_then_ignored_until_the_reset() -> None:
     mode = machine(2)
     state = fed(mode, IntegratorState(0.0), 0.5, [])
-    assert state.gate is GateState.ARMED
+    assert state.gate is GatingState.ARMED
     state = fed(mode, state, 1.0, [1.003])
-    assert (state.gate, state.opened_s) == (GateState.OPEN, 1.003)
+    assert (state.gate, state.opened_s) == (GatingState.OPEN, 1.003)
     state = fed(mode, state, 1.0, [2.003])
-    assert state.gate is GateState.OPEN
+    assert state.gate is GatingState.OPEN
     assert state.reading is None
     state = fed(mode, state, 1.0, [3.003])
-    assert state.gate is GateState.HOLD
+    assert state.gate is GatingState.HOLD
     held = state.reading
     assert held is not None
     assert (held.opened_s, held.closed_s, held.periods) == (1.003, 3.003, 2)
     assert held.in_phase[0, 0] == pytest.approx(3.0, abs=1e-3)
     state = fed(mode, state, 3.0, [4.003, 5.003, 6.003])
-    assert state.gate is GateState.HOLD
+    assert state.gate is GatingState.HOLD
     assert state.reading is held
     state = mode.reset(state)
-    assert state.gate is GateState.ARMED
+    assert state.gate is GatingState.ARMED
     assert state.reading is None
     state = fed(mode, state, 3.0, [7.003, 8.003, 9.003])
     assert state.reading is not None
@@ -80,7 +80,7 @@ def test_one_block_may_hold_opening_and_closing() -> None:
 def test_the_start_state_is_not_changed() -> None:
     start = IntegratorState(0.0)
     fed(machine(), start, 3.0, [1.0, 2.0])
-    assert start.gate is GateState.ARMED
+    assert start.gate is GatingState.ARMED
     assert start.taken == 0
 
 

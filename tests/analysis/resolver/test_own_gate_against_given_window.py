@@ -7,7 +7,7 @@ import pytest
 
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
@@ -28,14 +28,14 @@ def _with_gate(recording: Recording, opened_s: str, periods: str) -> Recording:
 def test_the_gate_of_the_run_is_the_window(recording: Recording) -> None:
     opened_s = float(recording.photocell_edges_s[3])
     own = analyse(_with_gate(recording, repr(opened_s), "4")).readings[0]
-    given = analyse(recording, settings=Settings(opens_s=opened_s, periods=4)).readings[0]
+    given = analyse(recording, settings=ResolverSettings(opens_s=opened_s, periods=4)).readings[0]
     assert own.periods == 4
     np.testing.assert_array_equal(own.coefficients, given.coefficients)
 
 
 def test_what_the_user_asks_for_comes_first(recording: Recording) -> None:
     first, later = (float(recording.photocell_edges_s[at]) for at in (2, 5))
-    asked = Settings(opens_s=later, periods=3)
+    asked = ResolverSettings(opens_s=later, periods=3)
     assert analyse(_with_gate(recording, repr(first), "4"), settings=asked).readings[0].periods == 3
 
 

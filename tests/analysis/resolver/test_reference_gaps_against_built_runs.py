@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice, choose_reference
 from analysis.resolver.reference import NoReferenceError
 from hardware.description.channels import Channel
@@ -40,17 +40,17 @@ def test_the_longest_stretch_without_a_gap_tells_the_phase(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["shaft_angle", "displacement_aft"])
 def test_the_stretch_that_holds_the_gates_opening_goes_first(kind: str) -> None:
-    found = analyse(run(kind, GAP), settings=Settings(opens_s=1.5, periods=4))
+    found = analyse(run(kind, GAP), settings=ResolverSettings(opens_s=1.5, periods=4))
     assert found.readings[0].opened_s == pytest.approx(1.5)
     assert found.readings[0].amplitude[0, 0] == pytest.approx(5.0, rel=1e-4)
-    after = analyse(run(kind, GAP), settings=Settings(opens_s=20.0, periods=5))
+    after = analyse(run(kind, GAP), settings=ResolverSettings(opens_s=20.0, periods=5))
     assert after.readings[0].opened_s == pytest.approx(20.0)
 
 
 @pytest.mark.parametrize("kind", ["shaft_angle", "displacement_aft"])
 def test_a_gate_that_opens_in_the_gap_is_refused(kind: str) -> None:
     with pytest.raises(NoReferenceError, match=r"no sample at 10\.03 s .* 7 samples from 10\.000"):
-        analyse(run(kind, GAP), settings=Settings(opens_s=10.03))
+        analyse(run(kind, GAP), settings=ResolverSettings(opens_s=10.03))
 
 
 @pytest.mark.parametrize("kind", ["shaft_angle", "displacement_aft"])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import Channel
 from hardware.description.flags import Flag, Severity
@@ -16,7 +16,9 @@ def run(values: np.ndarray, full_scale: float | None, flags: tuple[Flag, ...] = 
     recording = Recording(
         "run", (Channel("force", "N", full_scale),), values[None], 100.0, flags=flags
     )
-    result = analyse(recording, ReferenceChoice(frequency_hz=1.0), Settings(opens_s=2.0, periods=5))
+    result = analyse(
+        recording, ReferenceChoice(frequency_hz=1.0), ResolverSettings(opens_s=2.0, periods=5)
+    )
     return [flag for flag in result.flags if flag.code == "saturated"]
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import Channel
 from hardware.description.flags import Flag
@@ -70,7 +70,7 @@ def test_a_displacement_of_unknown_unit_is_not_compared() -> None:
 
 
 def test_a_displacement_that_is_not_resolved_is_compared_all_the_same() -> None:
-    chosen = Settings(channels=("force_aft",))
+    chosen = ResolverSettings(channels=("force_aft",))
     flags = analyse(run(SetPoint(0.83, 0.03, QUARTER)), settings=chosen).flags
     assert sum(flag.code == "set_point_differs" for flag in flags) == 2
 

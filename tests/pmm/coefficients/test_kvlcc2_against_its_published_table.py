@@ -18,7 +18,7 @@ from analysis.coefficients.campaign_nonlinear import (
     STATIC_DRIFT,
     SURGE_FORCES,
 )
-from analysis.coefficients.cycle import Cycle
+from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.readers import from_dataset, write_recording
 from hardware.description.body import Body
@@ -139,7 +139,7 @@ def test_through_simulator_and_command(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def cycles() -> list[Cycle]:
+def cycles() -> list[BodyCycle]:
     table = kvlcc2.turntable
     rigs = {f"sway {a}": table(a, kvlcc2.SWAY_HZ, 0.0, yaws=False) for a in kvlcc2.SWAY_M}
     for drift in kvlcc2.DRIFTS_RAD:
@@ -150,7 +150,7 @@ def cycles() -> list[Cycle]:
 
 
 @pytest.mark.parametrize("load", ["X", "Y", "N"])
-def test_by_the_exact_rigs_turntable(cycles: list[Cycle], load: str) -> None:
+def test_by_the_exact_rigs_turntable(cycles: list[BodyCycle], load: str) -> None:
     names = [name for name in kvlcc2.PRINTED if name[0] == load]
     fit = fit_cycles(cycles, names, (0, 1, 2, 3, 4))
     for name in names:

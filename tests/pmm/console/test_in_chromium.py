@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from tests.pmm.console.chromium import Browser, browser, console, needed, plan, rig_in
 
 pytestmark = needed
@@ -47,7 +47,7 @@ def test_needles_settle_where_the_analysis_ends(rig: Path, tmp_path: Path) -> No
         page.until(lambda: "Z_wdot" in page.text("#coefficient"), "coefficients")
         file = tmp_path / "out" / "heave" / NAME / "run.nc"
         page.until(file.exists, "recording")
-        reading = analyse(read_recording(file), settings=Settings()).readings[0]
+        reading = analyse(read_recording(file), settings=ResolverSettings()).readings[0]
         row = reading.channel_names.index("force_aft")
         wanted = reading.coefficients[row, 1:3]
         half_width = reading.half_width()[row, 1:3].max()

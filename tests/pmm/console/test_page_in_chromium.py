@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from tests.pmm.console.chromium import Browser, browser, console, needed, rig_in
 
 pytestmark = needed
@@ -81,7 +81,7 @@ def test_all_that_an_operator_looks_for_is_there(tmp_path: Path) -> None:
         page.until(lambda: page.text("#state-name").endswith("done"), "end")
     assert [row[0] for row in seen] == [1.0, 2.0, 3.0]
     reading = analyse(
-        read_recording(tmp_path / "out" / "heave" / FIRST / "run.nc"), settings=Settings()
+        read_recording(tmp_path / "out" / "heave" / FIRST / "run.nc"), settings=ResolverSettings()
     ).readings[0]
     row = reading.channel_names.index("force_aft")
     widths = reading.half_width()[row]

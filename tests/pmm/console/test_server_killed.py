@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Settings, analyse
+from analysis.resolver.analyse import ResolverSettings, analyse
 from benchmarks.console_source import Watcher
 from tests.pmm.console.chromium import Console, console, plan, rig_in
 
@@ -55,7 +55,9 @@ def test_runs_go_on_to_their_end_and_are_recorded_whole(tmp_path: Path) -> None:
     assert len(left) > 1  # the one that works coefficients out
     assert "the web server has ended; the rig runs on" in one.said
     for name in ("run-f1-a20", "run-f1.1-a20"):
-        reading = analyse(read_recording(folder / name / "run.nc"), settings=Settings()).readings[0]
+        reading = analyse(
+            read_recording(folder / name / "run.nc"), settings=ResolverSettings()
+        ).readings[0]
         assert reading.periods == PERIODS
         marker = (folder / name / "complete.json").read_text(encoding="utf-8")
         assert json.loads(marker)["outcome"] == "complete"

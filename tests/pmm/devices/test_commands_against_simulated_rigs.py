@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
-from sim.devices.terminal import Terminal
+from sim.devices.terminal import PseudoTerminal
 from tests.sim.devices.benches import WHOLE, Hosted, amplifier, multicast_works, toml
 
 PARTS = {**WHOLE, "forces": [amplifier(4, "force_aft", "force_fore")]}
@@ -181,7 +181,7 @@ def test_a_bus_of_another_process_is_scanned(interface: str, tmp_path: Path) -> 
 
 
 def test_a_silent_port_and_a_bus_that_is_not_there_are_told() -> None:
-    terminal = Terminal()
+    terminal = PseudoTerminal()
     try:
         silent = devices("scan", "--port", terminal.path, "--listen", "0.1")
     finally:

@@ -30,7 +30,7 @@ from pmm.recorder.live_path import (
 )
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -145,7 +145,7 @@ def session(serial: tuple[str, ...] = (), **parts: Any) -> Iterator[Session]:
     for part in serial:
         tables[part] = {**tables[part], "port": {"url": f"sim://{name}/{part}"}}
     configuration = read_rig(tables, DRIVERS)
-    world = World(configuration, Scene(vertical_rig(), Surroundings(1.2, seed=7), 0.019, 0.45))
+    world = World(configuration, Scene(vertical_rig(), PlantConditions(1.2, seed=7), 0.019, 0.45))
     observe: list[Callable[[Frame], None]] = []
     hear: list[Callable[[int, str, bytes], None]] = []
     with (

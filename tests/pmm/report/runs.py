@@ -3,7 +3,7 @@
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, Settings, analyse
+from analysis.resolver.analyse import Analysis, ResolverSettings, analyse
 from analysis.resolver.choice import ReferenceChoice
 from hardware.description.channels import Channel
 
@@ -46,4 +46,4 @@ def run(
 
 def analysed(recording: Recording | None = None, **settings: object) -> Analysis:
     """Resolve a run with its photocell."""
-    return analyse(recording or run(), ReferenceChoice(), Settings(**settings))  # type: ignore[arg-type]
+    return analyse(recording or run(), ReferenceChoice(), ResolverSettings(**settings))  # type: ignore[arg-type]

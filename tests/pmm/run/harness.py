@@ -23,7 +23,7 @@ from pmm.run.recording import Recording
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import SimulatedRig, vertical_rig
@@ -142,7 +142,7 @@ def bench(
     configuration = read_rig(whole, DRIVERS)
     place = {"eccentricity_m": E_M - 1e-4, "strut_phase_rad": PHASE_RAD - 1e-3}
     place |= scene or {}
-    world = World(configuration, Scene(simulated or vertical_rig(), Surroundings(), **place))
+    world = World(configuration, Scene(simulated or vertical_rig(), PlantConditions(), **place))
     rig_file = RigFile(
         path=Path("rig.toml"),
         sha256="0" * 64,

@@ -19,7 +19,7 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.faults import inject
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import SimulatedRig, vertical_rig
@@ -59,7 +59,7 @@ WHOLE: dict[str, Any] = {
 def in_process(
     tables: Mapping[str, Any],
     simulated: SimulatedRig | None = None,
-    around: Surroundings | None = None,
+    around: PlantConditions | None = None,
     *,
     on_bus: bool = True,
     serial: tuple[str, ...] = (),
@@ -74,7 +74,7 @@ def in_process(
         bus = {"interface": "pmm-simulated", "channel": name, "receive_thread": False}
         whole["bus"] = bus | whole.get("bus", {})
     configuration = read_rig(whole, DRIVERS)
-    scene = Scene(simulated or vertical_rig(), around or Surroundings(), **start)
+    scene = Scene(simulated or vertical_rig(), around or PlantConditions(), **start)
     world = World(configuration, scene)
     with (
         running(name, world),

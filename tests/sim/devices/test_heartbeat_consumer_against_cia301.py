@@ -15,7 +15,7 @@ import pytest
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.bus import SimulatedBus
-from sim.devices.plant import Surroundings
+from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
@@ -54,7 +54,7 @@ def line() -> Iterator[Line]:
     name = f"line-{next(_NAMES)}"
     bus = {"interface": "pmm-simulated", "channel": name, "receive_thread": False}
     configuration = read_rig({"bus": bus, "shaft": WHOLE["shaft"]}, DRIVERS)
-    world = World(configuration, Scene(vertical_rig(), Surroundings()))
+    world = World(configuration, Scene(vertical_rig(), PlantConditions()))
     with running(name, world), SimulatedBus(name) as opened:
         yield Line(opened)
 

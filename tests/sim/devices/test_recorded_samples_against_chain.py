@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
-from sim.acquisition.photocell import Photocell
-from sim.devices.plant import Plant, Surroundings
+from sim.acquisition.photocell import PhotocellStage
+from sim.devices.plant import Plant, PlantConditions
 from sim.devices.profile import SpeedProfile, following
 from sim.drive.motor import Servo, SpeedLoop
 from sim.rig import SimulatedRig, vertical_rig
@@ -19,7 +19,7 @@ from tests.sim.devices.benches import NEWTON_PER_COUNT, WHOLE, in_process, turni
 
 RATE_HZ = 100.0
 ECCENTRICITY_M, PHASE_RAD = 0.02, 0.5
-AROUND = Surroundings(carriage_speed_m_s=1.2, seed=7)
+AROUND = PlantConditions(carriage_speed_m_s=1.2, seed=7)
 SIGNALS = ("shaft_angle", "recorded_force_aft", "recorded_force_fore", "displacement_fore")
 
 
@@ -32,7 +32,7 @@ def loaded_rig() -> SimulatedRig:
     """A rig whose drive gives way, with memory in every place."""
     rig = vertical_rig()
     servo = Servo(loop=SpeedLoop(proportional=20.0, integral=100.0))
-    cell = Photocell(mark_angle_rad=0.3, latency_s=0.013, jitter_rms_s=1e-4)
+    cell = PhotocellStage(mark_angle_rad=0.3, latency_s=0.013, jitter_rms_s=1e-4)
     return replace(rig, drive=replace(rig.drive, motor=servo), photocell=cell)
 
 

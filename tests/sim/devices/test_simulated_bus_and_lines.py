@@ -26,7 +26,7 @@ from sim.devices.bench_file import DRIVERS, read_bench
 from sim.devices.host import Host
 from sim.devices.registry import running
 from sim.devices.slcan import SlcanAdapter
-from sim.devices.terminal import Terminal
+from sim.devices.terminal import PseudoTerminal
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
@@ -154,7 +154,7 @@ def test_a_port_that_is_not_there_is_named() -> None:
 
 
 def test_a_terminal_carries_lines_and_hangs_up() -> None:
-    terminal = Terminal()
+    terminal = PseudoTerminal()
     with serial.serial_for_url(terminal.path, timeout=1.0, exclusive=True) as port:
         terminal.write(b"there\n")
         assert port.readline() == b"there\n"

@@ -15,7 +15,7 @@ from sim.effects.d1b_torque_cogging import TorqueCogging
 from sim.effects.d2_speed_droop import SpeedDroop
 from sim.effects.d3_load_ripple import LoadRipple
 from sim.effects.d5_guide_friction import GuideFriction
-from sim.effects.d6_frequency_error import FrequencyError
+from sim.effects.d6_frequency_error import SetFrequencyError
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
@@ -36,8 +36,8 @@ CASES = [
     (LoadRipple(200.0, 0.5), 1e-3),
     (TorqueCogging(0.1, 1.0, 0.5, 5.0), 1e-6),
     (TorqueCogging(0.1, 3.0, 0.0, 5.0), 1e-6),
-    (FrequencyError(), 1e-9),
-    (FrequencyError(-0.02), 1e-9),
+    (SetFrequencyError(), 1e-9),
+    (SetFrequencyError(-0.02), 1e-9),
 ]
 
 

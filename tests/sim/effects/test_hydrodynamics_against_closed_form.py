@@ -31,7 +31,7 @@ from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.h15_dynamic_trim import DynamicTrim
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.model.acting import Acting, Point
-from sim.model.laws import Motion, Quadratic
+from sim.model.laws import LawInput, Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
@@ -223,7 +223,7 @@ def test_band_of_vortices_against_its_moments(bandwidth: float) -> None:
     changed = effect.change(VERTICAL, SetPoint(0.9, 0.02, 1.0, speed))
     laws = [one.law for one in changed.forces if one.point is Point.FORE]
     still, time_s = np.zeros(1), np.arange(duration_s * rate_hz) / rate_hz
-    motion = Motion(still, still, still, still, time_s, 1.0 / rate_hz, still)
+    motion = LawInput(still, still, still, still, time_s, 1.0 / rate_hz, still)
     window = np.hanning(time_s.size)
     wave = window * np.sum([law.force(motion) for law in laws], axis=0)
     power = np.abs(np.fft.rfft(wave)) ** 2

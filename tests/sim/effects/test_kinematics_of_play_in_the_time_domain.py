@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hardware.description.setpoint import SetPoint
 from sim.effects.k6_joint_play import JointPlay
 from sim.effects.situation import Situation
-from sim.mechanism.play import Motion, follow_with_play
+from sim.mechanism.play import JointMotion, follow_with_play
 from sim.rig import vertical_rig
 from tests.sim.effects.against_theory import small_angles
 
@@ -44,7 +44,7 @@ def test_impulse_of_each_jump_is_whole() -> None:
     motion = np.array([np.sin(omega * time), omega * np.cos(omega * time), 0.0 * time])
     motion[2] = -(omega**2) * motion[0]
     d, v, a = 0.02 * motion
-    _, behind = follow_with_play(None, Motion(d, v, a), 1e-3, 1.0 / RATE_HZ)
+    _, behind = follow_with_play(None, JointMotion(d, v, a), 1e-3, 1.0 / RATE_HZ)
     gained = np.cumsum(behind.acceleration) / RATE_HZ
     moving = np.abs(behind.velocity - v) < 1e-12
     # Away from the jumps velocity is what all accelerations before it add up to, half a sample on.

@@ -24,7 +24,7 @@ from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.model.acting import Acting, Point
 from sim.model.law_table import LAWS
-from sim.model.laws import Coulomb, ForceLaw, Motion
+from sim.model.laws import Coulomb, ForceLaw, LawInput
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
@@ -188,14 +188,14 @@ def test_a_scaled_law_asks_for_more(law: type[ForceLaw]) -> None:
     needed = needed or ["stiffness_n_m", "stiffness_n_m2", "stiffness_n_m3", "preload_n"]
     one = law(**dict(zip(needed, (0.3, 0.7, 0.2, 0.1), strict=False)))
     t = np.linspace(0.0, 1.0, 9)
-    motion = Motion(0.01 * t, np.cos(4.0 * t), np.sin(t), 5.0 + t, t, 0.01, np.ones_like(t))
+    motion = LawInput(0.01 * t, np.cos(4.0 * t), np.sin(t), 5.0 + t, t, 0.01, np.ones_like(t))
     assert np.abs(one.force(motion)).max() > 0.0
     np.testing.assert_allclose(one.scaled(1.5).force(motion), 1.5 * one.force(motion), rtol=1e-12)
 
 
 def test_a_law_that_does_not_say_what_it_grows_with_is_not_scaled() -> None:
     class Own(ForceLaw):
-        def force(self, motion: Motion) -> FloatArray:
+        def force(self, motion: LawInput) -> FloatArray:
             return motion.position
 
     with pytest.raises(ConfigurationError, match="Own cannot be scaled: name in its"):

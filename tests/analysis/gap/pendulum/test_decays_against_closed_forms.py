@@ -89,7 +89,7 @@ def test_period_that_falls_with_amplitude_is_no_damping() -> None:
 
 def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
     problem = decay(LOSSES["quadratic_drag"], seed=11)
-    sets = [fit(problem, [cause(one)]) for one in (body.QuadraticDrag, body.CubicDamping)]
+    sets = [fit(problem, [cause(one)]) for one in (body.QuadraticDrag, body.CubicRateDamping)]
     for regime in foretell(problem, sets):
         right, wrong = regime.foretold
         assert regime.before.gap > 20.0

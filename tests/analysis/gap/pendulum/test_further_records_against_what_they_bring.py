@@ -104,7 +104,7 @@ def decayed(release: float, loss: float, seed: int) -> Trial:
 
 
 def test_a_larger_release_brings_what_is_expected_of_it() -> None:
-    kinds = (body.QuadraticDrag, body.CubicDamping)
+    kinds = (body.QuadraticDrag, body.CubicRateDamping)
     known, counted = (tolerance("restoring", 1e-3),), ("decay", "period")
     there = decayed(0.05, 0.3, seed=3)
     problem = Problem((there,), known, kinds=counted)
