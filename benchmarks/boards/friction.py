@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.boards import outside
 from benchmarks.boards.campaigns import EXAMPLES, NULLS
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 
 OUTSIDE: Final = "sealed generator, CSV"
 # The recipes in which friction is planted: what was simulated, and how many seeds are asked for.

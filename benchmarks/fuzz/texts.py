@@ -13,8 +13,8 @@ from pydantic import TypeAdapter, ValidationError
 from benchmarks.fuzz.promises import REFUSED, check_finite
 from benchmarks.machine import ROOT
 from hardware.lines import decode
-from pmm.calibration import read_calibration
-from pmm.campaign_file import read_campaign
+from pmm.campaign.calibration import read_calibration
+from pmm.campaign.campaign_file import read_campaign
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,

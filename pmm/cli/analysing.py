@@ -158,7 +158,7 @@ def _check_not_there(folder: Path, found: Found) -> None:
 
 def _doubts(done: "Sequence[Analysed]") -> "Iterator[tuple[Path, tuple[Flag, ...]]]":
     """Say of each campaign which units and signs look wrong in all its runs."""
-    from pmm.implausible import implausible
+    from pmm.campaign.plausibility import implausible
 
     sources = {one.source.campaign_path: one.source for one in done}
     for path, source in sources.items():

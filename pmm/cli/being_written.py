@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from pmm.campaign_owner import writer_of
 from pmm.cli.screen import messages
+from pmm.recorder.campaign_owner import writer_of
 
 
 def tell_writers(places: Iterable[Path]) -> None:

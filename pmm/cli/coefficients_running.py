@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign import CAMPAIGN_FILE
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.being_written import tell_writers
 from pmm.cli.coefficients import DEFAULT_TRIALS
 from pmm.cli.damaged import tell_damaged, tell_unchecked
@@ -154,7 +154,7 @@ def _folder(text: str) -> Path:
 
 def _few(folders: Sequence[Path], settings: Settings) -> bool:
     """Whether there is too little to do for starting processes."""
-    from pmm.campaign_file import read_campaign
+    from pmm.campaign.campaign_file import read_campaign
 
     count = sum(len(read_campaign(folder / CAMPAIGN_FILE).runs) for folder in folders)
     return count < FEW_RUNS and settings.trials <= DEFAULT_TRIALS

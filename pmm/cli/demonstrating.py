@@ -9,8 +9,8 @@ from pathlib import Path
 from analysis.readers import read_recording
 from analysis.resolver.analyse import Analysis, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
-from pmm.campaign import CAMPAIGN_FILE
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.analyse import DEFAULT_LEVEL
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted

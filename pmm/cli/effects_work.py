@@ -12,7 +12,7 @@ import click
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli.effects_printing import print_signature
 from pmm.cli.screen import busy, messages, output
 from sim.effects.agreement import simulated_signature

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.campaign import CAMPAIGN_FILE
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.gap_adding import add_and_say, check_appendable
 from pmm.cli.gap_diagnose_work import engine, progress
 from pmm.cli.gap_options import Looks

@@ -27,7 +27,7 @@ from pmm.parallel import open_executor
 from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
-    from pmm.campaign import AtRest, Run
+    from pmm.campaign.runs import AtRest, Run
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 from analysis.readers.columns_options import parse_options
 from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.campaign import CAMPAIGN_FILE, RUN_FILE, Campaign
-from pmm.campaign_file import read_campaign
-from pmm.campaign_recording import RAW, RecordingSource, open_recording
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.recording_source import RAW, RecordingSource, open_recording
 from pmm.cli.being_written import tell_writers
+from pmm.recorder.files import RECORDING
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -46,7 +48,7 @@ class Source:
     @property
     def stem(self) -> str:
         """The file's name without its endings; its folder's, where run control has put it."""
-        if self.path.name == RUN_FILE:
+        if self.path.name == RECORDING:
             return self.path.parent.name
         return Path(self.path.name.removesuffix(".gz")).stem
 
@@ -149,17 +151,17 @@ def read_source(
     edges
         File of the photocell's edge times; ``{stem}`` in it stands for the recording's name.
     calibration
-        File of the gauges' calibration; :data:`pmm.campaign_recording.RAW` for none; by default
-        the recording's own.
+        File of the gauges' calibration; :data:`pmm.campaign.recording_source.RAW` for none; by
+        default the recording's own.
     progress
         Told which part of a text file has been read, from 0 to 1.
 
     Raises
     ------
     DataError, ConfigurationError
-        As :func:`pmm.campaign_recording.open_recording` does.
+        As :func:`pmm.campaign.recording_source.open_recording` does.
     """
-    from pmm.calibration import read_calibration
+    from pmm.campaign.calibration import read_calibration
 
     asked = replace(source.recording, sample_rate_hz=sample_rate_hz)
     if columns is not None:

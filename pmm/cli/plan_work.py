@@ -83,7 +83,7 @@ def show(file: str, *, plot: str | None, as_json: bool) -> None:
 
 
 def _draw(plan: Plan, rig: RigFile, folder: Path) -> list[Path]:
-    from pmm.plan.matrix_figure import matrix_figure
+    from pmm.report.matrix_figure import matrix_figure
     from pmm.report.style import write_figure
 
     return write_figure(matrix_figure(plan, rig), folder, f"{plan.name}-matrix")

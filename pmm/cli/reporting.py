@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pmm.campaign import CAMPAIGN_FILE
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.coefficients_running import analysed, finish
 from pmm.cli.folders import check_file
 from pmm.cli.hints import program

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from analysis.coefficients.restoring import Restoring
-from pmm.calibration import Calibration
+from pmm.campaign.calibration import Calibration
 from pmm.cli.coefficients_printing import print_recommended
 from pmm.cli.screen import error_line, messages, output
-from pmm.run.chart import Chart
-from pmm.run.evaluation import Evaluation
-from pmm.run.in_water import InWater
+from pmm.evaluation.control_chart import Chart
+from pmm.evaluation.evaluation import Evaluation
+from pmm.evaluation.water_tests import InWater
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -12,25 +12,25 @@ import click
 
 from analysis.coefficients.exchange import to_dict
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
-from pmm.campaign import CAMPAIGN_FILE
-from pmm.campaign_owner import own_campaign
+from pmm.campaign.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.being_written import tell_writers
 from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.run_evaluate_printing import print_evaluation
-from pmm.run.calibration import calibrate, modes_text
-from pmm.run.chart import LEAST, control_charts
-from pmm.run.evaluation import Evaluation
-from pmm.run.in_water import InWater, in_water
-from pmm.run.results import RunResult, of_kind, read_results
-from pmm.run.rig_tests import (
+from pmm.evaluation.check_weights import calibrate, modes_text
+from pmm.evaluation.control_chart import LEAST, control_charts
+from pmm.evaluation.evaluation import Evaluation
+from pmm.evaluation.rig_tests import (
     InPlaceResponse,
     RungMode,
     known_mass_responses,
     rung_modes,
     zero_drifts,
 )
+from pmm.evaluation.run_results import RunResult, of_kind, read_results
+from pmm.evaluation.water_tests import InWater, in_water
+from pmm.recorder.campaign_owner import own_campaign
 from pmm.whole_file import write_whole
 
 JSON_SCHEMA: Final = "pmm-evaluation-1"
@@ -121,7 +121,7 @@ def _calibration(weights: Sequence[RunResult], valid_days: int) -> Calibration |
 def _in_water(folder: Path) -> InWater:
     if not (folder / CAMPAIGN_FILE).exists():
         return InWater()
-    from pmm.campaign_file import read_campaign
+    from pmm.campaign.campaign_file import read_campaign
 
     return in_water(read_campaign(folder / CAMPAIGN_FILE), folder)
 
@@ -133,7 +133,7 @@ def _responses(
 
 
 def _half_spacing(folder: Path) -> float:
-    from pmm.campaign_file import read_campaign
+    from pmm.campaign.campaign_file import read_campaign
 
     oscillator = read_campaign(folder / CAMPAIGN_FILE).oscillator
     if oscillator is None:

@@ -18,7 +18,6 @@ from hardware.description.errors import DataError
 from hardware.description.room import is_full, said
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
-from pmm.campaign_owner import own_campaign
 from pmm.cli.findings import finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
@@ -33,6 +32,7 @@ from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.real_time import before_others, step_back
+from pmm.recorder.campaign_owner import own_campaign
 from pmm.recorder.run_recorder import Outcome
 from pmm.run.campaign_folder import (
     check_names,

@@ -13,15 +13,17 @@ import numpy as np
 from analysis.readers import from_dataset, write_recording
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
-from pmm.campaign import CAMPAIGN_FILE, AtRest, Campaign, Run
-from pmm.campaign_file import read_campaign
-from pmm.campaign_order import place_in
-from pmm.campaign_owner import own_new_campaign
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.order import place_in
+from pmm.campaign.runs import AtRest, Run
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
 from pmm.cli.screen import output, print_flags, show_progress
 from pmm.cli.simulating_zeros import simulate_zero, zero_runs
+from pmm.recorder.campaign_owner import own_new_campaign
 from pmm.whole_file import write_whole
 from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, user_effects

@@ -9,8 +9,9 @@ from analysis.readers import from_dataset
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
-from pmm.campaign import AtRest, Campaign
-from pmm.campaign_order import made_in_order, place_in
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.order import made_in_order, place_in
+from pmm.campaign.runs import AtRest
 from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig

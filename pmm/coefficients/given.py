@@ -16,12 +16,14 @@ from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Oscillator
-from pmm.calibration import Calibration, read_calibration
-from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
+from pmm.campaign.calibration import Calibration, read_calibration
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.model_uncertainty import ModelUncertainty, take_uncertainty
+from pmm.campaign.runs import Run
 from pmm.coefficients.settings import DRY, MODEL, Settings
 from pmm.coefficients.tasks import Chain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
-from pmm.model_uncertainty import ModelUncertainty, take_uncertainty
 
 _BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
 _GAUGES = {

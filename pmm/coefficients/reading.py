@@ -30,8 +30,8 @@ from hardware.description.channels import (
 )
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from pmm.calibrated import applied
-from pmm.campaign_recording import RAW, open_recording
+from pmm.campaign.calibrated_recording import applied
+from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.settings import Amplifier
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 

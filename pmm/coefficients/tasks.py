@@ -14,9 +14,10 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.calibration import Calibration
-from pmm.campaign import AtRest, Campaign, Run
-from pmm.campaign_recording import COMPLETE, RecordingSource
+from pmm.campaign.calibration import Calibration
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.recording_source import COMPLETE, RecordingSource
+from pmm.campaign.runs import AtRest, Run
 from pmm.coefficients.settings import Amplifier
 
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)

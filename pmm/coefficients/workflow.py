@@ -14,8 +14,11 @@ from analysis.coefficients.stated import StatedUncertainties
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-from pmm.campaign import CAMPAIGN_FILE, Campaign, nearest_run
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.plausibility import implausible
+from pmm.campaign.runs import nearest_run
 from pmm.coefficients.given import (
     body_of,
     chain_of,
@@ -29,7 +32,6 @@ from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import Settings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
-from pmm.implausible import implausible
 
 
 @dataclass(frozen=True, eq=False)

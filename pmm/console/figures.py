@@ -55,7 +55,7 @@ def figures_of(
 
 def _has_runs(folder: Path) -> bool:
     """Whether a campaign under way has a complete run in water: before that all is silent."""
-    from pmm.campaign import CAMPAIGN_FILE
+    from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.configuration import read_toml
 
     runs = read_toml(folder / CAMPAIGN_FILE).get("runs") or []

@@ -4,14 +4,14 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future, wait
 from typing import TYPE_CHECKING
 
-from pmm.campaign_owner import own_campaign
 from pmm.console.messages import WRITTEN, Notice, QueuedPlan
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.rig_file import RigFile
+from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs, keep_sources
 
 if TYPE_CHECKING:
-    from pmm.campaign_owner import CampaignOwnership
+    from pmm.recorder.campaign_owner import CampaignOwnership
 
 
 class Writer:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign_owner import own_campaign
+from pmm.recorder.campaign_owner import own_campaign
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,10 @@ from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium
-from pmm.campaign import AtRest, Campaign, Run
-from pmm.campaign_order import place_in
-from pmm.campaign_recording import RecordingSource, open_recording
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.order import place_in
+from pmm.campaign.recording_source import RecordingSource, open_recording
+from pmm.campaign.runs import AtRest, Run
 
 
 def records_at_rest(

@@ -11,7 +11,8 @@ from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium
-from pmm.campaign import Asked, Campaign
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.runs import Asked
 from pmm.configuration import Fault, as_error, read_toml, validate
 from sim.effects.effect import FurtherMeasurement
 

@@ -26,7 +26,7 @@ from analysis.gap.regimes import Regime, chosen_regime, regimes
 from analysis.gap.verdict import NONE, answer_of, ranked
 from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld, shrinkage
 from hardware.description.arrays import FloatArray
-from pmm.campaign import Campaign
+from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
 from pmm.gap.prepare import Prepared, Progress, prepare, shares_of

@@ -7,7 +7,8 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
-from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.runs import AtRest, Run
 
 # As people write them, in the units that the tables show.
 KEYS: Final[Mapping[str, Callable[[Run], float]]] = {

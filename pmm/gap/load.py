@@ -12,10 +12,12 @@ from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, PmmError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Range
-from pmm.campaign import CAMPAIGN_FILE, Campaign, Run
-from pmm.campaign_file import read_campaign
-from pmm.campaign_order import place_in
-from pmm.campaign_recording import RecordingSource, open_recording
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.order import place_in
+from pmm.campaign.recording_source import RecordingSource, open_recording
+from pmm.campaign.runs import Run
 from pmm.configuration import read_toml
 from pmm.gap.at_rest import check_recorded_alike, damage_of, records_at_rest
 from pmm.gap.cut_short import cut_short

@@ -14,7 +14,8 @@ from analysis.gap.recentre import Recentred
 from analysis.gap.verdict import COEFFICIENTS, NONE
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
-from pmm.campaign import CAMPAIGN_FILE, Campaign
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.settings import Settings as Reporting
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.systems import check_dimensions

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from datetime import date
 
-from pmm.calibrated import expiry_text
+from pmm.campaign.calibrated_recording import expiry_text
 from pmm.plan.check_table import CALIBRATION
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.field_checks import field_findings

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from hardware.description.errors import ConfigurationError
+from pmm.campaign.file_names import campaign_name_faults, no_file_name
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
-from pmm.file_names import campaign_name_faults, no_file_name
 from pmm.plan.expansion import MOST_RUNS, run_count
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan_rules import (

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from hardware.rig_configuration import TABLES, RigConfiguration
+from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.configuration import Fault, unknown, validate
-from pmm.model_uncertainty import take_uncertainty
 from pmm.plan.rig_tables import HANDED_ON, Gauge, RigTables
 
 SIMULATED: Final = "pmm-simulated"  # the simulated rig's name among the buses

@@ -13,9 +13,9 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import Watched
-from pmm.calibration import Calibration, read_calibration
+from pmm.campaign.calibration import Calibration, read_calibration
+from pmm.campaign.oscillator_table import expand_preset
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
-from pmm.oscillator_table import expand_preset
 from pmm.plan.rig_checks import (
     SIMULATED,
     channels_of,

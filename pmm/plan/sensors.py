@@ -14,7 +14,7 @@ from hardware.description.channels import SHAFT_ANGLE, STANDARD, Channel
 from hardware.description.simulation_tables import GAUGES, merged
 from hardware.dictionary import Entry, entry
 from hardware.rig_configuration import Part, RigConfiguration
-from pmm.calibration import Calibration
+from pmm.campaign.calibration import Calibration
 from pmm.plan.rig_file import RigFile
 
 _FRACTIONS: Final = frozenset("fd")  # struct codes of what is no count

@@ -11,7 +11,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.roles import Pulse
-from pmm.campaign_owner import writer_of
+from pmm.recorder.campaign_owner import writer_of
 from pmm.recorder.changes import changed_files
 from pmm.recorder.decoding import decode
 from pmm.recorder.files import HARMONICS

@@ -10,8 +10,9 @@ import numpy as np
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
-from pmm.campaign import Campaign, Run
-from pmm.campaign_order import place_in
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.order import place_in
+from pmm.campaign.runs import Run
 from pmm.labels import display, plain
 from pmm.report.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pmm.run.chart import Chart
+from pmm.evaluation.control_chart import Chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

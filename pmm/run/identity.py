@@ -17,10 +17,10 @@ from typing import Any, Final
 
 from hardware.description.body import DIMENSIONS
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.calibrated import CARRIED
-from pmm.calibration import as_table
+from pmm.campaign.calibrated_recording import CARRIED
+from pmm.campaign.calibration import as_table
+from pmm.campaign.oscillator_table import expand_preset
 from pmm.configuration import place_text, read_toml
-from pmm.oscillator_table import expand_preset
 from pmm.places import Place
 from pmm.plan.campaign_writer import FinishedRun
 from pmm.plan.plan import Plan
@@ -32,7 +32,7 @@ from pmm.recorder.header import RunHeader
 KEPT: Final = "made-from"  # copies of plan and rig, as they were
 _MOST: Final = 8  # changes of a file that are told one by one
 _MOST_RUNS: Final = 20  # runs whose changes a refusal tells one by one
-# Of a campaign, that tell how a run is to be read: the keys of pmm.campaign.RecordedWith.
+# Of a campaign, that tell how a run is to be read: the keys of pmm.campaign.runs.RecordedWith.
 _TABLES: Final = ("oscillator", "model", "model_uncertainty", "hull", "reference")
 
 

@@ -9,8 +9,7 @@ from typing import Final
 from hardware.opening import opening_of
 from hardware.rig import Rig
 from hardware.roles import Reading
-from pmm.calibrated import provenance_of
-from pmm.campaign_owner import own_campaign
+from pmm.campaign.calibrated_recording import provenance_of
 from pmm.plan.force_estimate import expected_readings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
@@ -21,6 +20,7 @@ from pmm.plan.simulated_rig import (
     departures,
     provenance_of_departures,
 )
+from pmm.recorder.campaign_owner import own_campaign
 from pmm.recorder.disk import DiskWatch, bytes_per_s, free_bytes
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import header_channels, sampled_devices

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign_owner import own_campaign
+from pmm.recorder.campaign_owner import own_campaign
 
 
 def render(template: str, values: Mapping[str, Any]) -> str:

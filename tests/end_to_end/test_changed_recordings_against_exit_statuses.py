@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from benchmarks.boards.campaigns import EXAMPLES, simulated
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 
 # Two effects in place of the catalogue: what takes time is not what is asked for here.

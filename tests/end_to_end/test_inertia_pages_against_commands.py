@@ -11,7 +11,7 @@ from typing import Any, get_args, get_type_hints
 import pytest
 from click.testing import CliRunner, Result
 
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.incline import InclineJob

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from analysis.readers import ColumnMap, read_recording
 from analysis.resolver.analyse import analyse
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 
 FOLDER = Path(__file__).parents[2] / "examples" / "foreign"

@@ -49,8 +49,10 @@ PLANTED = [
     (
         "What drives a rig never reaches the simulator",
         "pmm/recorder/journal.py",
-        "import pmm.report.chain_figures",
+        "import analysis.gap.diagnose",
     ),
+    ("Within pmm imports go down only", "pmm/run/gate.py", "import pmm.console.pacing"),
+    ("Within pmm imports go down only", "pmm/recorder/disk.py", "import pmm.campaign.calibration"),
 ]
 
 

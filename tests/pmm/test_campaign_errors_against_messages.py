@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 
 RUN = '[[runs]]\nname = "a"\nfrequency_hz = 0.5\neccentricity_m = 0.02\n'
 RIG = '[oscillator]\npreset = "vertical-1963"\n'

@@ -16,8 +16,9 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.known_loads import KnownMass, LoadStep
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.campaign import AtRest, Campaign, Run, Simulation, SwitchedOn
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign import Campaign, Simulation, SwitchedOn
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.runs import AtRest, Run
 from pmm.cli import cli
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage

@@ -6,8 +6,9 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
-from pmm.campaign import AtRest, Campaign, Run, Simulation
-from pmm.campaign_order import made_in_order, place_in
+from pmm.campaign.campaign import Campaign, Simulation
+from pmm.campaign.order import made_in_order, place_in
+from pmm.campaign.runs import AtRest, Run
 
 RUNS = (Run("a", 0.5, 0.02, periods=6), Run("b", 1.0, 0.02, periods=6), Run("c", 2.0, 0.01))
 # Settling, the periods, and one more: (3 + 6 + 1) / 0.5 Hz, and so on.

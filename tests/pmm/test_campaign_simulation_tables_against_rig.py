@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Servo, ShuntMotor

@@ -9,10 +9,10 @@ from click.testing import CliRunner
 
 from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError
-from pmm.calibration import read_calibration
-from pmm.campaign_file import read_campaign
+from pmm.campaign.calibration import read_calibration
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import no_file_name
 from pmm.cli import cli
-from pmm.file_names import no_file_name
 from pmm.plan.plan import read_plan
 from pmm.plan.rig_file import read_rig_file
 from sim.devices.bench_file import read_bench

@@ -15,8 +15,8 @@ from analysis.readers import read_recording, write_recording
 from analysis.recording import Recording
 from hardware.description.setpoint import SetPoint
 from hardware.description.struts import to_strut_forces
-from pmm.calibrated import calibrated, provenance_of
-from pmm.calibration import Calibration, write_calibration
+from pmm.campaign.calibrated_recording import calibrated, provenance_of
+from pmm.campaign.calibration import Calibration, write_calibration
 from sim.rig import SimulatedRig, vertical_rig
 from tests.pmm.coefficients.campaigns import head, pair, record
 from tests.pmm.coefficients.test_command_against_put_in_values import done, linear, run

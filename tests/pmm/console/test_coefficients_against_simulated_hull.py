@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli.simulating import copy_campaign, simulate_runs
 from pmm.console.figures import figures_of
 

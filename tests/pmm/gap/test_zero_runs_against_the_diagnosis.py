@@ -10,7 +10,8 @@ import pytest
 import xarray as xr
 
 from hardware.description.kinds import RunKind
-from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.runs import AtRest, Run
 from pmm.gap.at_rest import records_at_rest
 from pmm.gap.load import load_campaign
 from tests.pmm.gap.rigs import changed, run, short

@@ -17,8 +17,8 @@ from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.roles import Reading
-from pmm.campaign import Campaign
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 from pmm.cli.inputs import find_sources
 from pmm.plan.campaign_writer import FinishedRun, write_campaign

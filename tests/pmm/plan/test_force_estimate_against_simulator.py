@@ -13,7 +13,7 @@ import pytest
 from hardware.description.body import Ship
 from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.calibration import Calibration
+from pmm.campaign.calibration import Calibration
 from pmm.plan.force_estimate import FAR, expected_readings, force_peak_n
 from pmm.plan.rig_tables import HullEstimate
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.description.channels import Channel
-from pmm.calibration import Calibration
-from pmm.campaign import Campaign
-from pmm.campaign_file import read_campaign
+from pmm.campaign.calibration import Calibration
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from analysis.readers import read_recording
-from pmm.campaign_recording import RecordingSource, open_recording
+from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.cli import cli
 from pmm.recorder.files import STREAMS
 from pmm.recorder.header import LiveSettings

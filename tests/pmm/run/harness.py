@@ -14,7 +14,7 @@ from hardware.description.setpoint import SetPoint
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
-from pmm.calibration import Calibration
+from pmm.campaign.calibration import Calibration
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import Gauge, RecorderSettings, RigFile
 from pmm.plan.run_plan import RunPlan

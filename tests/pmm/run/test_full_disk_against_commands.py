@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from hardware.description.room import is_full, said
-from pmm.campaign_owner import LOCK
+from pmm.recorder.campaign_owner import LOCK
 from pmm.whole_file import write_whole
 from tests.pmm.run.processes import READINGS, SHORT, pmm, written_plan
 from tests.sim.devices.benches import ROOT

@@ -11,10 +11,10 @@ from hardware.demand import Demand
 from hardware.description.kinds import RunKind
 from hardware.description.known_loads import KnownMass, LoadDirection, LoadStep
 from hardware.description.oscillator import VERTICAL_1963
-from pmm.calibration import read_calibration, write_calibration
-from pmm.run.calibration import calibrate
-from pmm.run.results import of_kind, read_results
-from pmm.run.rig_tests import known_mass_responses, rung_modes, zero_drifts
+from pmm.campaign.calibration import read_calibration, write_calibration
+from pmm.evaluation.check_weights import calibrate
+from pmm.evaluation.rig_tests import known_mass_responses, rung_modes, zero_drifts
+from pmm.evaluation.run_results import of_kind, read_results
 from pmm.run.states import State
 from pmm.run.surroundings import Surroundings
 from tests.pmm.run.harness import absent, at_rest, bench, oscillation

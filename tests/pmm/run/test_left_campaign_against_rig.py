@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from tests.pmm.run.test_command_against_its_files import pmm
 from tests.sim.devices.benches import ROOT
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
-from pmm.campaign_owner import own_campaign, writer_of
+from pmm.recorder.campaign_owner import own_campaign, writer_of
 from tests.pmm.run.processes import LONG, READINGS, SHORT, pmm, recording, written_plan
 
 LOCK = ".pmm-lock"

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from pmm.campaign import RecordedWith
-from pmm.campaign_file import read_campaign
-from pmm.campaign_recording import RecordingSource, open_recording
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.recording_source import RecordingSource, open_recording
+from pmm.campaign.runs import RecordedWith
 from pmm.run.identity import _TABLES
 from tests.pmm.run.test_command_against_its_files import pmm
 from tests.sim.devices.benches import ROOT

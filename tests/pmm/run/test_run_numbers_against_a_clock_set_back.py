@@ -4,10 +4,10 @@ import json
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from pmm.campaign_owner import own_campaign
+from pmm.evaluation.run_results import read_results
 from pmm.plan.plan import read_plan_and_rig
+from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs
-from pmm.run.results import read_results
 from tests.pmm.run.harness import bench, oscillation
 from tests.sim.devices.benches import ROOT
 

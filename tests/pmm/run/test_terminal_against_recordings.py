@@ -16,8 +16,8 @@ from typing import Any
 
 import pytest
 
-from pmm.campaign_owner import LOCK
 from pmm.cli.terminal import LINES, Terminal
+from pmm.recorder.campaign_owner import LOCK
 from tests.pmm.run.processes import READINGS, written_plan
 from tests.sim.devices.benches import ROOT
 

@@ -17,7 +17,7 @@ from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
-from pmm.campaign import Campaign
+from pmm.campaign.campaign import Campaign
 from pmm.coefficients.given import chain_of, oscillator_of, stated_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import Settings, settings_of

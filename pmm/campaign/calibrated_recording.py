@@ -17,7 +17,7 @@ from analysis.recording import Recording, Samples
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-from pmm.calibration import Calibration, as_table, from_table
+from pmm.campaign.calibration import Calibration, as_table, from_table
 
 CARRIED: Final = "calibration"
 APPLIED: Final = "calibration_applied"

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from pmm.configuration import Fault
 
+CAMPAIGN_FILE: Final = "campaign.toml"
 LONGEST: Final = 100  # letters; a run's name gets a number and an ending, and systems end at 255
 _NEVER: Final = set('/\\:*?"<>|')  # apart folders, or no name on Windows
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {

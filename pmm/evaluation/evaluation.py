@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pmm.calibration import Calibration
-from pmm.run.chart import Chart
-from pmm.run.in_water import InWater
-from pmm.run.rig_tests import InPlaceResponse, RungMode, ZeroDrift
+from pmm.campaign.calibration import Calibration
+from pmm.evaluation.control_chart import Chart
+from pmm.evaluation.rig_tests import InPlaceResponse, RungMode, ZeroDrift
+from pmm.evaluation.water_tests import InWater
 
 
 @dataclass(frozen=True)

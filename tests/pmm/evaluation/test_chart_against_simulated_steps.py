@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import DataError
-from pmm.run.chart import chart
+from pmm.evaluation.control_chart import chart
 
 NAMES = [f"control-{i:02d}" for i in range(1, 13)]
 

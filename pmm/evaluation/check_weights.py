@@ -8,8 +8,8 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-from pmm.calibration import Calibration
-from pmm.run.results import RunResult
+from pmm.campaign.calibration import Calibration
+from pmm.evaluation.run_results import RunResult
 from pmm.toml_text import toml_table
 
 _LEAST_STEPS: Final = 3

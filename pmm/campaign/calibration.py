@@ -1,6 +1,7 @@
 """The calibration of the gauges: what they read for known loads, its dates and its file.
 
-:func:`pmm.run.calibration.calibrate` makes one of check weights; :mod:`pmm.calibrated` applies it.
+:func:`pmm.evaluation.check_weights.calibrate` makes one of check weights;
+:mod:`pmm.campaign.calibrated_recording` applies it.
 """
 
 from collections.abc import Mapping

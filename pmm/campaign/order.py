@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from hardware.description.errors import ConfigurationError
-from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.runs import AtRest, Run
 from sim.effects.campaign import CampaignRun
 
 Record = Run | AtRest

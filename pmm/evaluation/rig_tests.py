@@ -11,7 +11,7 @@ import numpy as np
 from analysis.inertia.damped import fit_damped
 from analysis.inertia.spectrum import spectrum
 from hardware.description.errors import DataError
-from pmm.run.results import RunResult
+from pmm.evaluation.run_results import RunResult
 
 _LOWEST_CYCLES: Final = 5.0  # of a mode in the record: below, it is drift
 _RING_TIMES: Final = 10.0  # over the median of the spectrum: what stands out so far rings

@@ -13,10 +13,10 @@ from analysis.readers import write_recording
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.setpoint import SetPoint
-from pmm.campaign_file import read_campaign
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.evaluation.water_tests import InWater, in_water
 from pmm.report.slow_tests import drift_figure
-from pmm.run.in_water import InWater, in_water
 
 HALF_M = 0.5
 RATE_HZ = 50.0

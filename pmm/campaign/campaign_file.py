@@ -14,11 +14,12 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
-from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.file_names import campaign_name_faults, no_file_name
+from pmm.campaign.model_uncertainty import take_uncertainty
+from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
-from pmm.file_names import campaign_name_faults, no_file_name
-from pmm.model_uncertainty import take_uncertainty
-from pmm.oscillator_table import expand_preset
 
 T = TypeVar("T")
 

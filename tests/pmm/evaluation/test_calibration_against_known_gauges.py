@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.calibrated import APPLIED, CARRIED, calibrated, carried, provenance_of
-from pmm.calibration import Calibration, read_calibration, write_calibration
+from pmm.campaign.calibrated_recording import APPLIED, CARRIED, calibrated, carried, provenance_of
+from pmm.campaign.calibration import Calibration, read_calibration, write_calibration
 from pmm.cli import cli
+from pmm.evaluation.run_results import read_results
 from pmm.plan.checks import check_plan
 from pmm.plan.findings import Verdict
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import read_rig_file
-from pmm.run.results import read_results
 from tests.pmm.plan.plans import GAUGES_TEXT, HEAVE, RIG_TEXT, write_plan
 from tests.pmm.run.harness import bench, oscillation
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from pmm.calibrated import APPLIED, CARRIED
-from pmm.calibration import read_calibration
+from pmm.campaign.calibrated_recording import APPLIED, CARRIED
+from pmm.campaign.calibration import read_calibration
 from pmm.cli import cli
 from pmm.plan.rig_file import read_rig_file
 from pmm.recorder.files import HARMONICS

@@ -12,7 +12,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-from pmm.run.results import RunResult
+from pmm.evaluation.run_results import RunResult
 
 _SIGMAS: Final = 3.0
 _MEDIAN_RANGE: Final = 0.9538725524  # median range of two normal values, in standard deviations

@@ -10,7 +10,8 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 from hardware.roles import Reading
-from pmm.campaign import AtRest, Campaign, Run
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import EVENTS, RECORDING
 from pmm.recorder.texts import read_lines
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from analysis.readers import ColumnMap
     from analysis.readers.text_source import Progress
     from analysis.recording import Recording
-    from pmm.calibration import Calibration
+    from pmm.campaign.calibration import Calibration
 
 RAW = "none"  # readings stay as the gauges gave them
 COMPLETE = "complete"
@@ -99,7 +100,7 @@ def open_recording(
     ------
     DataError
         If the run is not complete, or as :func:`analysis.readers.read_recording` and
-        :func:`pmm.calibrated.calibrated` do.
+        :func:`pmm.campaign.calibrated_recording.calibrated` do.
     ConfigurationError
         If there is no such file, or a column map or sample rate that cannot be.
     """
@@ -138,7 +139,7 @@ def _columns(source: RecordingSource) -> "ColumnMap | None":
 
 
 def _in_newtons(recording: "Recording", given: "Calibration | str | None") -> "Recording":
-    from pmm.calibrated import calibrated
+    from pmm.campaign.calibrated_recording import calibrated
 
     return recording if isinstance(given, str) else calibrated(recording, given)
 

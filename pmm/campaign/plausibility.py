@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from analysis.plausibility import Seen, plausibility_flags
 from hardware.description.arrangement import Joint
 from hardware.description.flags import Flag
-from pmm.campaign import Campaign
+from pmm.campaign.campaign import Campaign
 
 
 def implausible(campaign: Campaign, runs: Sequence[Seen]) -> tuple[Flag, ...]:
