@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from analysis.plausibility import CHECKED, Seen
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import period_sums

@@ -11,7 +11,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from analysis.resolver.template import template
+from analysis.resolver.basis import template
 from hardware.description.arrays import FloatArray
 
 _ORDERS = np.arange(1.0, 4.0)

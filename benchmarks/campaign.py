@@ -146,7 +146,7 @@ def _watched() -> Iterator[list[float]]:
 def _trials(found: Found, blocks: int, report: Report) -> tuple[list[Row], float]:
     """Time blocks of trials of the first group, one worker against two that have started."""
     from analysis.coefficients.campaign_plan import plan
-    from analysis.coefficients.linear import linear_fit
+    from analysis.coefficients.linear_fit import linear_fit
 
     group = plan(found.cycles, Request())[0]
     fit = linear_fit(group.cycles, Request().form, found.stated).fit

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.motion import IdealRun, LinearHull, ideal_run
+from analysis.ideal_rig import IdealRun, LinearHull, ideal_run
 from analysis.readers import write_recording
 from analysis.recording import Recording
 from hardware.description.channels import STANDARD, Channel

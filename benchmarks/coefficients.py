@@ -6,15 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.form_choice import BOTH, CUBIC, NOT_SEPARABLE, QUADRATIC, choose_form
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from benchmarks.coefficients_campaigns import HORIZONTAL, Made, amplitudes, made_up
 from benchmarks.coefficients_coverage import CASES, cubic_rates, linear_rates, monte_carlo_ratio
 from benchmarks.machine import ROOT

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.random import Generator
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.terms import term_of
 from hardware.description.arrays import ComplexArray, FloatArray

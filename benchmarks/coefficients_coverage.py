@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     CUBIC,
     HORIZONTAL,

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.basis import template
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference import PhaseReference, from_frequency
 from analysis.resolver.sums import period_sums
-from analysis.resolver.template import template
 from benchmarks import coverage_memory
 from benchmarks.noises import NOISES, SAMPLES_PER_PERIOD, Noise, white
 from benchmarks.outcome import Benchmark, Outcome, Report, Row

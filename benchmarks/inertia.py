@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis.inertia.damped import fit_damped
+from analysis.inertia.damped_fit import fit_damped
 from benchmarks.inertia_rivals import compare_rivals
 from benchmarks.inertia_simulated import run_simulated
 from benchmarks.outcome import Benchmark, Outcome, Report, Row

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.inertia.damped import DampedMode, fit_damped
+from analysis.inertia.damped_fit import DampedMode, fit_damped
 from benchmarks.inertia_campaigns import series_of
 from hardware.description.arrays import FloatArray
 from sim.pendulum.effects import make_effect

@@ -20,7 +20,7 @@ from unittest.mock import MagicMock, patch
 import numpy as np
 from numpy.random import Generator
 
-from analysis.inertia.damped import fit_damped
+from analysis.inertia.damped_fit import fit_damped
 from hardware.description.arrays import FloatArray
 
 SUCCESS = 1e-3  # relative error of the period

@@ -14,7 +14,8 @@ import numpy as np
 
 from analysis.readers import read_recording
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from benchmarks.peak import peak_bytes
 from benchmarks.signals import Truth, draw_coefficients, recorded
 from hardware.description.arrays import FloatArray

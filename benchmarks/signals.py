@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording, Samples
-from analysis.resolver.template import template
+from analysis.resolver.basis import template
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 

@@ -16,9 +16,9 @@ from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
 from sim.drive.motor import Servo
-from sim.drive.prescribed import DriveSettings, SpeedRipple
-from sim.model.acting import Acting, Point
+from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.model.coefficients import HullCoefficients
+from sim.model.law_point import Acting, Point
 from sim.model.laws import Coulomb, Quadratic
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation

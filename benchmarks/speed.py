@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import analyse
+from analysis.resolver.analysis import analyse
 from analysis.resolver.estimate import resolve
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums

@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from analysis.resolver.analyse import Analysis
+    from analysis.resolver.analysis import Analysis
 
 
 GATES = (1, 2, 3, 4)  # periods, as on the apparatus

@@ -13,7 +13,7 @@ from pmm.classic_rows import ClassicRow, classic_rows
 from pmm.labels import units_loads_first
 
 if TYPE_CHECKING:
-    from analysis.resolver.analyse import Analysis
+    from analysis.resolver.analysis import Analysis
     from analysis.resolver.harmonics import Harmonics
 
 # Of a channel's largest value: what is as small is left by the arithmetic.
@@ -192,7 +192,7 @@ def run_rows(
 
 
 def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple[LetThrough, ...]:
-    from analysis.resolver.analyse import let_through
+    from analysis.resolver.analysis import let_through
 
     if not frequencies_hz:
         return ()

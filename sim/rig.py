@@ -13,12 +13,12 @@ from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
 from sim.drive.carriage import Carriage, CarriageSettings
-from sim.drive.loaded import LoadedDrive
-from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
+from sim.drive.loaded_drive import LoadedDrive
+from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
-from sim.model.acting import Acting
 from sim.model.hull import Hull, HullCoefficients
+from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
 from sim.model.water.force_laws import CrossFlow

@@ -1,8 +1,8 @@
 """From the struts' harmonics to the model's in body axes, exactly, with all that is uncertain.
 
-What is stated of the struts and of the geometry (:mod:`analysis.coefficients.stated`) acts here, as
-a slope beside the scatter: an amplitude, a lag, the spacing, the speed move the model's motion and
-loads, and with these all coefficients.
+What is stated of the struts and of the geometry (:mod:`analysis.coefficients.stated_uncertainties`)
+acts here, as a slope beside the scatter: an amplitude, a lag, the spacing, the speed move the
+model's motion and loads, and with these all coefficients.
 """
 
 import math
@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.phasors import Phasors, interleaved
-from analysis.coefficients.stated import STATED
-from analysis.kinematics.averaged import CHANNELS, UNITS, in_body_axes
+from analysis.coefficients.stated_uncertainties import STATED
+from analysis.kinematics.body_frame import CHANNELS, UNITS, in_body_axes
+from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Driven, motion
 from analysis.kinematics.projection import loads, readings
 from hardware.description.arrays import ComplexArray, FloatArray
@@ -43,7 +43,7 @@ class InBodyAxes:
     Attributes
     ----------
     phasors
-        Of :data:`analysis.kinematics.averaged.CHANNELS`, order by order; the rotation from where
+        Of :data:`analysis.kinematics.body_frame.CHANNELS`, order by order; the rotation from where
         the drift sets the model.
     sensitivity
         Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
@@ -75,7 +75,7 @@ def of_struts(
     Raises
     ------
     DataError
-        As :func:`analysis.kinematics.averaged.in_body_axes`.
+        As :func:`analysis.kinematics.body_frame.in_body_axes`.
     """
     channels = len(struts.names) // (orders + 1)
     omega = 2.0 * math.pi * frequency_hz

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from analysis.coefficients.arrangements import arrangement_flags, other_arrangement
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_checks import consistency
 from analysis.coefficients.campaign_plan import Group, Request, check_campaign, plan
 from analysis.coefficients.campaign_records import (
@@ -22,7 +23,6 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import LOADS, MOTIONS, BodyCycle, at_order
 from analysis.coefficients.campaign_nonlinear import SINGLE_RUN, STATIC_DRIFT
 from analysis.coefficients.campaign_records import (
     HIGHER_ORDER,
@@ -16,9 +17,8 @@ from analysis.coefficients.campaign_records import (
     ConsistencyCheck,
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import LOADS, MOTIONS, BodyCycle, at_order
 from analysis.coefficients.zero_frequency import extrapolate
-from analysis.motion import mass_matrix, weight_matrix
+from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.oscillator import Plane
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_records import HIGHER_ORDER, FormChoice, Missing
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import (
     FIRST,
     HIGHER,
@@ -17,8 +17,8 @@ from analysis.coefficients.cycle_fit import (
     CycleFit,
     fit_cycles,
 )
-from analysis.coefficients.determined import moved_of
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
+from analysis.coefficients.identifiability import moved_of
 from analysis.coefficients.names import Form
 from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
 from hardware.description.arrays import FloatArray

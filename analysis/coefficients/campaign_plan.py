@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-from analysis.coefficients.cycle import BodyCycle
-from analysis.coefficients.determined import moved_of, told_apart
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.identifiability import moved_of, told_apart
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_nonlinear import (
     SINGLE_RUN,
     GroupFits,
@@ -14,11 +15,10 @@ from analysis.coefficients.campaign_nonlinear import (
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, CoefficientEntry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
-from analysis.coefficients.linear import lacking_places, linear_fit
-from analysis.coefficients.otherwise import Otherwise, otherwise
+from analysis.coefficients.linear_fit import lacking_places, linear_fit
+from analysis.coefficients.rearrangement import Otherwise, otherwise
 from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag

@@ -10,7 +10,7 @@ from analysis.coefficients.campaign_records import CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term, term_of
 from analysis.uncertainty import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.terms import SURGE, Term, name_of_term
 from hardware.description.errors import ConfigurationError, DataError

@@ -18,11 +18,11 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import STATED, StatedUncertainties
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import Term, name_of_term, term_of
 from analysis.uncertainty import Contribution, UncertainValues, added
 from hardware.description.arrays import FloatArray

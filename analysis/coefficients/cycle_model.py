@@ -14,14 +14,14 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import interleaved
-from analysis.coefficients.stated import STATED
+from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
 from analysis.coefficients.terms import Term
-from analysis.kinematics.averaged import CHANNELS
+from analysis.kinematics.body_frame import CHANNELS
 from analysis.kinematics.cycle import basis, mean
 from analysis.uncertainty import Contribution
 from hardware.description.arrays import FloatArray

@@ -24,7 +24,7 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form
-from analysis.coefficients.recommended import table
+from analysis.coefficients.recommendation import table
 from analysis.uncertainty import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError

@@ -11,8 +11,8 @@ a model that fits nowhere must not seem to decide.
 import math
 from collections.abc import Mapping, Sequence
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import HIGHER, CycleFit, fit_cycles
 from analysis.coefficients.terms import (
     LOAD_WORDS,

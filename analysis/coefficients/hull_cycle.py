@@ -14,11 +14,11 @@ import numpy as np
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
-from analysis.coefficients.stated import STATED
-from analysis.kinematics.averaged import CHANNELS, UNITS
+from analysis.coefficients.stated_uncertainties import STATED
+from analysis.kinematics.body_frame import CHANNELS, UNITS
+from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import INSTANTS, harmonics, per_part, waves
 from analysis.kinematics.geometry import Waves
-from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import MotionWaves
 from analysis.kinematics.rigid_body import inertia_terms
 from hardware.description.arrays import FloatArray
@@ -27,7 +27,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 if TYPE_CHECKING:
-    from analysis.coefficients.cycle import BodyCycle
+    from analysis.coefficients.body_cycle import BodyCycle
 
 _MOVING = 4
 """Channels of motion; those of the loads follow."""
@@ -44,7 +44,7 @@ class HullCycle:
     Attributes
     ----------
     phasors
-        Of :data:`analysis.kinematics.averaged.CHANNELS`, order by order.
+        Of :data:`analysis.kinematics.body_frame.CHANNELS`, order by order.
     sensitivity
         Slope of their real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
     """
@@ -72,7 +72,7 @@ def on_hull(
     Parameters
     ----------
     gross, sensitivity, channels
-        Of :class:`analysis.coefficients.cycle.BodyCycle`.
+        Of :class:`analysis.coefficients.body_cycle.BodyCycle`.
     """
     count = len(gross.names) // len(channels)
     omega = 2.0 * math.pi * frequency_hz

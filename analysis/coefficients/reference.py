@@ -7,8 +7,8 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, ReferenceRow
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.hull_coefficients import named
 from analysis.coefficients.names import Form
-from analysis.coefficients.of_hull import named
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
-from analysis.coefficients.cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.phasors import Phasors, parts_of
 from analysis.uncertainty import Contribution, student_factor
 from hardware.description.arrays import ComplexArray, FloatArray

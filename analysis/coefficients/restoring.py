@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import LOADS, MOTIONS, BodyCycle, at_order
+from analysis.coefficients.body_cycle import LOADS, MOTIONS, BodyCycle, at_order
 from analysis.coefficients.phasors import Phasors
-from analysis.motion import mass_matrix, weight_matrix
+from analysis.ideal_rig import mass_matrix, weight_matrix
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import DataError

@@ -10,18 +10,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.body_axes import at_order, labels, of_struts
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import (
     Response,
     ZeroReading,
     calibration,
     response_factors,
 )
-from analysis.coefficients.cycle import BodyCycle
-from analysis.coefficients.measured import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
 from analysis.coefficients.phasors import Phasors, joined
+from analysis.coefficients.strut_phasors import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
+from analysis.ideal_rig import strut_displacements
 from analysis.kinematics.geometry import Geometry
-from analysis.motion import strut_displacements
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import IntervalSource
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
@@ -97,7 +97,7 @@ class StrutCycle:
         Raises
         ------
         DataError
-            As :func:`analysis.kinematics.averaged.in_body_axes`.
+            As :func:`analysis.kinematics.body_frame.in_body_axes`.
         """
         point, oscillator = self.set_point, self.oscillator
         geometry = self.geometry(drift_rad)

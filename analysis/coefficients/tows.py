@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analysis.coefficients.cycle import SURGE_FORCE, BodyCycle, at_order
+from analysis.coefficients.body_cycle import SURGE_FORCE, BodyCycle, at_order
 from analysis.uncertainty import student_factor
 from hardware.description.oscillator import Plane
 

@@ -14,10 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.cycle import LOADS, SURGE_FORCE, BodyCycle, at_order, labels
+from analysis.coefficients.body_cycle import LOADS, SURGE_FORCE, BodyCycle, at_order, labels
 from analysis.coefficients.phasors import Phasors
-from analysis.kinematics import averaged
-from analysis.kinematics.averaged import CHANNELS
+from analysis.kinematics import body_frame
+from analysis.kinematics.body_frame import CHANNELS
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
@@ -206,7 +206,7 @@ def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> BodyCycle:
     rows[AHEAD_CHANNEL] = _harmonics(one.columns["u"], orders)
     channels = CHANNELS if SURGE_FORCE in rows else CHANNELS[:-1]
     values = np.stack([rows[channel] for channel in channels], axis=-1).ravel()
-    units = averaged.UNITS[: len(channels)] * (orders + 1)
+    units = body_frame.UNITS[: len(channels)] * (orders + 1)
     phasors = Phasors(labels(channels, orders), units, values)
     return BodyCycle(
         one.description.run,

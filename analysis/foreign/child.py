@@ -16,8 +16,8 @@ from typing import Any, BinaryIO, Final
 
 import numpy as np
 
-from analysis.foreign.found import LONGEST_ANSWER, ForeignColumns
-from analysis.limits import MOST_COLUMNS
+from analysis.foreign.columns import LONGEST_ANSWER, ForeignColumns
+from analysis.reading_limits import MOST_COLUMNS
 from hardware.description.errors import DataError
 
 _GRACE_S: Final = 5.0  # after the parent's own deadline: it may be dead

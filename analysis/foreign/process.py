@@ -13,8 +13,8 @@ from typing import IO, Any, Final, cast
 
 import numpy as np
 
-from analysis.foreign.found import LONGEST_ANSWER, ForeignColumns
-from analysis.limits import TIME_SETTING, ReadingLimits, limits
+from analysis.foreign.columns import LONGEST_ANSWER, ForeignColumns
+from analysis.reading_limits import TIME_SETTING, ReadingLimits, limits
 from hardware.description.errors import DataError
 
 # -P: no module of the folder that the user happens to be in is taken for one of ours.

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.foreign.found import ForeignColumns
+from analysis.foreign.columns import ForeignColumns
 from analysis.readers.foreign import foreign_reader
 from hardware.description.errors import DataError
 

@@ -13,9 +13,9 @@ from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
+from sim.rest import standing, standing_state
 from sim.rig import SimulatedRig
 from sim.run import simulate
-from sim.standing import standing, standing_state
 
 
 def run_at_rest(

@@ -14,7 +14,7 @@ from analysis.gap.spectrum import Lines
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.standing import Applied
+from sim.rest import Applied
 
 
 class Part(StrEnum):

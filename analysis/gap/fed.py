@@ -24,8 +24,8 @@ from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.chain import Chain
-from sim.drive.prescribed import shaft_over
-from sim.effects.applied import switch_on
+from sim.drive.prescribed_drive import shaft_over
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
 from sim.solve.periodic import steady_state

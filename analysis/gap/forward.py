@@ -19,14 +19,14 @@ from analysis.gap.components import GapRun, Layout, Observation, Part, Stack
 from analysis.gap.observe import observe
 from analysis.gap.powers import on_noise
 from analysis.gap.prefix import Solved
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
-from sim.model.acting import Acting
+from sim.effects.switching import switch_on
+from sim.model.law_point import Acting
 from sim.model.laws import Spring
 from sim.rig import SimulatedRig
 from sim.solve.period import Period

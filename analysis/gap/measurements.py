@@ -19,7 +19,7 @@ from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import FurtherMeasurement
-from sim.standing import Applied, check_weight, injection
+from sim.rest import Applied, check_weight, injection
 
 BESIDES: Final = (
     (FurtherMeasurement.REST, ""),

@@ -18,10 +18,10 @@ from analysis.gap.plateau import Plateau, plateau, steps_of
 from analysis.gap.shaft_angle import turns_per_period, unwrapped
 from analysis.gap.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, analyse
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.analysis import Analysis, analyse
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
+from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.choice import ReferenceChoice
 from analysis.resolver.reference import from_encoder
+from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from hardware.description.errors import DataError
 

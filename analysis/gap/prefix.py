@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from sim.chain import Chain
 from sim.solve.period import Period, Spectra
 from sim.solve.periodic import SteadyState
-from sim.solve.sampled import steady_of
+from sim.solve.sampled_period import steady_of
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray

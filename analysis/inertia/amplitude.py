@@ -6,8 +6,8 @@ oscillation's phase is
     phi(t) = phi_0 + (2 pi/T_0) (t - slope int_0^t A^p dt')
 
 linear in phi_0, 2 pi/T_0 and their products with the slope. It is fitted to the phases and
-frequencies of successive parts of a record (:mod:`analysis.inertia.local`) at once: phases that
-count through know a period by the record's whole length, periods by that of a part. Constant,
+frequencies of successive parts of a record (:mod:`analysis.inertia.local_periods`) at once: phases
+that count through know a period by the record's whole length, periods by that of a part. Constant,
 linear and quadratic laws (p = 0, 1, 2) are averaged with Akaike's weights, so that the choice of
 the law is part of the extrapolation's uncertainty.
 """
@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.local import FEWEST_PARTS, LocalPeriods
+from analysis.inertia.local_periods import FEWEST_PARTS, LocalPeriods
 from analysis.inertia.projection import inverse_gram
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.inertia.numeric import Value
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.parts import BodyPart, combined
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError

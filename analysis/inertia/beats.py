@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.numeric import Value
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

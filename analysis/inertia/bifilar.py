@@ -7,9 +7,9 @@ import math
 
 from analysis.inertia.beats import BeatCount, ratio_from_beats
 from analysis.inertia.budget import Correlations
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value, sqrt
 from hardware.description.flags import Flag, Severity
 
 NEAR_RESONANCE = 0.05

@@ -2,7 +2,7 @@
 
 import math
 
-from analysis.inertia.numeric import Value, sqrt
+from analysis.inertia.elementary_functions import Value, sqrt
 
 
 def gravity_in_air(gravity_m_s2: Value, air_kg_m3: Value, body_kg_m3: Value) -> Value:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis.inertia.numeric import inner
+from analysis.inertia.elementary_functions import inner
 from analysis.inertia.projection import ProjectionProblem, derivative, inverse_gram
 from analysis.inertia.residuals import ResidualDiagnostics
 from hardware.description.arrays import FloatArray

@@ -4,7 +4,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from analysis.inertia.damped import DampedFit, fit_damped
+from analysis.inertia.damped_fit import DampedFit, fit_damped
 from hardware.description.arrays import FloatArray
 
 
@@ -37,7 +37,7 @@ def fit_swing_form(
     Raises
     ------
     DataError
-        As :func:`analysis.inertia.damped.fit_damped`.
+        As :func:`analysis.inertia.damped_fit.fit_damped`.
     """
     start = None if start_period_s is None else (start_period_s,)
     fit = fit_damped(

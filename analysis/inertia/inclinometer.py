@@ -6,7 +6,7 @@ At radius r above (positive) or below the pivot it feels the tangential accelera
 
 import math
 
-from analysis.inertia.numeric import Value
+from analysis.inertia.elementary_functions import Value
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 

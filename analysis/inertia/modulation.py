@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.damped import DampedFit, fit_damped
+from analysis.inertia.damped_fit import DampedFit, fit_damped
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

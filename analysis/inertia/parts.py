@@ -8,8 +8,8 @@ from types import MappingProxyType
 import numpy as np
 
 from analysis.inertia.budget import Correlations
+from analysis.inertia.elementary_functions import jacobian
 from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.numeric import jacobian
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 

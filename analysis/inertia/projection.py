@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.inertia.numeric import inner
+from analysis.inertia.elementary_functions import inner
 from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 MOST_ITERATIONS = 60

@@ -13,9 +13,9 @@ from analysis.inertia.amplitude import (
     zero_amplitude_period,
 )
 from analysis.inertia.checks import check_amplitude_effect, check_record
-from analysis.inertia.damped import DampedFit, fit_damped
+from analysis.inertia.damped_fit import DampedFit, fit_damped
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.local import LocalPeriods, local_periods
+from analysis.inertia.local_periods import LocalPeriods, local_periods
 from analysis.inertia.repeats import Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from hardware.description.errors import DataError

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.local import LocalPeriods
+from analysis.inertia.local_periods import LocalPeriods
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

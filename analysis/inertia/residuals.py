@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.numeric import inner
+from analysis.inertia.elementary_functions import inner
 from hardware.description.arrays import FloatArray
 
 _NEAR_BINS = 12  # bins of one cycle per record on either side

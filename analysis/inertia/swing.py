@@ -7,9 +7,9 @@ import math
 from dataclasses import dataclass
 
 from analysis.inertia.budget import Correlations, linear_budget
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value, sqrt
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

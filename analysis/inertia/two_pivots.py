@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from analysis.inertia.budget import linear_budget
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.numeric import Value
 from analysis.inertia.swing import inertia_at_cg
 
 LIMIT = 2.0  # of the joint standard uncertainty
@@ -61,7 +61,7 @@ def check_two_pivots(
     DataError
         If the inputs contradict each other.
     """
-    from analysis.inertia.compound import lamboley_depth
+    from analysis.inertia.compound_pendulum import lamboley_depth
 
     def excess(d1: Value, d2: Value, h: Value) -> Value:
         return d2 - d1 - h

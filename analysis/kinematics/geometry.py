@@ -10,7 +10,7 @@ from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.oscillator import Oscillator, Plane
 
 Waves = NDArray[Any]
-"""Over instants, the last axis; complex only for :func:`analysis.kinematics.linearised.slope`."""
+"""Over instants, the last axis; complex only for :func:`analysis.kinematics.complex_step.slope`."""
 
 
 @dataclass(frozen=True, eq=False)

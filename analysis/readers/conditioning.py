@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.readers.missing import empty_flag
+from analysis.readers.missing_values import empty_flag
 from analysis.recording import Recording, Samples
 from analysis.spikes import FEWEST_LEVELS, Spike, cubic, find_spikes
 from hardware.description.arrays import BoolArray, FloatArray

@@ -6,7 +6,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
-from analysis.foreign.found import ForeignColumns
+from analysis.foreign.columns import ForeignColumns
 from analysis.foreign.process import read_foreign
 from analysis.readers.columns import ColumnMap
 from analysis.readers.headers import Header, parse_header

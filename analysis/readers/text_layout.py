@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from analysis.limits import LONGEST_LINE, MOST_COLUMNS
 from analysis.readers.columns import TextLayout
 from analysis.readers.headers import Header, parse_header
 from analysis.readers.text_source import TextSource
+from analysis.reading_limits import LONGEST_LINE, MOST_COLUMNS
 from hardware.description.errors import DataError
 from hardware.description.units import is_unit
 

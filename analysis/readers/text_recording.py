@@ -10,7 +10,7 @@ import numpy as np
 from analysis.readers.columns import ColumnMap, PhotocellColumn
 from analysis.readers.conditioning import repair_missing, saturation_flags, without_spikes
 from analysis.readers.headers import Header
-from analysis.readers.missing import without_beyond
+from analysis.readers.missing_values import without_beyond
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
 from analysis.readers.reader import Reader
 from analysis.readers.text_layout import find_layout

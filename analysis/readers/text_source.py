@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
 
-from analysis.limits import LONGEST_LINE, limits
+from analysis.reading_limits import LONGEST_LINE, limits
 from hardware.description.errors import DataError
 
 Progress = Callable[[float], None]  # told which part of the file has been read, 0 to 1

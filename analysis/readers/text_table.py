@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from analysis.limits import limits
 from analysis.readers.headers import Header
 from analysis.readers.text_layout import FoundLayout, too_few_cells, too_many_cells
 from analysis.readers.text_source import LineStream, TextSource, decoded
+from analysis.reading_limits import limits
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

@@ -1,10 +1,13 @@
-"""What is worth knowing about a gate before its numbers are believed."""
+"""Flags of a gate: gaps, drift, transients, changing speed, saturation, a frequency that is off."""
 
 import numpy as np
 
+from analysis.recording import Recording
 from analysis.resolver.estimate import PeriodValues, solve_periods, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
+from analysis.resolver.reference import PhaseReference, ReferenceSource
 from analysis.resolver.sums import PeriodSums
+from hardware.description.arrays import ComplexArray
 from hardware.description.flags import Flag, Severity
 
 _SPEED_CHANGE = 0.005  # from the shortest to the longest period, relative
@@ -12,6 +15,12 @@ _FEW_PERIODS = 3  # below it an interval is a formality
 _SURE = 4.0  # standard errors that make a trend sure
 _ROUNDING = 1e-9  # of the mean: what a constant channel may seem to drift
 _NOTABLE = 0.01  # of the first harmonic: a change that matters
+_AT_ONCE = 200_000  # samples
+_ROUNDED = 1.0 - 1e-9  # of the full scale
+_FEWEST = 4  # periods: fewer tell no turning from noise
+_NOTABLE_CYCLES = 0.05  # from the first period to the last
+_STEADY = 0.95  # mean resultant length of the turns: 1 where all are the same
+_STRAIGHT = 0.2  # largest distance from an even turning, of the whole turn
 
 
 def gate_flags(gate: PeriodSums, result: Harmonics) -> tuple[Flag, ...]:
@@ -99,3 +108,88 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
         )
         flags.append(Flag("transient", Severity.WARNING, message, result.channel_names[row]))
     return flags
+
+
+def saturation_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[Flag, ...]:
+    """Return a flag for each channel that reached its full scale between two times.
+
+    A channel that its reader has flagged already is not flagged again.
+    """
+    known = {flag.channel for flag in recording.flags if flag.code == "saturated"}
+    rows = [
+        row
+        for row, channel in enumerate(recording.channels)
+        if channel.full_scale is not None and channel.name not in known
+    ]
+    if not rows:
+        return ()
+    used = recording.between(opened_s, closed_s)
+    limits = np.array([recording.channels[row].full_scale for row in rows], dtype=np.float64)
+    counts = np.zeros(len(rows), dtype=np.int64)
+    for start in range(0, used.sample_count, _AT_ONCE):
+        values = used.samples[rows, start : start + _AT_ONCE]
+        counts += (np.abs(values) >= limits[:, None] * _ROUNDED).sum(axis=1)
+    return tuple(
+        Flag(
+            "saturated",
+            Severity.VOID,
+            f"{count} samples of the periods used stand at the full scale of {limit:g} "
+            f"{recording.channels[row].unit}; the harmonics are those of the clipped signal",
+            recording.channels[row].name,
+        )
+        for row, limit, count in zip(rows, limits, counts.tolist(), strict=True)
+        if count
+    )
+
+
+def frequency_flags(
+    names: tuple[str, ...], values: PeriodValues, reference: PhaseReference
+) -> tuple[Flag, ...]:
+    """Return ``frequency_differs`` where the first harmonic turns steadily against a given one.
+
+    Judged by the channel whose first harmonic stands out most from what else its periods do.
+
+    Parameters
+    ----------
+    names
+        The channels of ``values``.
+    """
+    if reference.source is not ReferenceSource.FREQUENCY:
+        return ()
+    phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
+    phasors = phasors[np.isfinite(phasors).all(axis=1)]
+    if len(phasors) < _FEWEST:
+        return ()
+    # Where periods were left out one turn spans several; the median does not mind a few.
+    row = _strongest(phasors)
+    per_period = _turn(phasors[:, row])
+    if per_period is None:
+        return ()
+    given, fits = reference.frequency_hz, reference.frequency_hz * (1.0 + per_period)
+    message = (
+        f"the phase turns by {360.0 * per_period:+.3g} degrees a period against the given "
+        f"{given:.6g} Hz: {fits:.6g} Hz fits. The harmonics found are too small; give this "
+        "frequency, or take the phase from a channel"
+    )
+    return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)
+
+
+def _strongest(phasors: ComplexArray) -> int:
+    """Row of the channel whose amplitude is largest against its change from period to period."""
+    size = np.abs(phasors)
+    change = np.abs(np.diff(size, axis=0)).mean(axis=0)
+    return int(np.argmax(size.mean(axis=0) / np.maximum(change, 1e-12 * size.max(axis=0) + 1e-300)))
+
+
+def _turn(phasor: ComplexArray) -> float | None:
+    """Cycles by which a phasor turns from one period to the next; ``None`` if not steadily."""
+    steps = phasor[1:] * phasor[:-1].conj()
+    steps = steps / np.maximum(np.abs(steps), 1e-300)
+    if abs(steps.mean()) < _STEADY:
+        return None
+    turned = np.unwrap(np.angle(phasor)) / (2.0 * np.pi)
+    period = np.arange(len(turned)) - (len(turned) - 1) / 2.0
+    per_period = float(period @ turned / (period @ period))
+    whole = abs(per_period) * (len(turned) - 1)
+    away = np.abs(turned - turned.mean() - per_period * period).max()
+    return per_period if whole > _NOTABLE_CYCLES and away < _STRAIGHT * whole else None

@@ -16,7 +16,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from analysis.resolver.template import template
+from analysis.resolver.basis import template
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 

@@ -7,8 +7,8 @@ leak through it. The drift is found instead from the periods' own means, in whic
 of every order cancel, and taken out before.
 
 The uncertainty comes from the scatter between periods (Student's t), widened by what their sequence
-shows of the noise's memory (:mod:`analysis.resolver.memory`); the residual's figure, white only by
-assumption, is never used.
+shows of the noise's memory (:mod:`analysis.resolver.autocorrelation`); the residual's figure, white
+only by assumption, is never used.
 """
 
 from dataclasses import dataclass
@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.autocorrelation import widened
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
-from analysis.resolver.memory import widened
 from analysis.resolver.sums import PeriodSums
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError

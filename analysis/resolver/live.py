@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.basis import template
 from analysis.resolver.estimate import resolve
-from analysis.resolver.general import sum_any
+from analysis.resolver.general_sums import sum_any
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.photocell import EARLY, LATE
 from analysis.resolver.spike_watch import LiveSpike, SpikeWatch
-from analysis.resolver.straight import Gates, Sums, sum_straight
+from analysis.resolver.straight_sums import Gates, Sums, sum_straight
 from analysis.resolver.sums import PeriodSums
-from analysis.resolver.template import template
 from analysis.resolver.weights import REACH
 from analysis.spikes import AROUND
 from hardware.description.arrays import FloatArray

@@ -1,7 +1,9 @@
-"""How a recording is to be analysed."""
+"""How a recording is to be analysed, and when its gate opens."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from analysis.recording import Recording
+from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.errors import ConfigurationError
 
 
@@ -21,7 +23,7 @@ class ResolverSettings:
     periods
         Number of periods from ``opens_s`` on; all that follow if ``None``.
     steady_tolerance
-        See :func:`analysis.resolver.steady.find_steady`.
+        See :func:`analysis.resolver.steady_stretch.find_steady`.
     hann
         Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
     """
@@ -50,3 +52,33 @@ def check_settings(settings: ResolverSettings) -> None:
             raise ConfigurationError(f"{name} = {value} makes no sense; it must be 1 or more")
     if settings.periods is not None and settings.opens_s is None:
         raise ConfigurationError("a number of periods needs the time at which the gate opens")
+
+
+def with_own_gate(recording: Recording, settings: ResolverSettings) -> ResolverSettings:
+    """Take the gate that run control had, where it closed within the record."""
+    told = recording.provenance
+    if settings.opens_s is not None or not {GATE_OPENED, GATE_PERIODS} <= set(told):
+        return settings
+    try:
+        opened_s, periods = float(told[GATE_OPENED]), int(told[GATE_PERIODS])
+    except ValueError:
+        return settings
+    if periods < 1 or not recording.start_s <= opened_s <= recording.end_s:
+        return settings
+    return replace(settings, opens_s=opened_s, periods=periods)
+
+
+def check_opening(recording: Recording, settings: ResolverSettings) -> None:
+    """Refuse a gate that cannot open within the record.
+
+    Raises
+    ------
+    ConfigurationError
+        If its time lies before the record or after it.
+    """
+    if settings.opens_s is None or recording.start_s <= settings.opens_s <= recording.end_s:
+        return
+    raise ConfigurationError(
+        f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
+        f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
+    )

@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.general import General, Taper
+from analysis.resolver.general_sums import General, Taper
 from analysis.resolver.reference import PhaseReference
-from analysis.resolver.straight import Gates, Sums, sum_straight
+from analysis.resolver.straight_sums import Gates, Sums, sum_straight
 from analysis.resolver.weights import REACH
 from analysis.threads import spread
 from hardware.description.arrays import BoolArray, FloatArray

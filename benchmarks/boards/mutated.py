@@ -68,7 +68,7 @@ def _row(seed: int, names: tuple[str, ...], found: dict[str, tuple[str, str]]) -
 
 def _analyse(folder: Path) -> None:
     """Read each run's recording and resolve it."""
-    from analysis.resolver.analyse import analyse
+    from analysis.resolver.analysis import analyse
     from pmm.campaign.campaign import Campaign
     from pmm.cli.inputs import find_sources, read_source
 

@@ -12,7 +12,8 @@ from time import sleep
 
 from analysis.readers import read_recording
 from analysis.readers.columns_toml import read_column_map
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from pmm.report.plots import FIGURES
 from pmm.report.style import drawing
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import ClassVar
 
 from analysis.readers import ColumnMap
-from analysis.resolver.analyse import ResolverSettings
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
@@ -18,13 +18,13 @@ from pmm.campaign.runs import AtRest, RecordedWith, Run, nearest_run
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.catalogue import build_from
 from sim.effects.effect import Effect
 from sim.gauges.dynamometer import Dynamometers
 from sim.mechanism.linkage import Setting
-from sim.model.acting import Acting
 from sim.model.hull import HullCoefficients
+from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
 from sim.model.water.force_laws import CrossFlow

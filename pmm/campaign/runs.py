@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass, LoadStep

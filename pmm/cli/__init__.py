@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from analysis.limits import MEMORY_SETTING
+from analysis.reading_limits import MEMORY_SETTING
 from hardware.description.errors import DataError, PmmError
 from hardware.description.room import said
 from pmm.cli.group import NamingGroup

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from analysis.resolver.analyse import ResolverSettings
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from analysis.readers import write_recording
-from analysis.resolver.analyse import ResolverSettings, analyse
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.analysis import analyse
 from analysis.resolver.reference import NoReferenceError
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from analysis.threads import cores
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.analyse_options import AnalyseOptions

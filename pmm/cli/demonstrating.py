@@ -7,7 +7,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import Analysis, analyse
+from analysis.resolver.analysis import Analysis, analyse
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE

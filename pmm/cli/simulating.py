@@ -25,9 +25,9 @@ from pmm.cli.screen import output, print_flags, show_progress
 from pmm.cli.simulating_zeros import simulate_zero, zero_runs
 from pmm.recorder.campaign_owner import own_new_campaign
 from pmm.whole_file import write_whole
-from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, user_effects
 from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.run import simulate
 

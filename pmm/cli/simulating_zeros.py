@@ -12,11 +12,11 @@ from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.order import made_in_order, place_in
 from pmm.campaign.runs import AtRest
-from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
+from sim.rest import standing
 from sim.rig import SimulatedRig
 from sim.run import simulate
-from sim.standing import standing
 
 if TYPE_CHECKING:
     from analysis.recording import Recording

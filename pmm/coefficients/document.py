@@ -12,7 +12,7 @@ from typing import Any, Final
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import to_dataset, to_dict
-from analysis.coefficients.recommended import table
+from analysis.coefficients.recommendation import table
 from pmm.coefficients.workflow import Outcome
 from pmm.whole_file import write_whole
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
-from analysis.coefficients.cycle import BodyCycle
-from analysis.coefficients.stated import STATED, StatedUncertainties
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import FORCES

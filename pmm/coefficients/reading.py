@@ -6,6 +6,7 @@ from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import (
     AmplifierFilter,
     Delay,
@@ -14,12 +15,11 @@ from analysis.coefficients.corrections import (
     zero_at,
     zero_reading,
 )
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.first_harmonics import seen_in
 from analysis.recording import Recording
-from analysis.resolver.analyse import analyse
+from analysis.resolver.analysis import analyse
 from hardware.description.arrangement import Joint
 from hardware.description.channels import (
     CARRIAGE_SPEED,

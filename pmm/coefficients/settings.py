@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import assemble
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request, check_campaign, plan
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import block_sizes, columns, draw_cycles
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.repeats import repeatability, with_repeats
 from hardware.description.arrays import FloatArray
 

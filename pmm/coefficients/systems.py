@@ -6,7 +6,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import System as BySpeed
 from analysis.coefficients.campaign_systems import without_dimensions
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
-from analysis.coefficients.cycle import BodyCycle
 from analysis.plausibility import Seen
-from analysis.resolver.analyse import ResolverSettings
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
 from hardware.description.kinds import RunKind

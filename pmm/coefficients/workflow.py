@@ -6,11 +6,11 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import BodyCycle
-from analysis.coefficients.measured import MOTION_ASKED
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity

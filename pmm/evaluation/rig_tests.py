@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.inertia.damped import fit_damped
+from analysis.inertia.damped_fit import fit_damped
 from analysis.inertia.spectrum import spectrum
 from hardware.description.errors import DataError
 from pmm.evaluation.run_results import RunResult

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
 from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError

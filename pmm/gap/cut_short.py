@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.estimate import solve_periods, usable
-from analysis.resolver.steady import limits
+from analysis.resolver.steady_stretch import limits
 
 
 def cut_short(analysis: Analysis) -> str:

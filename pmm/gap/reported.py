@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.campaign_systems import common_name
+from analysis.coefficients.hull_coefficients import as_reported
 from analysis.coefficients.names import place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
-from analysis.coefficients.of_hull import as_reported
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.coefficients.settings import Settings, System

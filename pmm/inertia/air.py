@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from analysis.inertia.corrections import without_entrained_air
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value, sqrt
 from pmm.inertia.given import given, given_or_none
 
 

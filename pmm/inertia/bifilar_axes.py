@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from analysis.inertia.budget import Formula
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import assess
-from analysis.inertia.numeric import Value
-from analysis.inertia.principal import (
+from analysis.inertia.principal_axes import (
     principal_angle,
     principal_axes,
     principal_gyradii,

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analysis.inertia.budget import Correlations, Formula, sensitivities
+from analysis.inertia.elementary_functions import sqrt
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import sqrt
 from analysis.inertia.parts import MADE_OF, combined
 from hardware.description.arrays import FloatArray
 from pmm.inertia.properties import AXES, PartTable

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from analysis.inertia.estimate import Estimate
-from analysis.inertia.incline import incline_from_both_ends, incline_from_one_end
+from analysis.inertia.inclining_test import incline_from_both_ends, incline_from_one_end
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from pmm.inertia.given import given, without_uncertainty

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
 
-from analysis.inertia.compound import compound_pendulum, lamboley
+from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value, sqrt
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import AirTable, air_rules, without_air
 from pmm.inertia.free_decay import decay_findings

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from analysis.inertia.compound import torsional_inertia, torsional_stiffness
+from analysis.inertia.compound_pendulum import torsional_inertia, torsional_stiffness
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value
 from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
 from hardware.description.errors import DataError
 from pmm.inertia.given import given

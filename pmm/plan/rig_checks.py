@@ -59,7 +59,7 @@ def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
 
 def _analysis_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what the analysis would refuse, while there is time to change it."""
-    from analysis.resolver.analyse import ResolverSettings
+    from analysis.resolver.settings import ResolverSettings
 
     known = tuple(ResolverSettings.__dataclass_fields__)
     yield from (

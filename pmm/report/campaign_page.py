@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.coefficients.recommended import recommended
+from analysis.coefficients.recommendation import recommended
 from pmm.coefficients.reading import sha256_of
 from pmm.coefficients.workflow import Outcome
 from pmm.flag_lines import FlagLine, flag_lines

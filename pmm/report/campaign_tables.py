@@ -9,8 +9,8 @@ from string import ascii_uppercase
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import BEYOND_DOUBT
-from analysis.coefficients.recommended import recommended
-from analysis.coefficients.stated import STATED
+from analysis.coefficients.recommendation import recommended
+from analysis.coefficients.stated_uncertainties import STATED
 from pmm.coefficients.workflow import Outcome
 from pmm.report.rounding import rounded
 

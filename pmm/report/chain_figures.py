@@ -16,8 +16,8 @@ from pmm.campaign.runs import Run
 from pmm.labels import display, plain
 from pmm.report.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals
-from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.signals import Signals
 

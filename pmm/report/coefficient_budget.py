@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.recommended import recommended
+from analysis.coefficients.recommendation import recommended
 from pmm.labels import plain
 from pmm.report.rounding import rounded
 from pmm.report.style import PALETTE, drawing

@@ -8,7 +8,7 @@ import numpy as np
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
-from analysis.coefficients.recommended import recommended
+from analysis.coefficients.recommendation import recommended
 from pmm.report.campaign_tables import amplitudes
 from pmm.report.coefficient_panels import (
     MOST_SERIES,

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
+from analysis.resolver.basis import template
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import PeriodSums
-from analysis.resolver.template import template
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.inertia.principal import inertia_ellipse
+from analysis.inertia.principal_axes import inertia_ellipse
 from pmm.inertia.outcome import PlaneAxes
 from pmm.labels import plain
 from pmm.report.style import FIT, PALETTE, TRACE, drawing

@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from pmm.flag_lines import FlagLine, flag_lines
 from pmm.labels import plain
 from pmm.report.inline import inline_svg

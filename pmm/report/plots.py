@@ -8,7 +8,7 @@ record and how much of it the resolver lets through.
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from hardware.description.errors import ConfigurationError
 from pmm.report.gate import gate_figure
 from pmm.report.phasors import phasor_figure

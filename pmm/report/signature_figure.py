@@ -13,9 +13,9 @@ from hardware.description.setpoint import SetPoint
 from pmm.labels import display, shown_name
 from pmm.report.style import PALETTE, drawing, write_figure
 from sim.effects.agreement import phasor
-from sim.effects.applied import switch_on
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.signals import recorded
 from sim.solve.periodic import steady_run

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.version import version_of
 from pmm.flag_lines import FlagLine, flag_lines

@@ -10,7 +10,7 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.solve.linear import Hold, LinearSystem, causal_hold
+from sim.solve.linear_system import Hold, LinearSystem, causal_hold
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 FILTER_DEGREE: Final = 5  # of the polynomial between samples; error 0.014 (w h)^6

@@ -11,8 +11,8 @@ from sim.devices.amplifier import SimulatedAmplifier
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.drive import SimulatedDrive
 from sim.devices.node import SimulatedNode
+from sim.devices.serial_devices import SimulatedInclinometer, Talker, held
 from sim.devices.shaft_drive import ShaftDrive
-from sim.devices.talkers import SimulatedInclinometer, Talker, held
 from sim.devices.world import World
 
 _UNDERVOLTAGE: Final = 0x3220

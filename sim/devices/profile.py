@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.prescribed import DriveSettings, ShaftMotion
+from sim.drive.prescribed_drive import DriveSettings, ShaftMotion
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from sim.devices.registry import give_back, take
 if TYPE_CHECKING:
     from typing_extensions import Buffer
 
-    from sim.devices.talkers import SerialCable
+    from sim.devices.serial_devices import SerialCable
 
 
 class Serial(serial.SerialBase):

@@ -19,8 +19,8 @@ from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.network import Wire
 from sim.devices.plant import Passage, Plant, PlantConditions
+from sim.devices.serial_devices import Angles, SimulatedInclinometer, Talker, Timestamper, held
 from sim.devices.shaft_drive import ShaftDrive
-from sim.devices.talkers import Angles, SimulatedInclinometer, Talker, Timestamper, held
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.description.errors import ConfigurationError
 from sim.drive.motor import Motor, closed_loop
-from sim.solve.linear import LinearSystem
+from sim.solve.linear_system import LinearSystem
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 

@@ -13,7 +13,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.solve.linear import LinearSystem, Rows, as_rows
+from sim.solve.linear_system import LinearSystem, Rows, as_rows
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from sim.mechanism.linkage import Mechanism
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 
 class Linkages(NamedTuple):

@@ -9,7 +9,7 @@ from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import FilterKind, LowPass
 from sim.acquisition.channels import Digitiser
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.measured import of_forces, with_force_channels
+from sim.effects.measurement import of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
-from sim.effects.measured import of_waves
+from sim.effects.measurement import of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.measured import MOST, of_waves
+from sim.effects.measurement import MOST, of_waves
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

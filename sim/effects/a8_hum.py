@@ -19,7 +19,7 @@ from sim.effects.effect import (
     StageName,
     parameter,
 )
-from sim.effects.measured import with_force_channels
+from sim.effects.measurement import with_force_channels
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.rig import SimulatedRig
 

@@ -6,9 +6,9 @@ from typing import Final
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.effects.applied import switch_on
 from sim.effects.effect import Effect, Signature
 from sim.effects.situation import Situation
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.solve.periodic import SteadyState, steady_run
 

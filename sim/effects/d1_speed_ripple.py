@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from sim.drive.prescribed import SpeedRipple
+from sim.drive.prescribed_drive import SpeedRipple
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import uneven_signature
 from sim.effects.situation import Situation

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import faster
+from sim.effects.hydrodynamics import faster
 from sim.effects.situation import Situation
 from sim.model.water.tank import blockage_speed_factor
 from sim.rig import SimulatedRig

@@ -7,7 +7,7 @@ from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import faster
+from sim.effects.hydrodynamics import faster
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

@@ -19,7 +19,7 @@ from sim.effects.effect import (
     StageName,
     parameter,
 )
-from sim.effects.hydrodynamic import per_speed
+from sim.effects.hydrodynamics import per_speed
 from sim.effects.situation import STRUT_FORCES, Situation
 from sim.rig import SimulatedRig
 

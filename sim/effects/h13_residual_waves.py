@@ -18,9 +18,9 @@ from sim.effects.effect import (
     StageName,
     parameter,
 )
-from sim.effects.hydrodynamic import with_laws
+from sim.effects.hydrodynamics import with_laws
 from sim.effects.situation import STRUT_FORCES, Situation
-from sim.model.acting import Point
+from sim.model.law_point import Point
 from sim.model.laws import Tone
 from sim.rig import SimulatedRig
 

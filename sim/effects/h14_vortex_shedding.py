@@ -9,13 +9,13 @@ from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
-from sim.effects.hydrodynamic import STRUTS, with_laws
+from sim.effects.hydrodynamics import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
 from sim.model.laws import Coulomb, ForceLaw, Tone
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
-    from sim.model.acting import Point
+    from sim.model.law_point import Point
 
 TONES: Final = 24
 _LAST_RUN: Final = 1e6

@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.hydrodynamic import added_mass_at, load, with_more
+from sim.effects.hydrodynamics import added_mass_at, load, with_more
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

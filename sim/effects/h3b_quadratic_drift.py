@@ -7,9 +7,9 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.hydrodynamic import of_law, with_laws
+from sim.effects.hydrodynamics import of_law, with_laws
 from sim.effects.situation import Situation
-from sim.model.acting import Point
+from sim.model.law_point import Point
 from sim.model.laws import Quadratic
 from sim.model.water.force_laws import quadratic_describing_function
 from sim.rig import SimulatedRig

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.hydrodynamic import load, radiation_of
+from sim.effects.hydrodynamics import load, radiation_of
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

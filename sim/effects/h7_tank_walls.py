@@ -10,7 +10,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.hydrodynamic import damping_at, load, radiation_of
+from sim.effects.hydrodynamics import damping_at, load, radiation_of
 from sim.effects.situation import Situation
 from sim.model.water.tank import Tank, echo_delay_s, with_walls
 from sim.rig import SimulatedRig

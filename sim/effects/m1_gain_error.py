@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measured import of_forces, with_gauges
+from sim.effects.measurement import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measured import of_forces, with_gauges
+from sim.effects.measurement import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig

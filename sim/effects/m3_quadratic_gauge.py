@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measured import of_forces, squared, with_gauges
+from sim.effects.measurement import of_forces, squared, with_gauges
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.measured import with_gauges
+from sim.effects.measurement import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
 

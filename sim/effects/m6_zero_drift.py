@@ -14,7 +14,7 @@ from sim.effects.effect import (
     StageName,
     parameter,
 )
-from sim.effects.measured import HIGHEST, with_gauges
+from sim.effects.measurement import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
 

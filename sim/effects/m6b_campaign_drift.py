@@ -9,7 +9,7 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.m6_zero_drift import ZeroDrift
-from sim.effects.measured import with_gauges
+from sim.effects.measurement import with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.rig import SimulatedRig
 

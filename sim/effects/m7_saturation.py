@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measured import HIGHEST, with_gauges
+from sim.effects.measurement import HIGHEST, with_gauges
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig

@@ -9,8 +9,8 @@ from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.hydrodynamic import radiation_of, scaled, through_water
-from sim.effects.measured import of_forces, with_gauges
+from sim.effects.hydrodynamics import radiation_of, scaled, through_water
+from sim.effects.measurement import of_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig

@@ -9,7 +9,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import Stribeck
 from sim.rig import SimulatedRig
 

@@ -10,7 +10,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import LoadFriction
 from sim.rig import SimulatedRig
 

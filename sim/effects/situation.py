@@ -13,7 +13,7 @@ from sim import signals
 from sim.model.system import HullSystem
 from sim.rig import SimulatedRig
 from sim.solve.periodic import SteadyState, steady_run
-from sim.solve.sampled import steady_of
+from sim.solve.sampled_period import steady_of
 from sim.stage import Stage
 
 # The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.

@@ -7,8 +7,8 @@ the struts' displacements over their spacing; the model's reference point lies h
 the pivot.
 
 Each function is arithmetic on one instant or on arrays of them.
-:func:`sim.solve.compiled.compile_loop` makes compiled ones of the same three for the loops that go
-from sample to sample (:mod:`sim.model.compiled_laws`); so none of them calls another.
+:func:`sim.solve.compilation.compile_loop` makes compiled ones of the same three for the loops that
+go from sample to sample (:mod:`sim.model.compiled_laws`); so none of them calls another.
 
 The numbers of a hull are an array with a row for each kind, named below.
 """

@@ -10,7 +10,7 @@ from hardware.description.arrays import FloatArray
 from sim.mechanism import geometry
 from sim.mechanism.geometry import AT_REST, LINEAR, BodyMotion
 from sim.model.laws import CREEP_M_S
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 _FIRST_WITH_REFERENCE = 4
 _FIRST_THAT_JUMPS = 7

@@ -43,7 +43,7 @@ class LawInput:
     Attributes
     ----------
     position, velocity, acceleration
-        At the law's point: m, or rad at :attr:`sim.model.acting.Point.ROTATION`.
+        At the law's point: m, or rad at :attr:`sim.model.law_point.Point.ROTATION`.
     load
         What the linear parts of the model ask of the struts at that point: N, or N m.
     time_s

@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
-from sim.model.blocks import BlockForces, HullState
+from sim.model.block_forces import BlockForces, HullState
 from sim.model.coefficients import HullCoefficients, mass_matrix, weight_matrix
 from sim.model.forces import Instants
+from sim.model.hull_steady_state import HullSteady
 from sim.model.numbers import numbers_of, turns_with
 from sim.model.parameters import ModelParameters
-from sim.model.steady import HullSteady
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
 from sim.signals import Signal, Signals
-from sim.solve.linear import Hold
+from sim.solve.linear_system import Hold
 from sim.solve.model_march import Marching, marching_of
 from sim.solve.period import Period, Spectra
+from sim.solve.recurrence import fine_enough, last_period
 from sim.solve.relaxation import LONGEST_SWEEP
-from sim.solve.settled import fine_enough, last_period
 from sim.stage import Block
 
 __all__ = ["Hull", "HullCoefficients"]

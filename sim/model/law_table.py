@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.model.acting import Acting, Point
 from sim.model.forces import arguments_of, direction
+from sim.model.law_point import Acting, Point
 from sim.model.laws import (
     Coulomb,
     Cubic,

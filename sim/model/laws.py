@@ -1,8 +1,8 @@
 """Forces that depend on the motion at once: friction, drag, springs; each one small law.
 
 A law gives the force that a strut (or the couple that both) has to exert because of it, positive
-along the motion, from the motion at one :class:`sim.model.acting.Point` of the model. A new law is
-a new class with a method ``force``; nothing else needs to know of it.
+along the motion, from the motion at one :class:`sim.model.law_point.Point` of the model. A new law
+is a new class with a method ``force``; nothing else needs to know of it.
 
 A law that jumps where the velocity changes sign is averaged over the sample: the velocity is taken
 as linear over the sample, so that sgn(v) becomes the part of the sample with v > 0 less the part

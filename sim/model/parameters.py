@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from hardware.description.arrangement import Arrangement
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
-from sim.model.acting import Acting
 from sim.model.coefficients import HullCoefficients
+from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
 from sim.model.water.force_laws import CrossFlow

@@ -21,7 +21,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.mounting import Elastic, StrutJoint
 from sim.model.water.radiation import Radiation
-from sim.solve.linear import Hold, LinearSystem, causal_hold, hermite_hold
+from sim.solve.linear_system import Hold, LinearSystem, causal_hold, hermite_hold
 
 LOAD_DEGREE = 3  # of the polynomial by which f and g go on between samples
 

@@ -11,7 +11,7 @@ from sim.pendulum.coordinates import RELEASE_HOLD, Coordinate
 from sim.pendulum.propagators import propagators
 from sim.pendulum.resistance import Resistance
 from sim.signals import Signal, Signals
-from sim.solve.linear import as_rows
+from sim.solve.linear_system import as_rows
 from sim.stage import Block
 
 # Numbers by which the compiled loop knows the kinds of restoring.

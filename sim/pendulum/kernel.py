@@ -17,7 +17,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from sim.pendulum.vectors import cross, times
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
 COULOMB = 5  # column of ``loads``

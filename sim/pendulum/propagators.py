@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from hardware.description.arrays import BoolArray, FloatArray, IntArray
-from sim.solve.linear import Rows
+from sim.solve.linear_system import Rows
 
 # A reversal is found to 2^-32 of a step, about a picosecond.
 LEVELS = 32

@@ -13,7 +13,7 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.acquisition.noise import draw_normal, start_stream
 from sim.pendulum.coordinates import ANGLE, PITCH, SWAY, YAW, Coordinate
 from sim.signals import Signal, Signals
-from sim.solve.linear import LinearSystem, causal_hold
+from sim.solve.linear_system import LinearSystem, causal_hold
 from sim.stage import Block
 
 INCLINOMETER_RANGE_RAD = math.radians(3.0)

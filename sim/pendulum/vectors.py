@@ -7,7 +7,7 @@ changes one of these removes ``__pycache__``.
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.solve.compiled import available, compile_loop
+from sim.solve.compilation import available, compile_loop
 
 
 def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:

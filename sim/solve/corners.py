@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 # Nodes of a piece beyond the orders that are kept. A piece is half a period at most, and a little:
 # with half as many the highest order is off by 1e-5 of the force, with twice as many by 1e-13.

@@ -14,14 +14,14 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.drive.loaded import LoadedDrive, LoadedState
-from sim.drive.prescribed import SHAFT
+from sim.drive.loaded_drive import LoadedDrive, LoadedState
+from sim.drive.prescribed_drive import SHAFT
 from sim.signals import Signal, Signals
 from sim.solve.coupled_march import TORQUE_DEGREE, coupled_march
 from sim.solve.coupled_steady import CoupledSteady
 from sim.solve.period import Period, Spectra
+from sim.solve.recurrence import fine_enough, last_period, substeps
 from sim.solve.relaxation import LONGEST_SWEEP, relax
-from sim.solve.settled import fine_enough, last_period, substeps
 from sim.stage import Block, Stage
 
 

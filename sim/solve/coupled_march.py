@@ -1,4 +1,4 @@
-"""Drive, mechanism and model made ready for the compiled march (:mod:`sim.solve.marching`)."""
+"""Drive, mechanism and model made ready for the compiled march (:mod:`sim.solve.march`)."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,13 +9,13 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.drive.prescribed import SHAFT, DriveSettings, ShaftMotion
+from sim.drive.prescribed_drive import SHAFT, DriveSettings, ShaftMotion
 from sim.mechanism.linkage import Mechanism
-from sim.model.blocks import HullState, marched_state
+from sim.model.block_forces import HullState, marched_state
 from sim.model.hull import Hull
 from sim.model.law_table import has_number
 from sim.signals import Signals
-from sim.solve.linear import LinearSystem, causal_hold
+from sim.solve.linear_system import LinearSystem, causal_hold
 from sim.solve.model_march import OUTPUTS, Marching, marching_of
 from sim.stage import Block, Stage
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from sim.drive.shaft_loop import ShaftLoop
-    from sim.solve.marching import Course
+    from sim.solve.march import Course
 
 TORQUE_DEGREE = 3  # of the polynomial by which the torque goes on between samples
 
@@ -84,7 +84,7 @@ class CoupledMarch:
             If the sample is one of a gear with backlash: sweeps cannot solve it either.
         """
         from sim.drive.shaft_loop import linkages_of
-        from sim.solve.marching import march
+        from sim.solve.march import march
 
         told = self.shaft.settings.commanded(self.shaft.frequency_hz, self.block.time_s)
         known = 1 if states is None else 0

@@ -7,12 +7,12 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray
 from sim import signals
-from sim.drive.loaded import LoadedDrive
+from sim.drive.loaded_drive import LoadedDrive
 from sim.model.hull import Hull
-from sim.model.steady import HullSteady
+from sim.model.hull_steady_state import HullSteady
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import relax
-from sim.solve.sampled import steady_of
+from sim.solve.sampled_period import steady_of
 from sim.stage import Stage
 
 _STRUTS = ("force_aft", "force_fore")

@@ -1,4 +1,4 @@
-"""The model on its mounting, made ready for the compiled march (:mod:`sim.solve.marching`)."""
+"""The model on its mounting, made ready for the compiled march (:mod:`sim.solve.march`)."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -6,22 +6,22 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.model.acting import Acting
+from sim.model.law_point import Acting
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
-from sim.solve.compiled import available
-from sim.solve.linear import Hold
+from sim.solve.compilation import available
+from sim.solve.linear_system import Hold
 
 if TYPE_CHECKING:
     from sim.drive.shaft_loop import Linkages, ShaftLoop
-    from sim.solve.marching import Course, ModelLoop
+    from sim.solve.march import Course, ModelLoop
 
 _NOTHING_KEPT = (
     Hold(np.zeros((0, 0)), np.zeros((2, 0, 6))),
     Hold(np.zeros((0, 0)), np.zeros((LOAD_DEGREE + 1, 0, 4))),
 )
 LOADS = 6  # f, g, and what the gauges give back in their clearance: two of each
-OUTPUTS = 10  # as in sim.solve.settling
+OUTPUTS = 10  # as in sim.solve.broyden
 
 
 class Marching(NamedTuple):
@@ -65,7 +65,7 @@ def marching_of(
 
 
 def _model(system: HullSystem, step_s: float) -> "ModelLoop":
-    from sim.solve.marching import ModelLoop
+    from sim.solve.march import ModelLoop
 
     by_motion, by_load = system.holds(step_s) if system.states else _NOTHING_KEPT
     by_struts, by_states, by_loads = system.model_maps
@@ -113,7 +113,7 @@ def course_of(
     scale
         What a change of (f, g) counts relative to, shape ``(4,)``.
     """
-    from sim.solve.marching import Course
+    from sim.solve.march import Course
 
     count = len(time_s)
     size = np.concatenate([scale, scale[:2]])[:loads]
@@ -131,7 +131,7 @@ def course_of(
 
 def march_model(marching: Marching, course: "Course") -> FloatArray | None:
     """Fill in states and loads; return the outputs, or ``None`` if a sample does not settle."""
-    from sim.solve.marching import march
+    from sim.solve.march import march
 
     columns = OUTPUTS if course.given.shape[1] == LOADS else OUTPUTS - 2
     outputs = np.empty((len(course.given), columns))

@@ -18,7 +18,7 @@ from sim import signals
 from sim.chain import Chain
 from sim.rig import SimulatedRig
 from sim.solve.period import Period, Spectra
-from sim.solve.sampled import steady_of
+from sim.solve.sampled_period import steady_of
 
 
 @dataclass(frozen=True, eq=False)

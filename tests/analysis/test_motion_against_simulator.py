@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.motion import (
+from analysis.ideal_rig import (
     LinearHull,
     derivative,
     ideal_run,

@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import Form
 from analysis.coefficients.reference import compared, table_of_matrices
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.model.hull import HullCoefficients

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from analysis.readers import ColumnMap, read_recording
-from analysis.resolver.analyse import analyse
+from analysis.resolver.analysis import analyse
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 

@@ -17,7 +17,7 @@ NAMES = {one["name"] for one in CONFIGURATION["contracts"]}
 
 # Contract, the file that is planted in, and what is planted there.
 PLANTED = [
-    ("Imports go down only", "sim/run.py", "import analysis.limits"),
+    ("Imports go down only", "sim/run.py", "import analysis.reading_limits"),
     ("Imports go down only", "hardware/rest.py", "import pmm.places"),
     ("A wheel needs no tests, benchmarks or pages", "pmm/places.py", "import tests.clusters"),
     ("A wheel needs no tests, benchmarks or pages", "sim/run.py", "import benchmarks.noises"),

@@ -9,8 +9,8 @@ from typing import Any, get_args
 import pytest
 from click.testing import CliRunner
 
-from analysis.resolver.analyse import ResolverSettings
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.known_loads import KnownMass, LoadStep
@@ -23,11 +23,11 @@ from pmm.cli import cli
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings, Fluctuation
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Setting
-from sim.model.acting import Acting, AnyLaw
 from sim.model.hull import HullCoefficients
+from sim.model.law_point import Acting, AnyLaw
 from sim.model.mounting import Mounting
 from sim.model.water.force_laws import CrossFlow
 from sim.model.water.radiation_file import RadiationFile

@@ -11,7 +11,7 @@ from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain, join
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.mechanism.linkage import Mechanism
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FORCE_AFT, SHAFT_ANGLE, Signal, Signals

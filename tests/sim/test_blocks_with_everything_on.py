@@ -15,9 +15,9 @@ from sim.acquisition.photocell import PhotocellStage
 from sim.chain import join
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Cogging, Guides, ShuntMotor
-from sim.drive.prescribed import DriveSettings, SpeedRipple
+from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation

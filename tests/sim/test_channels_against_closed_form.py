@@ -13,7 +13,7 @@ from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
 from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
-from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
+from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE

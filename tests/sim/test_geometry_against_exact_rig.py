@@ -13,7 +13,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from sim import signals
 from sim.drive.motor import Servo
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.model.mounting import Mounting
 from sim.solve.period import Period
 from sim.solve.periodic import steady_state

@@ -9,7 +9,7 @@ from scipy.special import dawsn, iv
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import (
     Coulomb,
     Cubic,

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import Cogging, Guides, Servo
 from sim.model import hull
-from sim.model import steady as hull_steady
-from sim.model.acting import Acting, Point
+from sim.model import hull_steady_state as hull_steady
 from sim.model.compiled_laws import law_force
 from sim.model.forces import Instants, ModelMotion, law_forces
+from sim.model.law_point import Acting, Point
 from sim.model.law_table import LAWS, has_number, table_of
 from sim.model.laws import (
     Coulomb,
@@ -34,7 +34,7 @@ from sim.model.mounting import Mounting
 from sim.model.surge import SurgeForces
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve import compiled, coupled, coupled_steady
+from sim.solve import compilation, coupled, coupled_steady
 from sim.solve.periodic import steady_run
 
 EXAMPLES: list[ForceLaw] = [
@@ -160,12 +160,12 @@ def test_compiled_loops_are_kept_apart_for_every_change_of_their_sources(
     """A loop keeps what it calls, of which numba does not see that it has changed."""
     package = tmp_path / "sim"
     package.mkdir()
-    monkeypatch.setattr(compiled, "__file__", str(package / "solve" / "compiled.py"))
+    monkeypatch.setattr(compilation, "__file__", str(package / "solve" / "compilation.py"))
     folders = []
     for called, other in (("1.0", "a"), ("2.0", "a"), ("2.0", "b")):
         (package / "law.py").write_text(f"@compile_loop\ndef law(): return {called}\n")
         (package / "other.py").write_text(f"name = {other!r}\n")
-        folders.append(compiled._cache_folder.__wrapped__(""))
+        folders.append(compilation._cache_folder.__wrapped__(""))
     assert folders[0].parent == package / "__pycache__"
     assert folders[0] != folders[1] == folders[2]
-    assert compiled._cache_folder.__wrapped__(str(tmp_path)).parent == tmp_path
+    assert compilation._cache_folder.__wrapped__(str(tmp_path)).parent == tmp_path

@@ -14,9 +14,9 @@ from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
 from sim.drive.motor import Cogging, Guides, Servo, ShuntMotor
-from sim.drive.prescribed import DriveSettings, SpeedRipple
+from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.mechanism.linkage import Setting
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import Coulomb, Cubic, Quadratic, Spring, Tone
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation

@@ -11,7 +11,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain, join
-from sim.drive.prescribed import ConstantSpeedDrive, DriveSettings
+from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.signals import SHAFT_ACCELERATION, SHAFT_ANGLE, SHAFT_SPEED
 
 TURN = 2.0 * math.pi

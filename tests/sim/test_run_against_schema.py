@@ -15,7 +15,7 @@ from hardware.description import channels
 from hardware.description import dataset as schema
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate

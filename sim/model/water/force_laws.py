@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.solve.linear import Rows, as_rows
+from sim.solve.linear_system import Rows, as_rows
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Columns of the coefficients, v the translation's velocity and r the rotation's.

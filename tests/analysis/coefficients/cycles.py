@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.setpoint import SetPoint
 from sim.rig import SimulatedRig
 from sim.run import simulate

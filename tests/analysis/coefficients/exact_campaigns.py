@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.arrangement import Arrangement

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
-from analysis.motion import LinearHull, ideal_run
+from analysis.ideal_rig import LinearHull, ideal_run
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane

@@ -7,8 +7,8 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget, correlation
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import STATED as NAMES
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import STATED as NAMES
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     RESTORING,
     VERTICAL,

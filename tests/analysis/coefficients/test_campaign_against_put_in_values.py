@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_nonlinear import QUASI, STATIC_DRIFT
 from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import with_dimensions, without_dimensions
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
 from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from benchmarks.coefficients_campaigns import (
     BODY,
     CUBIC,

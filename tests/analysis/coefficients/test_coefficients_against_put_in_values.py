@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import prime
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import term_of
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import (
     AmplifierFilter,
     Delay,
@@ -16,13 +17,12 @@ from analysis.coefficients.corrections import (
     zero_at,
     zero_reading,
 )
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.in_place import in_place
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.in_place_calibration import in_place
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import Phasors
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.recording import Recording
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCES
 from hardware.description.errors import ConfigurationError, DataError

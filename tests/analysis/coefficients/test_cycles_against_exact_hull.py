@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.cycle_fit import fit_cycles
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import HULLS, borne, campaign, cycle_of

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.corrections import zero_reading
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.strut_cycle import measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCE_X
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser

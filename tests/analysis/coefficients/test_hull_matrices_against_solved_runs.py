@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.hull_coefficients import as_reported
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.of_hull import as_reported
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from sim.model.water.manoeuvring import from_added_mass_and_damping
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.analysis.coefficients.campaign import loaded, pure

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from analysis.coefficients.measured import reading_phasors
 from analysis.coefficients.strut_cycle import measured_cycle
+from analysis.coefficients.strut_phasors import reading_phasors
 from analysis.readers.dataset import from_dataset
 from analysis.resolver import estimate
-from analysis.resolver.analyse import Analysis, ResolverSettings, analyse
+from analysis.resolver.analysis import Analysis, analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint

@@ -9,7 +9,7 @@ import pytest
 from analysis.coefficients.cycle_fit import FIRST, HIGHER, QUASI_STEADY, STATIC, fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.normalisation import mmg, prime
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import term_of
 from benchmarks.coefficients_campaigns import (
     CUBIC,

@@ -7,7 +7,7 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import DECIDES, LINEAR_FORM, NOT_SEPARABLE, choose_form
 from analysis.coefficients.names import Form
-from analysis.coefficients.recommended import recommended
+from analysis.coefficients.recommendation import recommended
 from benchmarks.coefficients_campaigns import (
     CUBIC,
     HORIZONTAL,

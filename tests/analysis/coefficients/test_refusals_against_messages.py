@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
-from analysis.coefficients.linear import LinearFit, lacking_places, linear_fit
+from analysis.coefficients.linear_fit import LinearFit, lacking_places, linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.uncertainty import Contribution
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane

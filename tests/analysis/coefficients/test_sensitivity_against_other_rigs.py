@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles
-from analysis.coefficients.measured import MOTION_ASKED
-from analysis.coefficients.stated import STATED, StatedUncertainties
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import HULLS, borne, campaign, struts_of

@@ -5,18 +5,19 @@ import math
 import numpy as np
 import pytest
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.corrections import ZeroReading, zero_reading
-from analysis.coefficients.cycle import BodyCycle
-from analysis.coefficients.linear import linear_fit
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from analysis.uncertainty import UncertainValues
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.oscillator import HORIZONTAL_1963

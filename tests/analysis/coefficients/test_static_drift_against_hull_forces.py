@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.body_axes import labels
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.form_choice import BOTH, CUBIC, LINEAR_FORM, QUADRATIC
 from analysis.coefficients.phasors import Phasors
-from analysis.kinematics.averaged import CHANNELS, UNITS
+from analysis.kinematics.body_frame import CHANNELS, UNITS
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.sources import of_covariance
 

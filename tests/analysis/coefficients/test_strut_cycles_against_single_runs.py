@@ -14,13 +14,14 @@ from analysis.coefficients.corrections import (
     response_at,
     zero_reading,
 )
-from analysis.coefficients.in_place import in_place
-from analysis.coefficients.measured import reading_phasors
+from analysis.coefficients.in_place_calibration import in_place
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
+from analysis.coefficients.strut_phasors import reading_phasors
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import Analysis, ResolverSettings, analyse
+from analysis.resolver.analysis import Analysis, analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import HORIZONTAL_1963

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import draw_cycles
-from analysis.coefficients.linear import linear_fit
-from analysis.coefficients.measured import MOTION_ASKED
+from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated import STATED, StatedUncertainties
-from analysis.motion import mass_matrix
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
+from analysis.coefficients.strut_phasors import MOTION_ASKED
+from analysis.ideal_rig import mass_matrix
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from tests.analysis.coefficients.ideal import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors
 from analysis.exchange.simman import (
     Deliverables,
@@ -16,7 +16,7 @@ from analysis.exchange.simman import (
     fourier,
 )
 from analysis.exchange.simman_files import read_simman, write_simman
-from analysis.kinematics.averaged import CHANNELS, UNITS
+from analysis.kinematics.body_frame import CHANNELS, UNITS
 from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane

@@ -13,12 +13,12 @@ from analysis.gap.noise import pooled
 from analysis.gap.observe import observe
 from analysis.gap.priors import Priors
 from analysis.readers.dataset import from_dataset
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.a5_trigger_jitter import TriggerJitter
-from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.run import simulate
 

@@ -11,9 +11,9 @@ from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
-from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.m6_zero_drift import ZeroDrift
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from tests.analysis.gap.small import problem_of

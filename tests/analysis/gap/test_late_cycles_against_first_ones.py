@@ -12,8 +12,8 @@ from analysis.readers.dataset import from_dataset
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.a5_trigger_jitter import TriggerJitter
-from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from tests.analysis.gap.small import problem_of

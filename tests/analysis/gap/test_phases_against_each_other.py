@@ -9,7 +9,7 @@ from analysis.gap.observe import Observed, observe
 from analysis.gap.phase import choose_phase
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.channels import DISPLACEMENT_AFT, FORCE_AFT, SHAFT_ANGLE, Channel
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint

@@ -14,7 +14,7 @@ from analysis.gap.plateau import Plateau
 from analysis.gap.priors import Priors
 from analysis.gap.quality import doubts, judged
 from sim.effects.catalogue import build
-from sim.effects.measured import with_force_channels
+from sim.effects.measurement import with_force_channels
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, record
 

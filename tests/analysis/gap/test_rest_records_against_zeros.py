@@ -19,7 +19,6 @@ from analysis.readers.dataset import from_dataset
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.setpoint import Medium, SetPoint
-from sim.effects.applied import switch_on
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -29,11 +28,12 @@ from sim.effects.m6_zero_drift import ZeroDrift
 from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.s3_coulomb_friction import CoulombFriction
 from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
-from sim.model.acting import Acting, Point
+from sim.effects.switching import switch_on
 from sim.model.force_law import ForceLaw, LawInput
+from sim.model.law_point import Acting, Point
+from sim.rest import standing
 from sim.rig import SimulatedRig
 from sim.run import simulate
-from sim.standing import standing
 from tests.analysis.gap.small import problem_of, record
 
 E = TypeVar("E", bound=Effect)

@@ -26,10 +26,10 @@ from analysis.gap.unknown import Deviation
 from analysis.gap.verdict import probabilities
 from analysis.gap.withheld import Predicted, shrinkage
 from hardware.description.errors import ConfigurationError
-from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, find
 from sim.effects.d2_speed_droop import SpeedDroop
 from sim.effects.effect import DeviationTrace, Effect
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
 from sim.solve.periodic import steady_run

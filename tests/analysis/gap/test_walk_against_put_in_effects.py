@@ -23,7 +23,7 @@ from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
 from sim.drive.motor import ShuntMotor
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.catalogue import build
 from sim.effects.effect import StageName
 from sim.rig import SimulatedRig

@@ -2,7 +2,7 @@
 
 import math
 
-from analysis.inertia.numeric import Value, cos, sin, sqrt
+from analysis.inertia.elementary_functions import Value, cos, sin, sqrt
 
 
 def average_period(yaw_s: Value, sway_s: Value) -> Value:

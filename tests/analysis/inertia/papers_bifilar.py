@@ -5,7 +5,7 @@ import math
 from analysis.inertia.beats import beat_period, ratio_from_beats
 from analysis.inertia.bifilar import ratio_gyradius, yaw_gyradius, yaw_period
 from analysis.inertia.double_pendulum import best_line_length, mode_periods
-from analysis.inertia.principal import principal_angle, roll_from_tilts
+from analysis.inertia.principal_axes import principal_angle, roll_from_tilts
 from tests.analysis.inertia.paper_formulas import (
     average_period,
     gyradius_about,

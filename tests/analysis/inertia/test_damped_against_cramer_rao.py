@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.inertia.damped import fit_damped
+from analysis.inertia.damped_fit import fit_damped
 from analysis.inertia.forms import SwingForm, fit_swing_form
 from benchmarks.inertia_rivals import compare_rivals
 from hardware.description.errors import DataError

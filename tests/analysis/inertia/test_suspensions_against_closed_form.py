@@ -15,7 +15,7 @@ from analysis.inertia.bifilar import (
     yaw_gyradius,
     yaw_period,
 )
-from analysis.inertia.compound import compound_pendulum, lamboley
+from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.corrections import gravity_in_air, square_frame, without_entrained_air
 from analysis.inertia.double_pendulum import (
     LineLengthReading,
@@ -27,10 +27,14 @@ from analysis.inertia.double_pendulum import (
     pitch_from_periods,
 )
 from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.incline import incline_depth, incline_from_both_ends, incline_from_one_end
+from analysis.inertia.inclining_test import (
+    incline_depth,
+    incline_from_both_ends,
+    incline_from_one_end,
+)
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.plane_inertia import plane_inertia
-from analysis.inertia.principal import (
+from analysis.inertia.principal_axes import (
     gyradius_off_level,
     inertia_ellipse,
     principal_angle,

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.coefficients.phasors import interleaved
-from analysis.kinematics.averaged import in_body_axes
+from analysis.kinematics.body_frame import in_body_axes
 from analysis.kinematics.cycle import INSTANTS, driven, waves
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import MotionWaves, motion

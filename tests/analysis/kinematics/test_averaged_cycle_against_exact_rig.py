@@ -5,10 +5,10 @@ import pytest
 
 from analysis.coefficients.body_axes import labels, of_struts
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
+from analysis.ideal_rig import LinearHull, loads, mass_matrix, motion, through_water, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as moved
 from analysis.kinematics.rigid_body import inertia, weight
-from analysis.motion import LinearHull, loads, mass_matrix, motion, through_water, weight_matrix
 from analysis.uncertainty import Contribution
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.body import Body

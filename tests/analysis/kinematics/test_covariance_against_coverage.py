@@ -8,9 +8,10 @@ import pytest
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.strut_cycle import measured_cycle
-from analysis.kinematics.averaged import CHANNELS
+from analysis.kinematics.body_frame import CHANNELS
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from analysis.uncertainty import student_factor
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.channels import Channel

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.linearised import by_parts, pointwise
 from analysis.kinematics.motion import Driven, motion
 from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.errors import DataError

@@ -12,15 +12,15 @@ from scipy.io import savemat
 
 from analysis.foreign import process
 from analysis.foreign.process import end_children
-from analysis.limits import MEMORY_SETTING, TIME_SETTING
 from analysis.readers import read_recording
+from analysis.reading_limits import MEMORY_SETTING, TIME_SETTING
 from hardware.description.errors import ConfigurationError, DataError
 
 TIME = np.arange(200) / 100.0
 DYING = """
 import json, os, sys, time
 import analysis.foreign.child as child
-from analysis.foreign.found import ForeignColumns
+from analysis.foreign.columns import ForeignColumns
 import numpy as np
 def say(count):
     answer = {"columns": [["a", "", count]], "sample_rate_hz": 1.0}

@@ -10,8 +10,14 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from analysis.limits import LONGEST_LINE, MEMORY_SETTING, MOST_COLUMNS, ReadingLimits, limits
 from analysis.readers import read_recording
+from analysis.reading_limits import (
+    LONGEST_LINE,
+    MEMORY_SETTING,
+    MOST_COLUMNS,
+    ReadingLimits,
+    limits,
+)
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli import cli
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from analysis.readers import read_recording, write_recording
-from analysis.readers.missing import LARGEST, without_beyond
+from analysis.readers.missing_values import LARGEST, without_beyond
 from analysis.recording import Recording
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.flags import Flag, Severity

@@ -7,7 +7,7 @@ from pathlib import Path
 
 READER = '''
 import numpy as np
-from analysis.foreign.found import ForeignColumns
+from analysis.foreign.columns import ForeignColumns
 from analysis.readers.foreign import foreign_reader
 
 def read(path):

@@ -11,10 +11,10 @@ from analysis.spikes import find_spikes
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
-from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, vertical_rig
 from sim.run import simulate
 

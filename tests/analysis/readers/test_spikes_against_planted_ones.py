@@ -12,8 +12,9 @@ from scipy.io import savemat
 from analysis.readers import read_recording, write_recording
 from analysis.readers.conditioning import without_spikes
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.analysis import analyse
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.flags import Severity

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.special import stdtrit
 
-from analysis.resolver.memory import _averaged, _beat, _fading, _flicker, _parts, widened
+from analysis.resolver.autocorrelation import _averaged, _beat, _fading, _flicker, _parts, widened
 from tests.analysis.resolver.signals import FloatArray, autoregressive
 
 TRIALS = 1000

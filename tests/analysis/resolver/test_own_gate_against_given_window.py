@@ -7,7 +7,8 @@ import pytest
 
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.dataset import GATE_OPENED, GATE_PERIODS
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
-from analysis.resolver.choice import ReferenceChoice, choose_reference
+from analysis.resolver.analysis import analyse
 from analysis.resolver.reference import NoReferenceError
+from analysis.resolver.reference_choice import ReferenceChoice, choose_reference
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import Channel
 from hardware.description.flags import Severity
 

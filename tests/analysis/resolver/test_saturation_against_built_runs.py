@@ -3,8 +3,9 @@
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.analysis import analyse
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import Channel
 from hardware.description.flags import Flag, Severity
 

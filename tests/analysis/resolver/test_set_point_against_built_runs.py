@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
-from analysis.resolver.analyse import ResolverSettings, analyse
-from analysis.resolver.choice import ReferenceChoice
+from analysis.resolver.analysis import analyse
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import Channel
 from hardware.description.flags import Flag
 from hardware.description.setpoint import SetPoint

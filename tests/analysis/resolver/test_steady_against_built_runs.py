@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from analysis.resolver.estimate import solve_periods
 from analysis.resolver.reference import from_frequency
-from analysis.resolver.steady import Stretch, find_steady, limits
+from analysis.resolver.steady_stretch import Stretch, find_steady, limits
 from analysis.resolver.sums import period_sums
 from tests.analysis.resolver.signals import FloatArray, recording
 

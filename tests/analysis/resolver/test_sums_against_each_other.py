@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from analysis.recording import Recording
 from analysis.resolver import sums as sums_module
 from analysis.resolver.estimate import resolve, solve_periods
-from analysis.resolver.general import sum_any
-from analysis.resolver.inside import ROW
+from analysis.resolver.general_sums import sum_any
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import PhaseReference, ReferenceSource, from_frequency
-from analysis.resolver.straight import Gates
+from analysis.resolver.sample_sums import ROW
+from analysis.resolver.straight_sums import Gates
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.resolver.signals import FloatArray, recording, series

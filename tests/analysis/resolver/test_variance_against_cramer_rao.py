@@ -8,11 +8,11 @@ them at once, and no random number is needed.
 import numpy as np
 import pytest
 
+from analysis.resolver.basis import template
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.reference import from_frequency
 from analysis.resolver.sums import period_sums
-from analysis.resolver.template import template
 from tests.analysis.resolver.signals import FloatArray, recording
 
 FREQUENCY_HZ = 1.037

@@ -76,7 +76,7 @@ def with_file(folder: Path, settings: Path, more: str = "") -> Path:
 
 def put_in_forces(rig: SimulatedRig, column: int) -> np.ndarray:
     """Strut forces per motion of one kind: C + G - omega^2 (M + A) + i omega B."""
-    from analysis.motion import mass_matrix, weight_matrix
+    from analysis.ideal_rig import mass_matrix, weight_matrix
 
     plane, omega = rig.oscillator.plane, 2.0 * np.pi * FREQUENCY_HZ
     mass = mass_matrix(rig.body, plane) + np.array(rig.water.added_mass)

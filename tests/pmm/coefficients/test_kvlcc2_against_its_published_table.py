@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_nonlinear import (
     FIRST_HARMONICS,
     HIGHER_ORDER,
@@ -18,7 +19,6 @@ from analysis.coefficients.campaign_nonlinear import (
     STATIC_DRIFT,
     SURGE_FORCES,
 )
-from analysis.coefficients.cycle import BodyCycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.readers import from_dataset, write_recording
 from hardware.description.body import Body

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from tests.pmm.console.chromium import Browser, browser, console, needed, plan, rig_in
 
 pytestmark = needed

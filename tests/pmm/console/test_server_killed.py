@@ -11,7 +11,8 @@ from pathlib import Path
 import psutil
 
 from analysis.readers import read_recording
-from analysis.resolver.analyse import ResolverSettings, analyse
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
 from benchmarks.console_source import Watcher
 from tests.pmm.console.chromium import Console, console, plan, rig_in
 

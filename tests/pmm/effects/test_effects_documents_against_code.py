@@ -12,8 +12,8 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.cli import cli
 from sim.effects.agreement import mismatch
-from sim.effects.applied import switch_on
 from sim.effects.catalogue import build, catalogue, load_file, user_effects
+from sim.effects.switching import switch_on
 from sim.rig import vertical_rig
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib import _pylab_helpers
 
-from analysis.resolver.analyse import Analysis
+from analysis.resolver.analysis import Analysis
 from hardware.description.errors import ConfigurationError
 from pmm.report.plots import FIGURES, save_figures
 from pmm.report.style import render

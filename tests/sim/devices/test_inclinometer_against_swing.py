@@ -8,7 +8,7 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.registry import running
-from sim.devices.talkers import Swinging
+from sim.devices.serial_devices import Swinging
 from sim.devices.world import Scene, World
 from sim.pendulum.benches import swing_bench
 from sim.rig import vertical_rig

@@ -15,7 +15,7 @@ from sim.effects.agreement import mismatch, phasor
 from sim.effects.effect import Effect
 from sim.model.coefficients import HullCoefficients
 from sim.rig import SimulatedRig
-from sim.solve.linear import as_rows
+from sim.solve.linear_system import as_rows
 
 __all__ = ["STRETCH", "at_small_angles", "mismatch", "phasor", "small_angles"]
 

@@ -8,11 +8,11 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.drive.gear import Gear
-from sim.effects.applied import switch_on
 from sim.effects.d4_gear_backlash import GearBacklash
 from sim.effects.effect import Effect
 from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k6b_free_play import FreePlay
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, vertical_rig
 from sim.solve.periodic import steady_run
 from tests.sim.effects.against_theory import at_small_angles

@@ -10,7 +10,7 @@ from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.drive.gear import Gear
 from sim.drive.motor import ShuntMotor
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
 from sim.effects.h1_added_mass_error import AddedMassError
@@ -30,7 +30,7 @@ from sim.effects.h13_residual_waves import ResidualWaves
 from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.h15_dynamic_trim import DynamicTrim
 from sim.effects.situation import STRUT_FORCES, Situation
-from sim.model.acting import Acting, Point
+from sim.model.law_point import Acting, Point
 from sim.model.laws import LawInput, Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig

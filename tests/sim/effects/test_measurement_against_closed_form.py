@@ -8,7 +8,6 @@ import pytest
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
-from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
 from sim.effects.h3_quadratic_damping import QuadraticDamping
@@ -22,7 +21,8 @@ from sim.effects.m6b_campaign_drift import CampaignDrift
 from sim.effects.m7_saturation import Saturation
 from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
-from sim.model.acting import Acting, Point
+from sim.effects.switching import switch_on
+from sim.model.law_point import Acting, Point
 from sim.model.law_table import LAWS
 from sim.model.laws import Coulomb, ForceLaw, LawInput
 from sim.model.water.force_laws import CrossFlow

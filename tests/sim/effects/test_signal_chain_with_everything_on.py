@@ -8,13 +8,13 @@ import pytest
 from hardware.description.setpoint import Medium, SetPoint
 from sim.chain import join
 from sim.effects.agreement import mismatch
-from sim.effects.applied import switch_on
 from sim.effects.campaign import in_order
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
 from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.m7_saturation import Saturation
 from sim.effects.situation import Situation
+from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
 from sim.solve.periodic import steady_run

@@ -6,10 +6,10 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
 from sim.effects.agreement import phasor
-from sim.effects.applied import switch_on
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
+from sim.effects.switching import switch_on
 from sim.rig import vertical_rig
 from sim.solve.periodic import steady_run
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import sim.solve.compiled
+import sim.solve.compilation
 from sim.chain import join
 from sim.pendulum import kernel, vectors
 from sim.pendulum.bench import PendulumBench
@@ -77,8 +77,8 @@ def test_one_state_gives_the_same_samples_twice() -> None:
 def test_without_numba_the_numbers_are_the_same(make, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     chain = make().chain()
     _, compiled = chain.run(chain.start(50.0, 3), 150)
-    monkeypatch.setattr(sim.solve.compiled, "compile_loop", lambda function: function)
-    monkeypatch.setattr(sim.solve.compiled, "available", lambda: False)
+    monkeypatch.setattr(sim.solve.compilation, "compile_loop", lambda function: function)
+    monkeypatch.setattr(sim.solve.compilation, "available", lambda: False)
     for module in (vectors, kernel):
         monkeypatch.setitem(sys.modules, module.__name__, _again(module))
     plain = sys.modules[kernel.__name__]

@@ -18,7 +18,7 @@ from typing import TypeAlias
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
-from sim.solve.compiled import follow
+from sim.solve.compilation import follow
 
 # A matrix or vector as a value that can be hashed, kept in a state or read from a file.
 Rows: TypeAlias = tuple[tuple[float, ...], ...]

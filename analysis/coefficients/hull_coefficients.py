@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from analysis.coefficients.names import PLACES, Form, name_of
-from analysis.motion import incidence
+from analysis.ideal_rig import incidence
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 

@@ -13,10 +13,10 @@ import numpy as np
 from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.hull_cycle import HullCycle, on_hull
 from analysis.coefficients.phasors import Phasors
-from analysis.coefficients.stated import STATED
-from analysis.kinematics.averaged import CHANNELS
+from analysis.coefficients.stated_uncertainties import STATED
+from analysis.ideal_rig import mass_matrix, weight_matrix
+from analysis.kinematics.body_frame import CHANNELS
 from analysis.kinematics.cycle import INSTANTS
-from analysis.motion import mass_matrix, weight_matrix
 from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
@@ -61,7 +61,7 @@ class BodyCycle:
     speed_m_s
         Of the carriage.
     phasors
-        By order, :data:`analysis.kinematics.averaged.CHANNELS`: displacement across the tank (m),
+        By order, :data:`analysis.kinematics.body_frame.CHANNELS`: displacement across the tank (m),
         rotation from where the drift sets the model (rad), velocities through the water along and
         across it (m/s), force (N), moment (N m) and, where there is a gauge for it, surge force (N)
         of the struts on the model.

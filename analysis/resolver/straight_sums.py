@@ -1,7 +1,7 @@
 """Sums of periods in which the phase runs straight: the usual case, and the quick one.
 
 All samples strictly inside a period count once; the six around either edge carry a correction
-(:mod:`analysis.resolver.weights`). The inside takes the time: :mod:`analysis.resolver.inside`.
+(:mod:`analysis.resolver.weights`). The inside takes the time: :mod:`analysis.resolver.sample_sums`.
 """
 
 from dataclasses import dataclass, fields
@@ -10,8 +10,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from analysis.resolver.inside import phasor_sums
-from analysis.resolver.template import basis_of, phasors
+from analysis.resolver.basis import basis_of, phasors
+from analysis.resolver.sample_sums import phasor_sums
 from analysis.resolver.weights import REACH, edge_corrections
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 

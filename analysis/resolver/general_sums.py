@@ -1,6 +1,6 @@
 """Sums of any period: a bent phase, orders that are not 1 to N, a taper, the ends of the record.
 
-Slower than :mod:`analysis.resolver.straight`, which takes the usual periods.
+Slower than :mod:`analysis.resolver.straight_sums`, which takes the usual periods.
 """
 
 from collections.abc import Callable
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.basis import template
 from analysis.resolver.reference import PhaseReference
-from analysis.resolver.straight import Gates, Sums
-from analysis.resolver.template import template
+from analysis.resolver.straight_sums import Gates, Sums
 from analysis.resolver.weights import REACH, gate_weights
 from hardware.description.arrays import BoolArray, FloatArray
 

@@ -5,22 +5,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import gate_flags
-from analysis.resolver.choice import ReferenceChoice, choose_reference
+from analysis.resolver.checks import frequency_flags, gate_flags, saturation_flags
 from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
-from analysis.resolver.opening import check_opening, with_own_gate
 from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
-from analysis.resolver.saturation import saturation_flags
+from analysis.resolver.reference_choice import ReferenceChoice, choose_reference
 from analysis.resolver.set_point import set_point_flags
-from analysis.resolver.settings import ResolverSettings as ResolverSettings
-from analysis.resolver.settings import check_settings
+from analysis.resolver.settings import (
+    ResolverSettings,
+    check_opening,
+    check_settings,
+    with_own_gate,
+)
 from analysis.resolver.signal_reference import JUMP_CYCLES
-from analysis.resolver.steady import Stretch, find_steady, limits
+from analysis.resolver.steady_stretch import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
-from analysis.resolver.turning import frequency_flags
 from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE

@@ -13,11 +13,11 @@ from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.corrections import Delay
 from analysis.coefficients.phasors import from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.ideal_rig import mass_matrix, motion, strut_forces, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as turned
 from analysis.kinematics.projection import readings
 from analysis.kinematics.rigid_body import inertia, weight, zero_readings
-from analysis.motion import mass_matrix, motion, strut_forces, weight_matrix
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES

@@ -1,16 +1,20 @@
-"""The heaps of an HDF5 file, in which texts and dimensions lie: each has to have an end.
+"""What an HDF5 file may do to its reader: variables larger than the file, heaps without an end.
 
-HDF5 walks through the objects of a heap as soon as it reads one of them, by the sizes that they
-state. At one that states to take no room it walks on the spot for ever, and no signal reaches it.
-So the heaps are walked through before, by the sizes of lengths that HDF5 writes unless told
-otherwise.
+The stated shape of a variable costs a file no bytes, so it is held against what the file holds.
+Texts and dimensions lie in heaps. HDF5 walks through the objects of a heap as soon as it reads one
+of them, by the sizes that they state. At one that states to take no room it walks on the spot for
+ever, and no signal reaches it. So the heaps are walked through before, by the sizes of lengths that
+HDF5 writes unless told otherwise.
 """
 
+import math
 import struct
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
+from analysis.reading_limits import ReadingLimits, limits
+from hardware.description.dataset import EDGE_TIME
 from hardware.description.errors import DataError
 
 _MARK: Final = b"GCOL\x01\x00\x00\x00"  # of a heap, version 1
@@ -18,6 +22,8 @@ _HEAD: Final = struct.Struct("<8sQ")  # the mark and the heap's size
 _OBJECT: Final = struct.Struct("<H6xQ")  # its number, 0 where the heap is free, and its size
 _BLOCK: Final = 1 << 20  # bytes looked at in one go
 _LARGEST: Final = 1 << 26  # bytes of a heap: usually 4096, or one long text
+_PACKING: Final = 1032  # bytes of zeros that deflate keeps in one: more is not in the file
+_LARGEST_CHUNK: Final = 1 << 26  # bytes, read whole for any of its samples; ours have 2^19
 
 
 def check_heaps(path: Path) -> None:
@@ -62,3 +68,30 @@ def _is_endless(heap: bytes) -> bool:
             return True
         at += room
     return False
+
+
+def check_declared(path: Path) -> None:
+    """Refuse a file whose variables are larger than what lies in it, before any is read.
+
+    Raises
+    ------
+    DataError
+        With the variable, what it says and what is there.
+    """
+    import h5py
+
+    allowed = limits()
+    with h5py.File(path, "r") as file:
+        for name, one in file.items():
+            if isinstance(one, h5py.Dataset):
+                _check(one, f"{path}: the variable {name!r}", allowed)
+
+
+def _check(one: Any, where: str, allowed: ReadingLimits) -> None:
+    stored, chunk = one.id.get_storage_size(), math.prod(one.chunks or ()) * one.dtype.itemsize
+    if one.chunks and chunk > _LARGEST_CHUNK:
+        raise allowed.too_large(where, f"its chunks of {chunk} bytes, where 2^26 are the most")
+    if one.nbytes > max(allowed.memory_bytes / 4.0, _PACKING * stored):
+        raise allowed.too_large(where, f"it says {one.nbytes} bytes, of which {stored} are there")
+    if one.ndim and one.name == f"/{EDGE_TIME}":
+        allowed.check_rows(one.shape[0], 1, where)

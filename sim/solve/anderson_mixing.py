@@ -3,7 +3,7 @@
 import numpy as np
 
 from hardware.description.arrays import BoolArray, FloatArray
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 _DEPENDENT = 1e-12  # of a direction's square: what is left of it beside the others
 

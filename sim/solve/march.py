@@ -2,7 +2,7 @@
 
 What a sample leaves open are the loads of model and mounting and the torques at the shaft. All
 else follows from them by matrices that are the same for every sample, so that one evaluation is a
-few dozen multiplications and the laws. They are solved by :mod:`sim.solve.settling`.
+few dozen multiplications and the laws. They are solved by :mod:`sim.solve.broyden`.
 
 Loaded when the first such loop runs, because numba is. Without numba the functions are Python: the
 same numbers, slowly. Arrays are handed on whole, with the row that is meant: numba counts every
@@ -16,8 +16,8 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from sim.drive.shaft_loop import Linkages, ShaftLoop
 from sim.model.law_table import LawTable
-from sim.solve.compiled import compile_loop
-from sim.solve.settling import add_struts, settle
+from sim.solve.broyden import add_struts, settle
+from sim.solve.compilation import compile_loop
 
 
 class ModelLoop(NamedTuple):

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from analysis.inertia.damped import DampedFit, fit_damped
+from analysis.inertia.damped_fit import DampedFit, fit_damped
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

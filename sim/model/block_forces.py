@@ -7,18 +7,18 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.model.acting import Acting
 from sim.model.forces import Instants, ModelMotion, law_forces
+from sim.model.law_point import Acting
 from sim.model.law_table import has_number
 from sim.model.numbers import geometry_only
 from sim.model.system import LOAD_DEGREE, HullSystem
-from sim.solve.compiled import follow
-from sim.solve.linear import Hold
+from sim.solve.compilation import follow
+from sim.solve.linear_system import Hold
 from sim.solve.model_march import Marching, course_of, march_model
 from sim.solve.relaxation import Tail, relax
 
 if TYPE_CHECKING:
-    from sim.solve.marching import Course
+    from sim.solve.march import Course
 
 
 class HullState(NamedTuple):

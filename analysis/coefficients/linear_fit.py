@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_terms
-from analysis.coefficients.determined import (
+from analysis.coefficients.identifiability import (
     ALONE,
     lacking,
     mixed,
@@ -21,7 +21,7 @@ from analysis.coefficients.determined import (
     told_apart,
 )
 from analysis.coefficients.names import PLACES, Form, Place, name_of
-from analysis.coefficients.stated import StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError

@@ -16,7 +16,7 @@ from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.drive.prescribed import DriveSettings
+from sim.drive.prescribed_drive import DriveSettings
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
 from sim.solve.periodic import SteadyState, steady_state

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.coefficients.cycle import BodyCycle, at_order
+from analysis.coefficients.body_cycle import BodyCycle, at_order
 from analysis.coefficients.names import Form, Place
 from hardware.description.arrays import ComplexArray
 from hardware.description.oscillator import Plane

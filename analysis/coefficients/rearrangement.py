@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.body_axes import parts_of_struts
-from analysis.coefficients.cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.hull_cycle import parts_on_hull
 from analysis.coefficients.phasors import interleaved

@@ -22,7 +22,7 @@ from analysis.inertia.projection import (
     project,
 )
 from analysis.inertia.residuals import ResidualDiagnostics, diagnose
-from analysis.inertia.starts import starting_points, thinned
+from analysis.inertia.starting_points import starting_points, thinned
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

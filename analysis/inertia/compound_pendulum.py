@@ -2,9 +2,9 @@
 
 import math
 
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate, require_positive
 from analysis.inertia.monte_carlo import Assessment, assess
-from analysis.inertia.numeric import Value, sqrt
 
 
 def pendulum_gyradius(period_s: Value, depth_m: Value, gravity_m_s2: Value) -> Value:

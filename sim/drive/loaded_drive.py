@@ -12,10 +12,10 @@ from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive.gear import geared
 from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
-from sim.drive.prescribed import SHAFT, DriveSettings, ShaftMotion, shaft_over
+from sim.drive.prescribed_drive import SHAFT, DriveSettings, ShaftMotion, shaft_over
 from sim.signals import Signal, Signals
 from sim.solve.coupled_march import TORQUE_DEGREE, ShaftSystem
-from sim.solve.linear import Hold, LinearSystem, causal_hold
+from sim.solve.linear_system import Hold, LinearSystem, causal_hold
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import Tail
 from sim.stage import Block

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hardware.description.arrays import ComplexArray
-from sim.model.acting import Acting
 from sim.model.forces import law_harmonics
+from sim.model.law_point import Acting
 from sim.model.system import HullSystem
 from sim.solve.model_march import periodic_laws
 from sim.solve.period import Period

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from analysis.resolver.template import phasors
+from analysis.resolver.basis import phasors
 from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 
 _FEW: Final = 16

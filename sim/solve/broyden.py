@@ -1,7 +1,7 @@
 """The loads and torques that one sample leaves open, solved: Broyden's method, and what it solves.
 
 The estimate of the slope goes on from sample to sample, so that few evaluations are needed. Called
-by :mod:`sim.solve.marching`, which says how it is loaded.
+by :mod:`sim.solve.march`, which says how it is loaded.
 
 ``work`` holds, a row each: the outputs without this sample, but with its struts where no shaft
 drives them (0), its outputs (1), its motion of
@@ -16,7 +16,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from sim.drive.shaft_loop import strut_motion
 from sim.model.compiled_laws import law_force
-from sim.solve.compiled import compile_loop
+from sim.solve.compilation import compile_loop
 
 _TOLERANCE = 1e-13
 _ROUNDING = 1e-11  # changes below it that shrink no more are rounding
