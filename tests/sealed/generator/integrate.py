@@ -6,9 +6,10 @@ import numpy as np
 
 from tests.sealed.generator.compiled import compiled
 from tests.sealed.generator.loads import carriage_speed, inertia
-from tests.sealed.generator.mechanics import crank, put, rates, side
+from tests.sealed.generator.mechanics import crank, side
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
+from tests.sealed.generator.rates import put, rates
 from tests.sealed.generator.rubbing import creep, rub
 
 STATES, HELD, WORK = max(Y) + 1, max(H) + 1, max(W) + 1

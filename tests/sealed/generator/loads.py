@@ -6,7 +6,7 @@ them; translation comes first, rotation second.
 
 import math
 
-from tests.sealed.generator.compiled import compiled
+from tests.sealed.generator.compiled import WIDE, compiled
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import W
 
@@ -15,6 +15,12 @@ from tests.sealed.generator.places import W
 def smooth_square(v: float) -> float:
     """Return v |v|, rounded within 2 mm/s (or 2 mrad/s)."""
     return v * math.sqrt(v * v + 4e-6)
+
+
+@compiled
+def powered(v: float, power: float) -> float:
+    """Return a power of a velocity with its sign, rounded within 2 mm/s (or 2 mrad/s)."""
+    return float(v * math.pow(v * v + 4e-6, 0.5 * (power - 1.0)))
 
 
 @compiled
@@ -62,22 +68,35 @@ def linear_water(
 @compiled
 def drags(p: FloatArray, w: float, r: float, work: FloatArray) -> None:
     """Add drag with a square and with a cube of the velocities."""
-    if p[P.QUADRATIC_0] != 0.0:
+    if WIDE and p[P.DRAG_POWER] > 0.0:
+        work[W.WATER_0] += p[P.QUADRATIC_0] * powered(w + p[P.DRIFT_SPEED], p[P.DRAG_POWER])
+        work[W.WATER_1] += p[P.QUADRATIC_1] * powered(r, p[P.DRAG_POWER])
+    elif p[P.QUADRATIC_0] != 0.0:
         work[W.WATER_0] += p[P.QUADRATIC_0] * smooth_square(w + p[P.DRIFT_SPEED])
         work[W.WATER_1] += p[P.QUADRATIC_1] * smooth_square(r)
-    work[W.WATER_0] += p[P.CUBIC_0] * w * w * w / (1.0 + 0.3 * w * w)
-    work[W.WATER_1] += p[P.CUBIC_1] * r * r * r / (1.0 + 0.05 * r * r)
+    if WIDE and p[P.CUBIC_POWER] > 0.0:
+        work[W.WATER_0] += p[P.CUBIC_0] * powered(w, p[P.CUBIC_POWER])
+        work[W.WATER_1] += p[P.CUBIC_1] * powered(r, p[P.CUBIC_POWER])
+    else:
+        work[W.WATER_0] += p[P.CUBIC_0] * w * w * w / (1.0 + 0.3 * w * w)
+        work[W.WATER_1] += p[P.CUBIC_1] * r * r * r / (1.0 + 0.05 * r * r)
 
 
 @compiled
 def curved_springs(p: FloatArray, speed: float, q0: float, work: FloatArray) -> None:
     """Add flare, and what free surface, bottom and trim do with the square of the speed."""
-    if p[P.FLARE_2] != 0.0 or p[P.FLARE_3] != 0.0:
+    if WIDE and p[P.FLARE_SHAPE] > 0.0:
+        dipped = 0.5 * (q0 + math.sqrt(q0 * q0 + 4e-6))
+        work[W.WATER_0] += (p[P.FLARE_2] + p[P.FLARE_3] * q0) * dipped * dipped
+    elif p[P.FLARE_2] != 0.0 or p[P.FLARE_3] != 0.0:
         work[W.WATER_0] += p[P.FLARE_2] * (math.cosh(10.0 * q0) - 1.0) / 50.0
         work[W.WATER_0] += p[P.FLARE_3] * 0.06 * (math.sinh(10.0 * q0) / 10.0 - q0)
     near = 1.0 / (1.0 - 0.5 * p[P.SUCTION_RATE] * q0)
     gap = p[P.CLEARANCE] / (p[P.CLEARANCE] - q0)
     pulled = p[P.SUCTION] * (near * near - 1.0) + p[P.GROUND] * (gap * gap - 1.0)
+    if WIDE and p[P.GAP_SHAPE] > 0.0:
+        pulled = p[P.SUCTION] * (near * near * near - 1.0) / 1.5
+        pulled += p[P.GROUND] * (math.exp(2.0 * q0 / p[P.CLEARANCE]) - 1.0)
     sag = p[P.TRIM_LOAD] + p[P.TRIM_2] * q0 * q0
     if p[P.TRIM_1] != 0.0:
         sag += p[P.TRIM_1] * math.tanh(4.0 * q0) / 4.0
@@ -106,6 +125,8 @@ def held_by_carriage(p: FloatArray, x: float, v: float, bristle: float, wound: f
     cable = p[P.CABLE_STIFFNESS] * x / (1.0 + p[P.CABLE_SOFTENING] * x * x) + p[P.CABLE_PRELOAD]
     tare = p[P.TARE_VISCOUS] * v + p[P.TARE_QUADRATIC] * smooth_square(v)
     below = p[P.GUIDE_BELOW] * v / (1.0 + 0.2 * abs(v))
+    if WIDE and p[P.GUIDE_POWER] > 0.0:
+        below = p[P.GUIDE_BELOW] * powered(v, p[P.GUIDE_POWER])
     return float(
         bristle + below + 0.5 * cable + 0.5 * p[P.CABLE_RUBBING] * wound + p[P.WATER] * tare
     )

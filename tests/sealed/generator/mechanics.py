@@ -2,13 +2,13 @@
 
 The state ``y`` (:class:`Y`) is integrated; what rubs, creeps or remembers (:class:`H`) is held over
 a step and brought forward exactly at its end (:mod:`tests.sealed.generator.rubbing`). With gauges
-that give way the model moves on its own (:func:`loose_rates`); on rigid ones it goes where the
-struts go, and the shaft feels its inertia (:func:`rigid_rates`).
+that give way the model moves on its own (``rates.py``); on rigid ones it goes where the struts go
+and the shaft feels its inertia, at small angles (``rigid.py``) or at any (``finite.py``).
 """
 
 import math
 
-from tests.sealed.generator.compiled import compiled
+from tests.sealed.generator.compiled import WIDE, compiled
 from tests.sealed.generator.loads import (
     carriage_speed,
     curved_springs,
@@ -57,9 +57,19 @@ def dead_zone(x: float, half: float) -> float:
 
 
 @compiled
+def clearance(p: FloatArray, x: float, half: float) -> float:
+    """Return how far ``x`` is beyond a clearance; soft contacts take hold by and by."""
+    if WIDE and p[P.CONTACT_SOFT] > 0.0:
+        return float(x - half * math.tanh(x / half)) if half > 0.0 else x
+    return dead_zone(x, half)
+
+
+@compiled
 def lift_of(p: FloatArray, rotation: float, strut: int) -> float:
     """Return the strut point's displacement by a rotation of the model."""
     turned = math.sin(rotation) if p[P.ARC] > 0.0 else rotation
+    if WIDE and p[P.ARC] > 1.5:
+        turned = math.tan(rotation)
     return float(side(p, strut) * p[P.LEVER] * turned)
 
 
@@ -71,10 +81,12 @@ def gauge_force(
     here = y[Y.Q0] + lift_of(p, y[Y.Q1], strut)
     rate = y[Y.V0] + side(p, strut) * p[P.LEVER] * y[Y.V1]
     gap = displaced + y[Y.FRAME] - held[H.PLAY_AFT + strut] - here
-    stretch = dead_zone(gap, p[P.KNOCK])
+    stretch = clearance(p, gap, p[P.KNOCK])
     if stretch == 0.0 and p[P.KNOCK] > 0.0:
         return 0.0
     damping = p[P.GAUGE_DAMPING] * (speed + y[Y.FRAME_SPEED] - rate)
+    if WIDE and p[P.GAUGE_UNLIKE] != 0.0:
+        stretch *= 1.0 - p[P.GAUGE_UNLIKE] if strut == 0 else 1.0 + p[P.GAUGE_UNLIKE]
     return float(p[P.GAUGE_STIFFNESS] * stretch + damping)
 
 
@@ -85,10 +97,20 @@ def meshed(p: FloatArray, y: FloatArray, held: FloatArray) -> float:
     if p[P.TEETH] != 0.0:
         turn = p[P.TEETH_ORDER] * y[Y.CRANK] + p[P.TEETH_PHASE]
         uneven = math.sin(turn) + 0.1 * math.sin(2.0 * turn)
+        slope = math.cos(turn) + 0.2 * math.cos(2.0 * turn)
+        if WIDE and p[P.TEETH_SHAPE] > 0.0:
+            uneven = math.sin(turn) - math.sin(3.0 * turn) / 9.0 + math.sin(5.0 * turn) / 25.0
+            slope = math.cos(turn) - math.cos(3.0 * turn) / 3.0 + math.cos(5.0 * turn) / 5.0
         twist += p[P.TEETH] / p[P.TEETH_ORDER] * uneven
-        rate += p[P.TEETH] * y[Y.CRANK_SPEED] * (math.cos(turn) + 0.2 * math.cos(2.0 * turn))
+        rate += p[P.TEETH] * y[Y.CRANK_SPEED] * slope
+    for order in range(1, 3 if WIDE else 1):
+        at = P.RIPPLE_1S + 2 * (order - 1)
+        if p[at] != 0.0 or p[at + 1] != 0.0:
+            sine, cosine = math.sin(order * y[Y.CRANK]), math.cos(order * y[Y.CRANK])
+            twist += (p[at] * sine + p[at + 1] * cosine) / order
+            rate += y[Y.CRANK_SPEED] * (p[at] * cosine - p[at + 1] * sine)
     if p[P.BACKLASH] > 0.0:
-        twist = dead_zone(twist, p[P.BACKLASH])
+        twist = clearance(p, twist, p[P.BACKLASH])
         if twist == 0.0:
             return 0.0
     return float(p[P.GEAR_STIFFNESS] * twist + p[P.GEAR_DAMPING] * rate)
@@ -105,8 +127,13 @@ def drive_rates(
     mesh = meshed(p, y, held)
     slow = p[P.OMEGA] * (1.0 + p[P.SPEED_ERROR]) - y[Y.MOTOR_SPEED]
     torque = p[P.SERVO_P] * slow + p[P.SERVO_I] * y[Y.SERVO]
+    if WIDE and p[P.SERVO_SOFT] > 0.0:
+        torque = p[P.SERVO_P] * p[P.SERVO_SOFT] * math.tanh(slow / p[P.SERVO_SOFT])
     if p[P.COGGING] != 0.0:
-        torque += p[P.COGGING] * math.cos(p[P.COGGING_ORDER] * y[Y.MOTOR] + p[P.COGGING_PHASE])
+        turn = p[P.COGGING_ORDER] * y[Y.MOTOR] + p[P.COGGING_PHASE]
+        torque += p[P.COGGING] * math.cos(turn)
+        if WIDE and p[P.COGGING_SHAPE] > 0.0:
+            torque += p[P.COGGING] * (0.4 * math.cos(2.0 * turn) + 0.2 * math.sin(3.0 * turn))
     dy[Y.MOTOR] = y[Y.MOTOR_SPEED]
     dy[Y.MOTOR_SPEED] = (torque - mesh) / p[P.MOTOR_INERTIA]
     dy[Y.SERVO] = slow
@@ -176,102 +203,3 @@ def above(p: FloatArray, y: FloatArray, held: FloatArray, slope: float, strut: i
     return float(
         slope * (held[H.GUIDE_AFT + strut] + p[P.GUIDE_VISCOUS] * slope * y[Y.CRANK_SPEED])
     )
-
-
-@compiled
-def loose_rates(
-    p: FloatArray, t: float, y: FloatArray, held: FloatArray, w: FloatArray, dy: FloatArray
-) -> None:
-    """Write the rates of a model on gauges (and a frame) that give way."""
-    push0, push1, pull, load = -w[W.WATER_0], -w[W.WATER_1], 0.0, 0.0
-    for strut in range(2):
-        at = W.WAY_AFT + 3 * strut
-        slope = w[at + 1]
-        force = gauge_force(p, y, held, strut, w[at], slope * y[Y.CRANK_SPEED])
-        free = force - kept_at(p, y, held, strut)
-        held[H.FORCE_AFT + strut] = force
-        load += slope * force + above(p, y, held, slope, strut)
-        pull += force
-        push0 += free
-        push1 += side(p, strut) * p[P.LEVER] * free
-    drive_rates(p, y, held, load, 0.0, dy)
-    frame_rates(p, t, y, pull, dy)
-    det = w[W.M00] * w[W.M11] - w[W.M01] * w[W.M10]
-    dy[Y.Q0] = y[Y.V0]
-    dy[Y.Q1] = y[Y.V1]
-    dy[Y.V0] = (w[W.M11] * push0 - w[W.M01] * push1) / det
-    dy[Y.V1] = (w[W.M00] * push1 - w[W.M10] * push0) / det
-
-
-@compiled
-def rigid_place(p: FloatArray, y: FloatArray, w: FloatArray) -> None:
-    """Write the model's place by the struts' into ``y`` and ``w``: slopes and curvatures too."""
-    for i in range(3):
-        w[W.MEAN + i] = 0.5 * (w[W.WAY_AFT + i] + w[W.WAY_FORE + i])
-        w[W.TURN + i] = side(p, 0) * (w[W.WAY_AFT + i] - w[W.WAY_FORE + i]) / (2.0 * p[P.LEVER])
-    w[W.COSINE] = 1.0
-    if p[P.ARC] > 0.0:
-        u, slope, curve = w[W.TURN], w[W.TURN + 1], w[W.TURN + 2]
-        cosine = math.sqrt(1.0 - u * u)
-        w[W.TURN] = math.asin(u)
-        w[W.TURN + 1] = slope / cosine
-        w[W.TURN + 2] = (curve + u * slope * slope / cosine**2) / cosine
-        w[W.COSINE] = cosine
-    y[Y.Q0], y[Y.V0] = w[W.MEAN], w[W.MEAN + 1] * y[Y.CRANK_SPEED]
-    y[Y.Q1], y[Y.V1] = w[W.TURN], w[W.TURN + 1] * y[Y.CRANK_SPEED]
-
-
-@compiled
-def put(p: FloatArray, y: FloatArray, w: FloatArray) -> None:
-    """Write the struts' places into ``w``; on rigid gauges the model's go with them."""
-    for strut in range(2):
-        crank(p, strut, y[Y.CRANK], w)
-    if p[P.GAUGE_STIFFNESS] == 0.0:
-        rigid_place(p, y, w)
-
-
-@compiled
-def rigid_rates(
-    p: FloatArray, y: FloatArray, held: FloatArray, w: FloatArray, dy: FloatArray
-) -> None:
-    """Write the rates of a shaft that carries the model's inertia; forces by Newton's law."""
-    speed = y[Y.CRANK_SPEED]
-    slope0, slope1 = w[W.MEAN + 1], w[W.TURN + 1]
-    load0 = w[W.WATER_0] + (w[W.M00] * w[W.MEAN + 2] + w[W.M01] * w[W.TURN + 2]) * speed**2
-    load1 = w[W.WATER_1] + (w[W.M10] * w[W.MEAN + 2] + w[W.M11] * w[W.TURN + 2]) * speed**2
-    heavy0 = w[W.M00] * slope0 + w[W.M01] * slope1
-    heavy1 = w[W.M10] * slope0 + w[W.M11] * slope1
-    load = slope0 * load0 + slope1 * load1
-    for strut in range(2):
-        slope = w[W.WAY_AFT + 3 * strut + 1]
-        w[W.KEPT_AFT + strut] = kept_at(p, y, held, strut)
-        load += slope * w[W.KEPT_AFT + strut] + above(p, y, held, slope, strut)
-    drive_rates(p, y, held, load, slope0 * heavy0 + slope1 * heavy1, dy)
-    load0 += heavy0 * dy[Y.CRANK_SPEED]
-    load1 += heavy1 * dy[Y.CRANK_SPEED]
-    for strut in range(2):
-        moment = side(p, strut) * load1 / (2.0 * p[P.LEVER] * w[W.COSINE])
-        held[H.FORCE_AFT + strut] = 0.5 * load0 + moment + w[W.KEPT_AFT + strut]
-    dy[Y.V0] = w[W.MEAN + 2] * speed**2 + slope0 * dy[Y.CRANK_SPEED]
-
-
-@compiled
-def rates(
-    p: FloatArray, t: float, y: FloatArray, held: FloatArray, w: FloatArray, dy: FloatArray
-) -> None:
-    """Write the rates of all states; the gauges' forces are left in ``held``."""
-    dy[:] = 0.0
-    loose = p[P.GAUGE_STIFFNESS] > 0.0
-    put(p, y, w)
-    water_takes(p, t, y, held, w)
-    if p[P.SLOSH_MASS] > 0.0:
-        w[W.WATER_0] -= p[P.SLOSH_MASS] * slosh_rates(p, y, dy)
-    if loose:
-        loose_rates(p, t, y, held, w, dy)
-    else:
-        rigid_rates(p, y, held, w, dy)
-    dy[Y.SLOSH_SPEED] -= dy[Y.V0]
-    if p[P.WAKE] != 0.0:
-        wake_rates(p, y, carriage_speed(p, t), dy)
-    if not loose:
-        dy[Y.V0] = 0.0

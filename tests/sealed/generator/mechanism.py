@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tests.sealed.generator.arranged import drifted
+from tests.sealed.generator.compiled import wide
 from tests.sealed.generator.integrate import integrate
-from tests.sealed.generator.parameters import FloatArray, P
+from tests.sealed.generator.parameters import FloatArray, P, neutral
 from tests.sealed.generator.rig import Rig, Run
 
 # Longest step on rigid gauges, and on gauges, frames or clearances that give way.
@@ -39,6 +41,8 @@ def set_run(p: FloatArray, run: Run) -> FloatArray:
     q[P.STRUT_PHASE], q[P.SPEED] = run.strut_phase_rad, run.carriage_speed_m_s
     q[P.WATER] = float(run.medium == "water")
     q[P.HOUR], q[P.WAITED], q[P.PRELOAD] = run.hour, run.waited_s, run.preload_n
+    if q[P.EXACT]:
+        drifted(q, run.drift_rad, run.drift_by)
     if run.kind == "check-weight":
         q[P.CHECK_AFT if run.strut == "aft" else P.CHECK_FORE] = run.weight_n
     if run.kind == "injection":
@@ -70,6 +74,12 @@ def _is_loose(p: FloatArray) -> bool:
     return bool(np.any(gives > 0.0))
 
 
+def needs_more(p: FloatArray) -> bool:
+    """Tell whether a reality has what only the wide program knows."""
+    ours = slice(P.EXACT, None)
+    return bool(np.any(p[ours] != neutral()[ours]) or p[P.ARC] > 1.5)
+
+
 def _gear_step_s(p: FloatArray) -> float:
     return float(GEAR_STEP_RAD * math.sqrt(p[P.CRANK_INERTIA] / p[P.GEAR_STIFFNESS]))
 
@@ -87,7 +97,8 @@ def happen(p: FloatArray, run: Run, rig: Rig, *, settling: float = SETTLING_PERI
     substeps = math.ceil(1.0 / (rig.sample_rate_hz * step))
     interval = 1.0 / rig.sample_rate_hz
     kernels = retardation(q, interval)
-    out, edges = integrate(q, kernels, interval, substeps, before, samples)
+    program = wide(integrate) if needs_more(q) else integrate
+    out, edges = program(q, kernels, interval, substeps, before, samples)
     return Truth(out, edges, before)
 
 

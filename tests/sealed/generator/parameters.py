@@ -183,6 +183,61 @@ class P(IntEnum):
     PULSE_DELAY = auto()
     JITTER = auto()
     MISSED = auto()  # one pulse in so many; 0: none
+    # Angles of any size (finite.py); without EXACT they are small.
+    EXACT = auto()
+    SLIDES_ON_RIG = auto()  # 0: one attachment slides on the model; 1: one strut on the rig
+    FORE_PIVOT = auto()
+    RIG_GAUGES = auto()
+    RIG_TURNED = auto()  # rad, from ahead to across, as all of these
+    STRUTS_OFFSET = auto()
+    MODEL_TURNED = auto()
+    SURGE_UU = auto()  # force along the model by u |u|; resistance is negative
+    # Always on.
+    RIPPLE_1S = auto()  # relative speed, by the sine's and the cosine's transmission error
+    RIPPLE_1C = auto()
+    RIPPLE_2S = auto()
+    RIPPLE_2C = auto()
+    # Water that varies with frequency and speed.
+    KERNEL_0 = auto()
+    KERNEL_1 = auto()
+    KERNEL_RATE = auto()
+    KERNEL_OMEGA = auto()
+    MIDDLE_HZ = auto()
+    ADDED_SLOPE_0 = auto()  # relative per octave
+    ADDED_SLOPE_1 = auto()
+    DAMPING_SLOPE_0 = auto()
+    DAMPING_SLOPE_1 = auto()
+    ADDED_BEND_0 = auto()  # relative per octave squared
+    ADDED_BEND_1 = auto()
+    DAMPING_BEND_0 = auto()
+    DAMPING_BEND_1 = auto()
+    MIDDLE_SPEED = auto()
+    ADDED_SPEED = auto()  # relative per relative change of speed
+    DAMPING_SPEED = auto()
+    # Other forms; 0 is the one that the names above mean.
+    TEETH_SHAPE = auto()
+    COGGING_SHAPE = auto()
+    SERVO_SOFT = auto()  # rad/s at which the torque levels off
+    CONTACT_SOFT = auto()
+    GAUGE_UNLIKE = auto()
+    BRISTLE_SHAPE = auto()  # 1: hyperbolic tangent, 2: Bouc-Wen with n = 2
+    PLAY_SHAPE = auto()
+    GUIDE_POWER = auto()
+    DRAG_POWER = auto()
+    CUBIC_POWER = auto()
+    FLARE_SHAPE = auto()
+    GAP_SHAPE = auto()
+    ECHO_SHAPE = auto()
+    CURVE_SHAPE = auto()
+    LOOP_SHAPE = auto()
+    WARMING_SHAPE = auto()
+    KELVIN_SHAPE = auto()
+    CLIP_SOFT = auto()
+    LAG_SHAPE = auto()  # 1: Butterworth, 2: Bessel
+    SKEW_SHAPE = auto()
+    HUM_SHAPE = auto()
+    JITTER_SHAPE = auto()
+    MISSED_SHAPE = auto()
 
 
 _NEUTRAL = {
@@ -224,6 +279,10 @@ _NEUTRAL = {
     P.HUM_HZ: 50.0,
     P.SCALE_AFT: 1.0,
     P.SCALE_FORE: 1.0,
+    P.KERNEL_RATE: 3.0,
+    P.MIDDLE_HZ: 0.6,
+    P.MIDDLE_SPEED: 1.0,
+    P.CLIP_SOFT: 0.03,
 }
 
 

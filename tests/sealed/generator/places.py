@@ -58,3 +58,5 @@ class W(IntEnum):
     COSINE = 18
     KEPT_AFT = 19
     KEPT_FORE = 20
+    LINE = 21  # angle of the line of the struts, slope, curvature
+    LINE_2 = 23

@@ -73,6 +73,9 @@ class Run:
     weight_n: float = 0.0
     strut: Literal["aft", "fore"] = "aft"
     force_n: float = 0.0
+    drift_rad: float = 0.0
+    drift_by: str = "rig_turned"
+    loud: float = 1.0  # this run's noise of the forces, in that of the rig
 
     @property
     def turns(self) -> bool:

@@ -6,7 +6,7 @@ the distance travelled: exact, whatever the step. Bouc-Wen's loop (n = 1) is of 
 
 import math
 
-from tests.sealed.generator.compiled import compiled
+from tests.sealed.generator.compiled import WIDE, compiled
 from tests.sealed.generator.mechanics import meshed, side
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
@@ -14,6 +14,8 @@ from tests.sealed.generator.places import H, W, Y
 # Distance in which a bristle comes to its steady state, and the cable's hysteresis likewise.
 BRISTLE_M = 1e-4
 WOUND_M = 2e-3
+# Velocity at which a friction without bristles has turned.
+TANH_M_S = 3e-3
 
 
 @compiled
@@ -24,11 +26,40 @@ def settled(bristle: float, level: float, v: float, dt: float, distance: float) 
 
 
 @compiled
+def wound_up(bristle: float, level: float, v: float, dt: float, distance: float) -> float:
+    """Return the force of a Bouc-Wen loop with n = 2 (beta = gamma) after ``dt``; exact too."""
+    if level <= 0.0:
+        return 0.0
+    way, path = math.copysign(1.0, v), abs(v) * dt / distance
+    along = way * bristle / level
+    back = min(path, max(-along, 0.0))
+    along = min(along + back, 1.0 - 1e-12)
+    if along >= 0.0:
+        along = math.tanh(math.atanh(along) + path - back)
+    return way * level * along
+
+
+@compiled
+def bristle_force(
+    p: FloatArray, bristle: float, level: float, v: float, dt: float, distance: float
+) -> float:
+    """Return a bristle's force after ``dt``, in the form that rubs here."""
+    if WIDE and p[P.BRISTLE_SHAPE] == 1.0:
+        return level * math.tanh(v / TANH_M_S)
+    if WIDE and p[P.BRISTLE_SHAPE] == 2.0:
+        return wound_up(bristle, level, v, dt, distance)
+    return settled(bristle, level, v, dt, distance)
+
+
+@compiled
 def friction_level(p: FloatArray, force: float, v: float) -> float:
     """Return the steady friction below the dynamometer at velocity ``v``."""
     level = p[P.COULOMB] + math.copysign(0.5 * p[P.UNEVEN], v)
     if p[P.STRIBECK] != 0.0:
-        level += p[P.STRIBECK] * math.exp(-abs(v) / p[P.STRIBECK_SPEED])
+        if WIDE and p[P.BRISTLE_SHAPE] > 0.0:
+            level += p[P.STRIBECK] / (1.0 + (v / p[P.STRIBECK_SPEED]) ** 2)
+        else:
+            level += p[P.STRIBECK] * math.exp(-abs(v) / p[P.STRIBECK_SPEED])
     return float(level + p[P.LOAD_FRICTION] * abs(force + p[P.SIDE_LOAD]))
 
 
@@ -46,7 +77,7 @@ def rub_below(p: FloatArray, y: FloatArray, held: FloatArray, dt: float) -> None
         v = y[Y.V0] + side(p, strut) * p[P.LEVER] * y[Y.V1]
         level = friction_level(p, held[H.FORCE_AFT + strut], v)
         at = H.BRISTLE_AFT + strut
-        held[at] = settled(held[at], level, v, dt, BRISTLE_M)
+        held[at] = bristle_force(p, held[at], level, v, dt, BRISTLE_M)
         at = H.WOUND_AFT + strut
         held[at] = settled(held[at], 1.0, v, dt, WOUND_M)
 
@@ -60,7 +91,10 @@ def rub_above(p: FloatArray, y: FloatArray, held: FloatArray, dt: float, work: F
         held[at] = settled(held[at], p[P.GUIDE_COULOMB], v, dt, BRISTLE_M)
         if p[P.PLAY] > 0.0:
             at = H.PLAY_AFT + strut
-            held[at] = settled(held[at], p[P.PLAY], v, dt, p[P.PLAY])
+            if WIDE and p[P.PLAY_SHAPE] > 0.0:
+                held[at] = min(max(held[at] + v * dt, -p[P.PLAY]), p[P.PLAY])
+            else:
+                held[at] = settled(held[at], p[P.PLAY], v, dt, p[P.PLAY])
 
 
 @compiled
