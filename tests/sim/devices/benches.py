@@ -148,7 +148,8 @@ class Hosted:
             "interface": interface,
             "channel": channel,
             "options": bus,
-            "allowed_gap_cycles": 30,
+            # In real time a machine that is kept busy keeps frames waiting too.
+            "allowed_gap_cycles": 300 if self.real_time else 30,
             "listen_ms": 50,
             # Free-running, a peer that the machine has no time for costs time and no samples.
             "answer_ms": 0 if self.real_time else 2000,
