@@ -14,9 +14,9 @@ from typing import Any, Final
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
-from pmm.console.app_settings import Settings
+from pmm.console.app_settings import ConsoleSettings
 from pmm.console.link import Link
-from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, Trace
+from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, SignalTrace
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
@@ -24,7 +24,7 @@ from pmm.console.station import TICK_S
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
-from pmm.run.status import Status
+from pmm.run.status import RunStatus
 
 CHANNELS: Final = 16
 _RATE_HZ: Final = 100.0
@@ -56,7 +56,9 @@ class Source:
         port = self._socket.getsockname()[1]
         self.address = f"http://127.0.0.1:{port}/"
         door = Door("127.0.0.1", port)
-        settings = Settings(self._folder / "rig.toml", self._folder, None, self._folder, door)
+        settings = ConsoleSettings(
+            self._folder / "rig.toml", self._folder, None, self._folder, door
+        )
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         self._process = context.Process(
@@ -108,8 +110,8 @@ class Source:
         values = 40.0 * np.sin(theta + 0.2 * phases) + noise
         coefficients = self._rng.normal(20.0, 0.05, (CHANNELS, 7))
         time_s = first / _RATE_HZ
-        status = Status(State.GATE_OPEN, first, time_s, "run", "oscillation", 1, 9, 1.0,
-                        GateState.OPEN, self._number // 25, 1000)  # fmt: skip
+        status = RunStatus(State.GATE_OPEN, first, time_s, "run", "oscillation", 1, 9, 1.0,
+                           GateState.OPEN, self._number // 25, 1000)  # fmt: skip
         return Frame(
             number=self._number,
             status=status,
@@ -125,7 +127,7 @@ class Source:
             bus=Bus(True, 9, 0),
             loop=CycleStatistics(first, 1e-4, 1e-3, 2e-3, 0),
             needles=Needles(coefficients, np.full((CHANNELS, 7), 0.05), final=False),
-            trace=Trace(first, time_s, values),
+            trace=SignalTrace(first, time_s, values),
         )
 
 

@@ -22,7 +22,7 @@ from hardware.rig_configuration import read_rig
 from pmm.cli import cli
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import LivePath, header_channels
-from pmm.recorder.run_recorder import Outcome as RunOutcome
+from pmm.recorder.run_recorder import RunEnd as RunOutcome
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
 from sim.devices.plant import PlantConditions

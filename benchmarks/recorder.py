@@ -13,7 +13,7 @@ from hardware.description.channels import Channel
 from hardware.raw_log import Frame
 from pmm.recorder.header import RunHeader
 from pmm.recorder.recovery import recover
-from pmm.recorder.run_recorder import Outcome as RunOutcome
+from pmm.recorder.run_recorder import RunEnd as RunOutcome
 from pmm.recorder.run_recorder import RunRecorder
 
 _FAST_HZ, _WIDE, _BLOCK_S = 10_000.0, 16, 0.01

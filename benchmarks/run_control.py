@@ -24,7 +24,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
-from pmm.run.recording import Recording
+from pmm.run.recording import RecorderFactory
 from pmm.run.run_control import RunControl, View
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
@@ -93,7 +93,7 @@ def _control(rate_hz: float, periods: int, folder: Path, view: View) -> Iterator
         ) as rig,
     ):
         rig.prepare()
-        recording = Recording(rig, rig_file, plan, folder, lambda: "", taps)
+        recording = RecorderFactory(rig, rig_file, plan, folder, lambda: "", taps)
         control = RunControl(rig, rig_file, plan.runs, recording.begin, time.monotonic, view)
         control.request(Command.START)
         yield control

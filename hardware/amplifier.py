@@ -19,7 +19,7 @@ from hardware.errors import (
     SensorInvalidError,
     StuckSensorError,
 )
-from hardware.roles import Block, Cycle, Role, Sample, blocks
+from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 
 # Bits of the analogue input's status (6150); an overload comes with or without "not valid".
 _INVALID, _OVERLOADS = 0x01, 0x06
@@ -157,7 +157,7 @@ class Amplifier:
         """Go on with that tare."""
         self._zero = list(carried["zero"])
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the samples since the last call; shape of each: ``(channels, samples)``."""
         taken, self._untaken = self._untaken, []
         return blocks(taken)

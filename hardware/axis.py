@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Literal
 
-from hardware.cia402 import Control, Goal, Mode, Status
+from hardware.cia402 import ControlWord, Goal, Mode, StatusWord
 from hardware.commanded import check_position
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -22,7 +22,7 @@ from hardware.drive import (
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import HomingError, NotReadyError
 from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN, check_quick_stop
-from hardware.motion import Motion
+from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Reading, Role
 
 _STALE_CYCLES = 10  # a homing that was over before is believed after so many
@@ -108,7 +108,7 @@ class DriveAxis:
         self.drive = Drive(
             join(nodes(name, settings)[0], services),
             (Mode.PROFILE_POSITION, Mode.HOMING),
-            Motion(
+            EncoderMotion(
                 settings.counts_per_unit,
                 f"{settings.unit}/s",
                 AXIS_REST_SHARE * settings.speed,
@@ -192,7 +192,7 @@ class DriveAxis:
         """Decelerate along the profile, then stand under power."""
         if self.moving:
             self._break_off()
-            self.drive.extra = Control.HALT
+            self.drive.extra = ControlWord.HALT
 
     def quick_stop(self) -> None:
         """Decelerate on the quick-stop ramp."""
@@ -260,7 +260,7 @@ class DriveAxis:
             raise NotReadyError(self.name, "is not enabled; enable it first")
         self.settled = False
         self._stale_cycles = 0
-        self.drive.mode, self.drive.extra = mode, Control(0)
+        self.drive.mode, self.drive.extra = mode, ControlWord(0)
         self.drive.within(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, what)
         self._step = _Step.MODE
 
@@ -271,30 +271,30 @@ class DriveAxis:
         self._abandon()
 
     def _abandon(self) -> None:
-        self._step, self.drive.extra = _Step.IDLE, Control(0)
+        self._step, self.drive.extra = _Step.IDLE, ControlWord(0)
         self.drive.done()
 
-    def _pursue(self, status: Status) -> None:
+    def _pursue(self, status: StatusWord) -> None:
         if self._step is _Step.MODE and self.drive.in_mode:
             self._step = _Step.CLEAR
         homing = self.drive.mode is Mode.HOMING
         if self._step is _Step.CLEAR:
-            if homing or Status.SET_POINT_ACKNOWLEDGED not in status:
+            if homing or StatusWord.SET_POINT_ACKNOWLEDGED not in status:
                 self._step = _Step.START
-                self.drive.extra = Control.NEW_SET_POINT | (
-                    Control(0) if homing else Control.CHANGE_AT_ONCE
+                self.drive.extra = ControlWord.NEW_SET_POINT | (
+                    ControlWord(0) if homing else ControlWord.CHANGE_AT_ONCE
                 )
         elif homing:
             self._home(status)
         else:
             self._move(status)
 
-    def _home(self, status: Status) -> None:
+    def _home(self, status: StatusWord) -> None:
         """Wait until the drive has begun (attained falls), then until it has finished."""
-        if Status.HOMING_ERROR in status:
+        if StatusWord.HOMING_ERROR in status:
             self._abandon()
             raise HomingError(self.name, f"homing failed (status word 0x{int(status):04X})")
-        attained = Status.HOMING_ATTAINED in status and Status.TARGET_REACHED in status
+        attained = StatusWord.HOMING_ATTAINED in status and StatusWord.TARGET_REACHED in status
         if self._step is _Step.START:
             # Bits of an earlier homing stand until the drive has taken the command.
             self._stale_cycles += 1
@@ -304,13 +304,13 @@ class DriveAxis:
             self.homed = self.settled = True
             self._abandon()
 
-    def _move(self, status: Status) -> None:
-        if self._step is _Step.START and Status.SET_POINT_ACKNOWLEDGED in status:
-            self._step, self.drive.extra = _Step.UNDER_WAY, Control(0)
-        elif self._step is _Step.UNDER_WAY and Status.SET_POINT_ACKNOWLEDGED not in status:
+    def _move(self, status: StatusWord) -> None:
+        if self._step is _Step.START and StatusWord.SET_POINT_ACKNOWLEDGED in status:
+            self._step, self.drive.extra = _Step.UNDER_WAY, ControlWord(0)
+        elif self._step is _Step.UNDER_WAY and StatusWord.SET_POINT_ACKNOWLEDGED not in status:
             off = abs(int(self.drive.node.values[POSITION]) - self._target)
             near = off <= self._settings.tolerance * abs(self._settings.counts_per_unit)
-            if near and Status.TARGET_REACHED in status and self.drive.motion.at_rest:
+            if near and StatusWord.TARGET_REACHED in status and self.drive.motion.at_rest:
                 self.settled = True
                 self._abandon()
 

@@ -1,7 +1,7 @@
 """The state machine of CiA 402: states, commands, transitions, and a walk towards a goal.
 
-Nothing here waits, sends or asks for the time. :class:`Walk` is ticked once per SYNC with the
-status word and returns the control word to send; its deadlines are counted in ticks.
+Nothing here waits, sends or asks for the time. :class:`DriveStateMachine` is ticked once per SYNC
+with the status word and returns the control word to send; its deadlines are counted in ticks.
 """
 
 from enum import Enum, IntEnum, IntFlag
@@ -15,7 +15,7 @@ from hardware.errors import (
 )
 
 
-class State(Enum):
+class DriveState(Enum):
     """The states of the power drive system; the value is (mask, bits) of the status word."""
 
     NOT_READY_TO_SWITCH_ON = (0x4F, 0x00)
@@ -30,7 +30,7 @@ class State(Enum):
     __hash__ = object.__hash__  # in every cycle; of the name, as an Enum's, it costs five times
 
 
-class Command(IntEnum):
+class DriveCommand(IntEnum):
     """The commands; the value is bits 0 to 3 and 7 of the control word."""
 
     DISABLE_VOLTAGE = 0x00
@@ -41,7 +41,7 @@ class Command(IntEnum):
     FAULT_RESET = 0x80  # acts on the rising edge of bit 7
 
 
-class Control(IntFlag):
+class ControlWord(IntFlag):
     """Bits of the control word (6040) beyond the commands."""
 
     NEW_SET_POINT = 0x0010  # profile position
@@ -50,7 +50,7 @@ class Control(IntFlag):
     HALT = 0x0100
 
 
-class Status(IntFlag):
+class StatusWord(IntFlag):
     """Bits of the status word (6041) beyond the state."""
 
     VOLTAGE_ENABLED = 0x0010
@@ -90,71 +90,83 @@ class Goal(Enum):
 
 
 # The transitions of CiA 402 by number: 0, 1, 13 and 14 are the drive's own.
-TRANSITIONS: Final[dict[tuple[State, Command], tuple[int, State]]] = {
-    (State.SWITCH_ON_DISABLED, Command.SHUTDOWN): (2, State.READY_TO_SWITCH_ON),
-    (State.READY_TO_SWITCH_ON, Command.SWITCH_ON): (3, State.SWITCHED_ON),
-    (State.SWITCHED_ON, Command.ENABLE_OPERATION): (4, State.OPERATION_ENABLED),
-    (State.OPERATION_ENABLED, Command.SWITCH_ON): (5, State.SWITCHED_ON),
-    (State.SWITCHED_ON, Command.SHUTDOWN): (6, State.READY_TO_SWITCH_ON),
-    (State.READY_TO_SWITCH_ON, Command.QUICK_STOP): (7, State.SWITCH_ON_DISABLED),
-    (State.READY_TO_SWITCH_ON, Command.DISABLE_VOLTAGE): (7, State.SWITCH_ON_DISABLED),
-    (State.OPERATION_ENABLED, Command.SHUTDOWN): (8, State.READY_TO_SWITCH_ON),
-    (State.OPERATION_ENABLED, Command.DISABLE_VOLTAGE): (9, State.SWITCH_ON_DISABLED),
-    (State.SWITCHED_ON, Command.QUICK_STOP): (10, State.SWITCH_ON_DISABLED),
-    (State.SWITCHED_ON, Command.DISABLE_VOLTAGE): (10, State.SWITCH_ON_DISABLED),
-    (State.OPERATION_ENABLED, Command.QUICK_STOP): (11, State.QUICK_STOP_ACTIVE),
-    (State.QUICK_STOP_ACTIVE, Command.DISABLE_VOLTAGE): (12, State.SWITCH_ON_DISABLED),
-    (State.FAULT, Command.FAULT_RESET): (15, State.SWITCH_ON_DISABLED),
-    (State.QUICK_STOP_ACTIVE, Command.ENABLE_OPERATION): (16, State.OPERATION_ENABLED),
-}
-
-_FAULTS: Final = (State.FAULT, State.FAULT_REACTION_ACTIVE)
-_AT: Final[dict[Goal, tuple[State, ...]]] = {
-    Goal.DISABLED: (State.SWITCH_ON_DISABLED, State.NOT_READY_TO_SWITCH_ON),
-    Goal.ENABLED: (State.OPERATION_ENABLED,),
-    Goal.QUICK_STOPPED: (
-        State.QUICK_STOP_ACTIVE,
-        State.SWITCH_ON_DISABLED,
-        State.NOT_READY_TO_SWITCH_ON,
+TRANSITIONS: Final[dict[tuple[DriveState, DriveCommand], tuple[int, DriveState]]] = {
+    (DriveState.SWITCH_ON_DISABLED, DriveCommand.SHUTDOWN): (2, DriveState.READY_TO_SWITCH_ON),
+    (DriveState.READY_TO_SWITCH_ON, DriveCommand.SWITCH_ON): (3, DriveState.SWITCHED_ON),
+    (DriveState.SWITCHED_ON, DriveCommand.ENABLE_OPERATION): (4, DriveState.OPERATION_ENABLED),
+    (DriveState.OPERATION_ENABLED, DriveCommand.SWITCH_ON): (5, DriveState.SWITCHED_ON),
+    (DriveState.SWITCHED_ON, DriveCommand.SHUTDOWN): (6, DriveState.READY_TO_SWITCH_ON),
+    (DriveState.READY_TO_SWITCH_ON, DriveCommand.QUICK_STOP): (7, DriveState.SWITCH_ON_DISABLED),
+    (DriveState.READY_TO_SWITCH_ON, DriveCommand.DISABLE_VOLTAGE): (
+        7,
+        DriveState.SWITCH_ON_DISABLED,
+    ),
+    (DriveState.OPERATION_ENABLED, DriveCommand.SHUTDOWN): (8, DriveState.READY_TO_SWITCH_ON),
+    (DriveState.OPERATION_ENABLED, DriveCommand.DISABLE_VOLTAGE): (
+        9,
+        DriveState.SWITCH_ON_DISABLED,
+    ),
+    (DriveState.SWITCHED_ON, DriveCommand.QUICK_STOP): (10, DriveState.SWITCH_ON_DISABLED),
+    (DriveState.SWITCHED_ON, DriveCommand.DISABLE_VOLTAGE): (10, DriveState.SWITCH_ON_DISABLED),
+    (DriveState.OPERATION_ENABLED, DriveCommand.QUICK_STOP): (11, DriveState.QUICK_STOP_ACTIVE),
+    (DriveState.QUICK_STOP_ACTIVE, DriveCommand.DISABLE_VOLTAGE): (
+        12,
+        DriveState.SWITCH_ON_DISABLED,
+    ),
+    (DriveState.FAULT, DriveCommand.FAULT_RESET): (15, DriveState.SWITCH_ON_DISABLED),
+    (DriveState.QUICK_STOP_ACTIVE, DriveCommand.ENABLE_OPERATION): (
+        16,
+        DriveState.OPERATION_ENABLED,
     ),
 }
-_UP: Final[dict[State, Command]] = {
-    State.NOT_READY_TO_SWITCH_ON: Command.DISABLE_VOLTAGE,
-    State.SWITCH_ON_DISABLED: Command.SHUTDOWN,
-    State.READY_TO_SWITCH_ON: Command.SWITCH_ON,
-    State.SWITCHED_ON: Command.ENABLE_OPERATION,
-    State.OPERATION_ENABLED: Command.ENABLE_OPERATION,
-    State.QUICK_STOP_ACTIVE: Command.DISABLE_VOLTAGE,  # transition 16 is optional in a drive
+
+_FAULTS: Final = (DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE)
+_AT: Final[dict[Goal, tuple[DriveState, ...]]] = {
+    Goal.DISABLED: (DriveState.SWITCH_ON_DISABLED, DriveState.NOT_READY_TO_SWITCH_ON),
+    Goal.ENABLED: (DriveState.OPERATION_ENABLED,),
+    Goal.QUICK_STOPPED: (
+        DriveState.QUICK_STOP_ACTIVE,
+        DriveState.SWITCH_ON_DISABLED,
+        DriveState.NOT_READY_TO_SWITCH_ON,
+    ),
+}
+_UP: Final[dict[DriveState, DriveCommand]] = {
+    DriveState.NOT_READY_TO_SWITCH_ON: DriveCommand.DISABLE_VOLTAGE,
+    DriveState.SWITCH_ON_DISABLED: DriveCommand.SHUTDOWN,
+    DriveState.READY_TO_SWITCH_ON: DriveCommand.SWITCH_ON,
+    DriveState.SWITCHED_ON: DriveCommand.ENABLE_OPERATION,
+    DriveState.OPERATION_ENABLED: DriveCommand.ENABLE_OPERATION,
+    DriveState.QUICK_STOP_ACTIVE: DriveCommand.DISABLE_VOLTAGE,  # transition 16 is optional
 }
 
 
-def _decoded() -> tuple[State, ...]:
+def _decoded() -> tuple[DriveState, ...]:
     """Return the state of each pattern of the status word's low seven bits."""
     table = []
     for word in range(0x80):
-        found = [state for state in State if word & state.value[0] == state.value[1]]
-        table.append(found[0] if found else State.NOT_READY_TO_SWITCH_ON)
+        found = [state for state in DriveState if word & state.value[0] == state.value[1]]
+        table.append(found[0] if found else DriveState.NOT_READY_TO_SWITCH_ON)
     return tuple(table)
 
 
 _STATES: Final = _decoded()
 
 
-def state_of(status_word: int) -> State:
+def state_of(status_word: int) -> DriveState:
     """Return the state that a status word (6041) shows."""
     return _STATES[status_word & 0x7F]
 
 
-def next_command(state: State, goal: Goal) -> Command:
+def next_command(state: DriveState, goal: Goal) -> DriveCommand:
     """Return the command that leads an axis at rest from ``state`` one step towards ``goal``."""
     if goal is Goal.ENABLED:
-        return _UP.get(state, Command.DISABLE_VOLTAGE)
+        return _UP.get(state, DriveCommand.DISABLE_VOLTAGE)
     if goal is Goal.QUICK_STOPPED:
-        return Command.QUICK_STOP
-    return Command.DISABLE_VOLTAGE
+        return DriveCommand.QUICK_STOP
+    return DriveCommand.DISABLE_VOLTAGE
 
 
-class Walk:
+class DriveStateMachine:
     """Walks a drive from state to state, one control word a tick.
 
     Power is taken off an axis at rest only: until then the word is a quick stop, which from every
@@ -186,8 +198,8 @@ class Walk:
         self._quiet = False
         self._at_rest = False
         self.goal = Goal.DISABLED
-        self.state = State.NOT_READY_TO_SWITCH_ON
-        self.word = int(Command.QUICK_STOP)
+        self.state = DriveState.NOT_READY_TO_SWITCH_ON
+        self.word = int(DriveCommand.QUICK_STOP)
 
     @property
     def arrived(self) -> bool:
@@ -246,17 +258,21 @@ class Walk:
             self.word = self._command() | edge
         return self.word
 
-    def _command(self) -> Command:
+    def _command(self) -> DriveCommand:
         """Return the next command, or the quick stop that has to come to rest before it."""
         command = next_command(self.state, self.goal)
         braking = not self._at_rest and self._braked <= self._rest_cycles
-        return Command.QUICK_STOP if command is Command.DISABLE_VOLTAGE and braking else command
+        return (
+            DriveCommand.QUICK_STOP
+            if command is DriveCommand.DISABLE_VOLTAGE and braking
+            else command
+        )
 
-    def _pursue(self, before: State, status_word: int) -> None:
+    def _pursue(self, before: DriveState, status_word: int) -> None:
         self._quiet = False
         if self.arrived:
             self._waited, self._arrived, self._braked = 0, True, 0
-        elif self._command() is Command.QUICK_STOP and self.goal is not Goal.QUICK_STOPPED:
+        elif self._command() is DriveCommand.QUICK_STOP and self.goal is not Goal.QUICK_STOPPED:
             self._brake(status_word)
         else:
             self._under_way(before, status_word)
@@ -274,7 +290,7 @@ class Walk:
                 "the emergency stop if it turns",
             )
 
-    def _under_way(self, before: State, status_word: int) -> None:
+    def _under_way(self, before: DriveState, status_word: int) -> None:
         wanted = self.goal
         if self._arrived:
             self.head_for(Goal.DISABLED)
@@ -313,4 +329,4 @@ class Walk:
                 f"still {self.state.name} (status word 0x{status_word:04X}) "
                 f"{self._step_cycles} cycles after a fault reset",
             )
-        return Command.FAULT_RESET if sent else 0
+        return DriveCommand.FAULT_RESET if sent else 0

@@ -105,7 +105,7 @@ def has(dictionary: canopen.ObjectDictionary, at: Entry) -> bool:
 
 
 @dataclass(frozen=True)
-class Layout:
+class PdoLayout:
     """What a PDO carries: numbers one behind the other, little end first."""
 
     cob_id: int
@@ -126,7 +126,7 @@ class Layout:
 
 def layout(
     dictionary: canopen.ObjectDictionary, entries: tuple[Entry, ...], cob_id: int, where: str
-) -> Layout:
+) -> PdoLayout:
     """Lay a PDO out after the types in the dictionary.
 
     Raises
@@ -144,7 +144,7 @@ def layout(
             f"{where}: {', '.join(map(str, entries))} take {packed.size} bytes; "
             "the limit of a PDO is 8"
         )
-    return Layout(cob_id, entries, packed)
+    return PdoLayout(cob_id, entries, packed)
 
 
 def _code(dictionary: canopen.ObjectDictionary, at: Entry, where: str) -> str:

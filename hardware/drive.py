@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Final
 
-from hardware.cia402 import Control, Goal, Mode, State, Status, Walk
+from hardware.cia402 import ControlWord, DriveState, DriveStateMachine, Goal, Mode, StatusWord
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry
 from hardware.errors import (
@@ -14,7 +14,7 @@ from hardware.errors import (
     TransitionTimeoutError,
 )
 from hardware.limits import READ_BACK_SHARE, REST_DEADLINE_S
-from hardware.motion import Motion
+from hardware.motion import EncoderMotion
 from hardware.node import Node
 from hardware.sdo import Number
 
@@ -29,7 +29,7 @@ _POSITION_AT: Final = STATE_PDOS[0].index(POSITION)
 PROBE_PDO: Final = (PROBE_POSITION, PROBE_EDGES, PROBE_STATUS)
 
 _SUPPORTED_MODES, _MAX_MOTOR_SPEED = Entry(0x6502), Entry(0x6080)
-_FOLLOWING_ERROR: Final = int(Status.FOLLOWING_ERROR)
+_FOLLOWING_ERROR: Final = int(StatusWord.FOLLOWING_ERROR)
 _FOLLOWING_ERROR_CODE: Final = 0x8611
 _SAFETY: Final = (
     (Entry(0x6007), 3),  # connection lost: quick stop
@@ -77,27 +77,32 @@ class Drive:
         What the drive lacks of its optional objects, a sentence each; known once it is prepared.
     """
 
-    def __init__(self, node: Node, modes: tuple[Mode, ...], motion: Motion) -> None:
+    def __init__(self, node: Node, modes: tuple[Mode, ...], motion: EncoderMotion) -> None:
         self.node = node
         self.motion = motion
         self.mode = modes[0]
-        self.extra = Control(0)
+        self.extra = ControlWord(0)
         self._modes = modes
-        self._walk = Walk(node.name, STEP_CYCLES, round(REST_DEADLINE_S * motion.sample_rate_hz))
+        self._machine = DriveStateMachine(
+            node.name, STEP_CYCLES, round(REST_DEADLINE_S * motion.sample_rate_hz)
+        )
         self._strayed = False
         self._deadline: int | None = None
         self._waiting_for = ""
         self.notes: tuple[str, ...] = ()
 
     @property
-    def status(self) -> Status:
+    def status(self) -> StatusWord:
         """The status word, state bits included."""
-        return Status(int(self.node.values[STATUS_WORD]))
+        return StatusWord(int(self.node.values[STATUS_WORD]))
 
     @property
     def enabled(self) -> bool:
         """Whether the drive is in OPERATION ENABLED and is to be."""
-        return self._walk.goal is Goal.ENABLED and self._walk.state is State.OPERATION_ENABLED
+        return (
+            self._machine.goal is Goal.ENABLED
+            and self._machine.state is DriveState.OPERATION_ENABLED
+        )
 
     @property
     def in_mode(self) -> bool:
@@ -149,14 +154,14 @@ class Drive:
 
     def head_for(self, goal: Goal) -> None:
         """Change the state to be in; a pending deadline is off."""
-        self._walk.head_for(goal)
-        self.extra = Control(0)
+        self._machine.head_for(goal)
+        self.extra = ControlWord(0)
         self._deadline = None
 
     def reset_fault(self) -> None:
         """Reset the drive's fault; it stays disabled."""
         self.head_for(Goal.DISABLED)
-        self._walk.reset_fault()
+        self._machine.reset_fault()
         self._strayed = False
 
     def within(self, cycles: float, what: str) -> None:
@@ -184,7 +189,7 @@ class Drive:
         """
         status = int(self.node.values[STATUS_WORD])
         try:
-            self._walk.tick(status, at_rest=self.motion.at_rest)
+            self._machine.tick(status, at_rest=self.motion.at_rest)
         except DriveFaultError as error:
             raise self._named() from error
         finally:
@@ -193,7 +198,7 @@ class Drive:
 
     def _put(self) -> None:
         extra = int(self.extra) if self.enabled else 0
-        self.node.put(CONTROL_WORD, self._walk.word | extra)
+        self.node.put(CONTROL_WORD, self._machine.word | extra)
         self.node.put(MODE, self.mode)
 
     def _named(self) -> HardwareError:
@@ -201,7 +206,7 @@ class Drive:
         if code == _FOLLOWING_ERROR_CODE:
             return FollowingError(self.node.name, f"outside its window (error 0x{code:04X})")
         return DriveFaultError(
-            self.node.name, f"{self._walk.state.name}, error code 0x{code:04X} (603F); reset it"
+            self.node.name, f"{self._machine.state.name}, error code 0x{code:04X} (603F); reset it"
         )
 
     def _watch(self, status: int) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import dotted, not_finite
-from hardware.dictionary import Entry, Layout, layout, load
+from hardware.dictionary import Entry, PdoLayout, layout, load
 from hardware.roles import Device, Role
 from hardware.serial_port import Ports, SerialPort
 
@@ -33,7 +33,7 @@ class NodePlan:
     tpdos: tuple[tuple[Entry, ...], ...] = ()
     rpdos: tuple[tuple[Entry, ...], ...] = ()
 
-    def layouts(self) -> tuple[tuple[Layout, ...], tuple[Layout, ...]]:
+    def layouts(self) -> tuple[tuple[PdoLayout, ...], tuple[PdoLayout, ...]]:
         """Return the layouts of TPDOs and RPDOs with their identifiers.
 
         Raises

@@ -15,8 +15,8 @@ from hardware.errors import (
     SilentPortError,
     worst,
 )
-from hardware.lines import SEQUENCE_MODULUS, Decoder, Kind, Line, Unwrapped
-from hardware.roles import Block, Cycle, Role, Sample, blocks
+from hardware.lines import SEQUENCE_MODULUS, Decoder, LineKind, SerialLine, Unwrapped
+from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 from hardware.serial_port import PortSettings
 
 
@@ -82,7 +82,7 @@ class SerialInclinometer:
         if faults:
             raise worst(faults)
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the samples since the last call: one channel, in radians."""
         taken, self._samples = self._samples, []
         return blocks(taken)
@@ -111,8 +111,8 @@ class SerialInclinometer:
         """Close the port."""
         self._port.close()
 
-    def _take(self, line: Line) -> None:
-        if line.kind is not Kind.ANGLE:
+    def _take(self, line: SerialLine) -> None:
+        if line.kind is not LineKind.ANGLE:
             raise LineError(self.name, f"a line of kind {line.kind} is no angle; swap the ports")
         angle = line.value * self._settings.rad_per_unit
         self._samples.append((self._sequence.take(line.sequence), (angle,)))

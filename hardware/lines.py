@@ -26,7 +26,7 @@ _SHOWN: Final = 64  # bytes of a malformed line in its message
 _CHECKSUM: Final = re.compile(rb"[0-9A-Fa-f]{2}")
 
 
-class Kind(StrEnum):
+class LineKind(StrEnum):
     """What a line says; ``value`` is a count of pulses, or an angle."""
 
     PULSE = "P"  # a pulse; value: pulses so far
@@ -35,10 +35,10 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True)
-class Line:
+class SerialLine:
     """One line."""
 
-    kind: Kind
+    kind: LineKind
     sequence: int
     ticks_us: int
     value: float
@@ -49,7 +49,7 @@ def checksum(body: bytes) -> int:
     return reduce(xor, body, 0)
 
 
-def encode(line: Line) -> bytes:
+def encode(line: SerialLine) -> bytes:
     """Return a line as its device sends it."""
     value = f"{line.value:.10g}"
     ticks, sequence = line.ticks_us % TICK_MODULUS, line.sequence % SEQUENCE_MODULUS
@@ -57,7 +57,7 @@ def encode(line: Line) -> bytes:
     return body + b"*%02X\r\n" % checksum(body)
 
 
-def decode(raw: bytes, device: str) -> Line:
+def decode(raw: bytes, device: str) -> SerialLine:
     """Return what a line says.
 
     Raises
@@ -81,7 +81,7 @@ class Decoder:
         self.malformed = 0
         self._device = device
 
-    def decode(self, raw: bytes) -> Line:
+    def decode(self, raw: bytes) -> SerialLine:
         """Return what a line says; raises as :func:`decode`, which counts from 1."""
         try:
             return _parsed(raw)
@@ -93,7 +93,7 @@ class Decoder:
             ) from None
 
 
-def _parsed(raw: bytes) -> Line:
+def _parsed(raw: bytes) -> SerialLine:
     """Return what a line says; a ValueError tells why it is none."""
     body, _, given = raw.strip().rpartition(b"*")
     if not _CHECKSUM.fullmatch(given) or int(given, 16) != checksum(body):
@@ -101,14 +101,14 @@ def _parsed(raw: bytes) -> Line:
     found = _BODY.fullmatch(body)
     if found is None:
         raise ValueError("is no line: not kind,sequence,ticks,value in decimal digits")
-    line = Line(Kind(found[1].decode()), int(found[2]), int(found[3]), float(found[4]))
+    line = SerialLine(LineKind(found[1].decode()), int(found[2]), int(found[3]), float(found[4]))
     what = _out_of_range(line)
     if what:
         raise ValueError(f"is no line: {what}")
     return line
 
 
-def _out_of_range(line: Line) -> str:
+def _out_of_range(line: SerialLine) -> str:
     """Say which field is beyond what a device can count; empty if none is."""
     if line.sequence >= SEQUENCE_MODULUS:
         return f"sequence {line.sequence} (limit {SEQUENCE_MODULUS - 1})"
@@ -116,7 +116,7 @@ def _out_of_range(line: Line) -> str:
         return f"ticks {line.ticks_us} (limit {TICK_MODULUS - 1})"
     if not abs(line.value) < LARGEST_VALUE:
         return f"value {line.value:g} (limit {LARGEST_VALUE:g})"
-    if line.kind is not Kind.ANGLE and not (line.value >= 0.0 and line.value.is_integer()):
+    if line.kind is not LineKind.ANGLE and not (line.value >= 0.0 and line.value.is_integer()):
         return f"value {line.value:g} is no count of pulses"
     return ""
 

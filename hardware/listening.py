@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from hardware.errors import LineError
-from hardware.lines import SEQUENCE_MODULUS, Kind, Line, Unwrapped, decode
+from hardware.lines import SEQUENCE_MODULUS, LineKind, SerialLine, Unwrapped, decode
 from hardware.serial_port import Port
 
 _POLL_S = 0.01
@@ -30,11 +30,11 @@ class Heard:
         Seconds of the device's own clock between the first line and the last.
     """
 
-    counts: Counter[Kind] = field(default_factory=Counter)
+    counts: Counter[LineKind] = field(default_factory=Counter)
     refused: int = 0
     first_refused: str = ""
     lost: int = 0
-    last: dict[Kind, Line] = field(default_factory=dict)
+    last: dict[LineKind, SerialLine] = field(default_factory=dict)
     device_s: float = 0.0
     _sequence: Unwrapped = field(default_factory=lambda: Unwrapped(SEQUENCE_MODULUS))
     _before: int | None = None
@@ -44,9 +44,9 @@ class Heard:
     @property
     def what(self) -> str:
         """What the device is, told from its lines."""
-        if self.counts[Kind.ANGLE]:
+        if self.counts[LineKind.ANGLE]:
             return "inclinometer"
-        if self.counts[Kind.PULSE] or self.counts[Kind.TIME]:
+        if self.counts[LineKind.PULSE] or self.counts[LineKind.TIME]:
             return "timestamper"
         return "unknown: its lines are none of ours" if self.first_refused else "silent"
 
@@ -56,7 +56,7 @@ class Heard:
         number = sum(self.counts.values())
         return (number - 1) / self.device_s if number > 1 and self.device_s > 0.0 else math.nan
 
-    def take(self, raw: bytes) -> Line | None:
+    def take(self, raw: bytes) -> SerialLine | None:
         """Take a line; return it if it is one of ours."""
         try:
             line = decode(raw, "port")

@@ -17,7 +17,7 @@ from hardware.errors import DialReadingError, NotReadyError
 from hardware.roles import Cycle, Reading, Role
 
 
-class Question:
+class DialQuestion:
     """One question to the operator, asked until a number comes."""
 
     def __init__(self, name: str, services: Services) -> None:
@@ -103,7 +103,7 @@ class ManualAxis:
         self.settled = False
         self.reading: Reading | None = None
         self._settings = settings
-        self._question = Question(name, services)
+        self._question = DialQuestion(name, services)
         self._target: float | None = None
 
     @property

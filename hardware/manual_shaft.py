@@ -8,8 +8,8 @@ from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import DialReadingError, NotReadyError
-from hardware.manual_axis import Question
-from hardware.roles import Block, Cycle, Role
+from hardware.manual_axis import DialQuestion
+from hardware.roles import Cycle, Role, SampleBlock
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class ManualShaft:
         self.enabled = False
         self.measured_frequency_hz = math.nan
         self._tolerance_share = settings.tolerance_share
-        self._question = Question(name, services)
+        self._question = DialQuestion(name, services)
         self._wanted_hz = 0.0
 
     @property
@@ -105,7 +105,7 @@ class ManualShaft:
                 f"reads {answer:g} Hz; wanted {wanted:g} Hz within {self._tolerance_share:.0%}",
             )
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return nothing: there is no encoder."""
         return ()
 

@@ -10,9 +10,9 @@ import canopen
 
 from hardware.bus import BusConfiguration, Pumped, Receiver, Sender, Threaded, open_bus
 from hardware.bus_owner import is_private, owned_bus
-from hardware.dictionary import Layout
+from hardware.dictionary import PdoLayout
 from hardware.errors import HardwareError, as_fault
-from hardware.node import Node, Stream
+from hardware.node import Node, PdoStream
 from hardware.other_master import Company
 from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
 
@@ -72,7 +72,7 @@ class Master:
         receiver = Threaded if configuration.receive_thread else Pumped
         self._receiver: Receiver = receiver(self._bus)
         self.network = _Network(self._send)
-        self._streams: dict[int, Stream] = {}
+        self._streams: dict[int, PdoStream] = {}
         self._supervisor = Supervisor(configuration, ())
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
         self._number = 0
@@ -93,8 +93,8 @@ class Master:
         name: str,
         node_id: int,
         dictionary: canopen.ObjectDictionary,
-        tpdos: tuple[Layout, ...] = (),
-        rpdos: tuple[Layout, ...] = (),
+        tpdos: tuple[PdoLayout, ...] = (),
+        rpdos: tuple[PdoLayout, ...] = (),
     ) -> Node:
         """Add a node; it is configured and started by :meth:`start`."""
         node = Node(name, node_id, dictionary, tpdos, rpdos, self)

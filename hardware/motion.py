@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from hardware.limits import REST_COUNTS, REST_WINDOW_S, SPEED_WINDOW_S
 
 
-class Motion:
+class EncoderMotion:
     """Follows the positions of one drive.
 
     Parameters

@@ -5,7 +5,7 @@ from typing import Final
 import canopen
 
 from hardware.bus import BusConfiguration
-from hardware.dictionary import Entry, Layout, has
+from hardware.dictionary import Entry, PdoLayout, has
 from hardware.errors import ProcessDataLostError
 from hardware.sdo import Carrier, Number, Sdo
 
@@ -16,14 +16,14 @@ _SYNC_COB_ID, _SYNC_PERIOD, _SYNC_OVERFLOW = Entry(0x1005), Entry(0x1006), Entry
 _CONSUMED_BEAT, _PRODUCED_BEAT = Entry(0x1016, 1), Entry(0x1017)
 
 
-class Stream:
+class PdoStream:
     """The frames of one TPDO, numbered by the SYNC that asked for them.
 
     ``samples`` are those of the last cycle: usually one; none if it is late; two if the one of the
     cycle before came late. A sample is never lost because the host was slow.
     """
 
-    def __init__(self, layout: Layout, owner: "Node") -> None:
+    def __init__(self, layout: PdoLayout, owner: "Node") -> None:
         self.layout = layout
         self.samples: list[tuple[int, Values]] = []
         self.last = 0
@@ -81,8 +81,8 @@ class Node:
         name: str,
         node_id: int,
         dictionary: canopen.ObjectDictionary,
-        tpdos: tuple[Layout, ...],
-        rpdos: tuple[Layout, ...],
+        tpdos: tuple[PdoLayout, ...],
+        rpdos: tuple[PdoLayout, ...],
         carrier: Carrier,
     ) -> None:
         self.name = name
@@ -90,7 +90,7 @@ class Node:
         self.dictionary = dictionary
         self.sdo = Sdo(name, node_id, dictionary, carrier)
         self.values: dict[Entry, Number] = {at: 0 for one in (*tpdos, *rpdos) for at in one.entries}
-        self.streams = tuple(Stream(one, self) for one in tpdos)
+        self.streams = tuple(PdoStream(one, self) for one in tpdos)
         self.last_beat = 0
         self._rpdos = rpdos
         self._wanted: dict[Entry, Number] = {at: 0 for one in rpdos for at in one.entries}
@@ -139,7 +139,7 @@ class Node:
         self._map(0x1400, 0x1600, 0x200, self._rpdos, _AT_ONCE)
 
     def _map(
-        self, record: int, mapping: int, cob_id: int, layouts: tuple[Layout, ...], kind: int
+        self, record: int, mapping: int, cob_id: int, layouts: tuple[PdoLayout, ...], kind: int
     ) -> None:
         for number in range(4):
             if not has(self.dictionary, Entry(record + number, 1)):
@@ -149,7 +149,7 @@ class Node:
             if number < len(layouts):
                 self._map_one(record + number, mapping + number, layouts[number], kind)
 
-    def _map_one(self, record: int, mapping: int, layout: Layout, kind: int) -> None:
+    def _map_one(self, record: int, mapping: int, layout: PdoLayout, kind: int) -> None:
         self.sdo.write(Entry(record, 2), kind)
         self.sdo.write(Entry(mapping, 0), 0)
         for sub, (at, bits) in enumerate(zip(layout.entries, layout.bits, strict=True), start=1):

@@ -19,7 +19,7 @@ _EDS: Final = {402: "cia402-drive.eds", 404: "cia404-amplifier.eds"}
 
 
 @dataclass(frozen=True)
-class Value:
+class ObjectValue:
     """An object's present value; a word where it could not be read."""
 
     node_id: int
@@ -40,27 +40,27 @@ class MappedObjects:
             for node in nodes
         ]
 
-    def read(self) -> tuple[Value, ...]:
+    def read(self) -> tuple[ObjectValue, ...]:
         """Return all values now."""
         return tuple(self._read())
 
-    def _read(self) -> Iterator[Value]:
+    def _read(self) -> Iterator[ObjectValue]:
         for node, sdo in self._asked:
             for at in dict.fromkeys(at for one in node.tpdos for at in one.entries):
                 try:
                     raw = sdo.read_raw(at)
                 except HardwareError as error:
-                    yield Value(node.node_id, f"{at}", str(error))
+                    yield ObjectValue(node.node_id, f"{at}", str(error))
                     continue
                 yield _decoded(node, at, raw)
 
 
-def _decoded(node: FoundNode, at: Entry, raw: bytes) -> Value:
+def _decoded(node: FoundNode, at: Entry, raw: bytes) -> ObjectValue:
     dictionary = _dictionary(node.profile)
     known = None if dictionary is None else variable(dictionary, at)
     if known is not None and known.data_type in datatypes.NUMBER_TYPES:
-        return Value(node.node_id, f"{at} {known.name}", float(known.decode_raw(raw)))
-    return Value(node.node_id, f"{at}", float(int.from_bytes(raw, "little", signed=True)))
+        return ObjectValue(node.node_id, f"{at} {known.name}", float(known.decode_raw(raw)))
+    return ObjectValue(node.node_id, f"{at}", float(int.from_bytes(raw, "little", signed=True)))
 
 
 @cache

@@ -15,7 +15,7 @@ from hardware.errors import (
     SilentPortError,
     worst,
 )
-from hardware.lines import TICK_MODULUS, Decoder, Kind, Line, Unwrapped
+from hardware.lines import TICK_MODULUS, Decoder, LineKind, SerialLine, Unwrapped
 from hardware.roles import Cycle, Pulse, Role
 from hardware.serial_port import PortSettings
 
@@ -122,14 +122,14 @@ class SerialPhotocell:
         """Close the port."""
         self._port.close()
 
-    def _take(self, line: Line, cycle: Cycle) -> None:
-        if line.kind is Kind.ANGLE:
+    def _take(self, line: SerialLine, cycle: Cycle) -> None:
+        if line.kind is LineKind.ANGLE:
             raise LineError(self.name, "an angle on the photocell's line; swap the ports")
         self._heard_s = cycle.time_s
         device_s = self._ticks.take(line.ticks_us) * 1e-6
         self.fit.add(device_s, cycle.time_s)
         before, self._count = self._count, int(line.value)
-        if line.kind is Kind.PULSE:
+        if line.kind is LineKind.PULSE:
             at_s, since = self.fit.rig_time_s(device_s), self._at_s
             self._at_s = at_s
             self._pulses.append(Pulse(self._count, at_s))

@@ -24,7 +24,7 @@ from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
 from hardware.rest import come_to_rest
-from hardware.rig_configuration import Part, RigConfiguration, check
+from hardware.rig_configuration import RigConfiguration, RigPart, check
 from hardware.roles import (
     PROTOCOLS,
     Cycle,
@@ -37,7 +37,7 @@ from hardware.roles import (
     Shaft,
 )
 from hardware.serial_port import Port, Ports, PortSettings, SerialPort
-from hardware.watch import Watch, Watched
+from hardware.watch import Watch, WatchLimits
 
 
 class Rig:
@@ -183,7 +183,7 @@ class Rig:
             self.cycle()
         raise TransitionTimeoutError("rig", f"{what}: not within {within_cycles} cycles")
 
-    def limit(self, limits: Watched) -> None:
+    def limit(self, limits: WatchLimits) -> None:
         """Watch speed and loads against these limits, in every cycle from now on."""
         self._watch.limit(limits)
 
@@ -296,7 +296,7 @@ class Rig:
         for observe in self._line_observers:
             observe(self.number, device, line)
 
-    def _device(self, part: Part | None, services: Services) -> Device | None:
+    def _device(self, part: RigPart | None, services: Services) -> Device | None:
         if part is None:
             return None
         device = part.driver.open(part.name, part.settings, services)

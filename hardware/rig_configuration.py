@@ -24,7 +24,7 @@ _SYNC_BYTES, _BEAT_BYTES = 1, 1
 
 
 @dataclass(frozen=True)
-class Part:
+class RigPart:
     """One device of a rig: where it belongs, its driver and the driver's settings."""
 
     name: str
@@ -47,12 +47,12 @@ class RigConfiguration:
     """
 
     bus: BusConfiguration | None = None
-    shaft: Part | None = None
-    eccentricity: Part | None = None
-    phase: Part | None = None
-    photocell: Part | None = None
-    inclinometer: Part | None = None
-    forces: tuple[Part, ...] = ()
+    shaft: RigPart | None = None
+    eccentricity: RigPart | None = None
+    phase: RigPart | None = None
+    photocell: RigPart | None = None
+    inclinometer: RigPart | None = None
+    forces: tuple[RigPart, ...] = ()
     cycle_rate_hz: float = 100.0
 
     @property
@@ -60,7 +60,7 @@ class RigConfiguration:
         """Cycles per second."""
         return self.bus.sync_rate_hz if self.bus else self.cycle_rate_hz
 
-    def parts(self) -> Iterator[Part]:
+    def parts(self) -> Iterator[RigPart]:
         """Yield the parts, the shaft first."""
         for one in (self.shaft, self.eccentricity, self.phase, *self.forces):
             if one is not None:
@@ -149,7 +149,7 @@ def load_of(bus: BusConfiguration, pdo_sizes: Mapping[int, int], node_count: int
 
 def _parts(
     role: str, table: object, faults: list[str], among: tuple[EntryPoint, ...] | None
-) -> list[Part]:
+) -> list[RigPart]:
     many = role == "forces"
     tables = table if many and isinstance(table, list) else [table]
     parts = []
@@ -167,7 +167,7 @@ def _parts(
 
 def _part(
     where: str, role: Role, table: Mapping[str, object], among: tuple[EntryPoint, ...] | None
-) -> Part:
+) -> RigPart:
     rest = dict(table)
     name = rest.pop("driver", None)
     if not isinstance(name, str):
@@ -175,7 +175,7 @@ def _part(
     driver = find_driver(name, where, among)
     if driver.role is not role:
         raise ConfigurationError(f"{where}.driver = {name!r} is for {driver.role}, not {role}")
-    return Part(where, driver, read_settings(driver.settings, rest, where))
+    return RigPart(where, driver, read_settings(driver.settings, rest, where))
 
 
 def _read(

@@ -57,7 +57,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Block:
+class SampleBlock:
     """Consecutive samples of a device.
 
     Attributes
@@ -76,7 +76,7 @@ class Block:
 Sample = tuple[int, tuple[float, ...]]
 
 
-def blocks(samples: Sequence[Sample]) -> tuple[Block, ...]:
+def blocks(samples: Sequence[Sample]) -> tuple[SampleBlock, ...]:
     """Put samples, each its number and its values over the channels, into blocks without gaps."""
     stretches: list[list[Sample]] = []
     for one in samples:
@@ -84,7 +84,7 @@ def blocks(samples: Sequence[Sample]) -> tuple[Block, ...]:
             stretches.append([])
         stretches[-1].append(one)
     return tuple(
-        Block(part[0][0], np.array([values for _, values in part], dtype=np.float64).T)
+        SampleBlock(part[0][0], np.array([values for _, values in part], dtype=np.float64).T)
         for part in stretches
     )
 
@@ -138,7 +138,7 @@ class Sampled(Device, Protocol):
     channels: tuple[Channel, ...]
     sample_rate_hz: float
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the samples since the last call, oldest first."""
         ...
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hardware.cia402 import Goal, Mode, Status
+from hardware.cia402 import Goal, Mode, StatusWord
 from hardware.commanded import check_speed
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError
@@ -25,8 +25,8 @@ from hardware.drive import (
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import NotReadyError
 from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop
-from hardware.motion import Motion
-from hardware.roles import Block, Cycle, Role, Sample, blocks
+from hardware.motion import EncoderMotion
+from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 
 _TURN = 2.0 * math.pi
 _SPEED_SHARE = 0.02  # of the commanded frequency: within it the speed is reached
@@ -93,7 +93,7 @@ class DriveShaft:
         self.settings = settings
         self.sample_rate_hz = services.sample_rate_hz
         self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
-        self.motion = Motion(
+        self.motion = EncoderMotion(
             settings.counts_per_turn,
             "Hz",
             SHAFT_REST_SHARE * settings.highest_frequency_hz,
@@ -132,7 +132,7 @@ class DriveShaft:
         """Whether drive and measured speed say that the commanded speed is reached."""
         off = abs(self.measured_frequency_hz - self._target_hz)
         near = off <= _SPEED_SHARE * self._target_hz
-        return self.enabled and near and Status.TARGET_REACHED in self.drive.status
+        return self.enabled and near and StatusWord.TARGET_REACHED in self.drive.status
 
     def enable(self) -> None:
         """Put the shaft under power at rest."""
@@ -207,7 +207,7 @@ class DriveShaft:
             self.drive.done()
         self.drive.tick()
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the shaft angles since the last call."""
         taken, self._samples = self._samples, []
         return blocks(taken)

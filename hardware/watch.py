@@ -10,11 +10,11 @@ import numpy as np
 
 from hardware.errors import HardwareError, OverloadError, OverspeedError
 from hardware.limits import OVERSPEED, OVERSPEED_S
-from hardware.roles import Block, ForceChannels, Shaft
+from hardware.roles import ForceChannels, SampleBlock, Shaft
 
 
 @dataclass(frozen=True)
-class Watched:
+class WatchLimits:
     """What must not be exceeded.
 
     Attributes
@@ -34,7 +34,7 @@ class _WatchedForces:
 
     def __init__(self, inner: ForceChannels) -> None:
         self._inner = inner
-        self._taken: list[Block] = []
+        self._taken: list[SampleBlock] = []
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._inner, name)
@@ -50,7 +50,7 @@ class _WatchedForces:
                         return self._beyond(row, value, load)
         return None
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the samples since the last call, oldest first."""
         self._taken += self._inner.take()
         taken, self._taken = self._taken, []
@@ -79,9 +79,9 @@ class Watch:
         self._watched = tuple(_WatchedForces(one) for one in forces)
         self.forces = cast("tuple[ForceChannels, ...]", self._watched)
         self._cycles_beyond = 0
-        self.limit(Watched())
+        self.limit(WatchLimits())
 
-    def limit(self, limits: Watched) -> None:
+    def limit(self, limits: WatchLimits) -> None:
         """Set the limits."""
         own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
         self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
@@ -107,9 +107,9 @@ class Watch:
                 yield found
 
 
-def _merged(taken: Sequence[Block]) -> tuple[Block, ...]:
+def _merged(taken: Sequence[SampleBlock]) -> tuple[SampleBlock, ...]:
     """Put blocks that follow each other without a gap into one."""
-    stretches: list[list[Block]] = []
+    stretches: list[list[SampleBlock]] = []
     end = None
     for one in taken:
         if one.first != end:
@@ -117,6 +117,6 @@ def _merged(taken: Sequence[Block]) -> tuple[Block, ...]:
         stretches[-1].append(one)
         end = one.first + one.values.shape[1]
     return tuple(
-        Block(parts[0].first, np.concatenate([one.values for one in parts], axis=1))
+        SampleBlock(parts[0].first, np.concatenate([one.values for one in parts], axis=1))
         for parts in stretches
     )

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 Place = tuple[str | int, ...]
 
 
-class Found(NamedTuple):
+class PlaceMatch(NamedTuple):
     """A place in the words of the file, and the keys that the table around it may have."""
 
     place: Place
     known: tuple[str, ...]
 
 
-def find(kind: Any, place: Place, table: Any) -> Found | None:
+def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     """Follow a place of pydantic's through the classes.
 
     Where a table may be one of several classes, told apart by their keys, pydantic names a class in
@@ -39,7 +39,7 @@ def find(kind: Any, place: Place, table: Any) -> Found | None:
         known = _keys(kind)
         cleaned.append(key)
         kind, table = _part(kind, key), _value(table, key)
-    return Found(tuple(cleaned), known)
+    return PlaceMatch(tuple(cleaned), known)
 
 
 def meant(members: list[Any], table: Any) -> Any:

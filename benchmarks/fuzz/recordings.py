@@ -23,7 +23,7 @@ from pmm.recorder.files import BUS, HEADER, MARKER, RECORDING, STREAMS
 from pmm.recorder.header import RunHeader
 from pmm.recorder.recording import as_recording, read_run
 from pmm.recorder.recovery import recover
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from pmm.run.campaign_folder import finished_runs
 
 _PLAN: Final = RunPlan("good", RunKind.ZERO, Motion.NONE, SetPoint(0.0, 0.0), duration_s=3.0)
@@ -105,7 +105,7 @@ def _record(folder: Path) -> None:
         recorder.event(1, 0.01, "state", "gate open")
         recorder.event(250, 2.5, "state", "hold")
         recorder.harmonic(_READING)
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
 
 
 def _recorded(folder: Path) -> Path:

@@ -22,8 +22,8 @@ from pmm.cli.folders import check_folder
 from pmm.cli.run_console import Interrupts
 from pmm.cli.screen import messages
 from pmm.cli.terminal import Terminal
-from pmm.console.app_settings import Settings
-from pmm.console.asking import Answers
+from pmm.console.app_settings import ConsoleSettings
+from pmm.console.asking import BrowserAnswers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
 from pmm.console.plans import is_plan
@@ -242,9 +242,9 @@ def _server(
             process.join()
 
 
-def _settings(request: ConsoleOptions, rig_file: RigFile, port: int) -> Settings:
+def _settings(request: ConsoleOptions, rig_file: RigFile, port: int) -> ConsoleSettings:
     output = None if request.output is None else Path(request.output)
-    return Settings(
+    return ConsoleSettings(
         rig_path=rig_file.path,
         plans=rig_file.path.parent if request.plans is None else Path(request.plans),
         output=output,
@@ -265,7 +265,7 @@ def _station(
     pacer = CountingPacer(
         RealTime(period_s, time.monotonic, time.sleep), period_s, round(_WINDOW_S / period_s)
     )
-    taps, answers = Taps(), Answers()
+    taps, answers = Taps(), BrowserAnswers()
     with ExitStack() as stack:
         priority = _priority(stack, request.speed)
         link = Link(connection)

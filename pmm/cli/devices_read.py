@@ -18,8 +18,8 @@ from pmm.cli.devices_common import opened, plain_table, print_json
 from pmm.cli.devices_scan import DeviceScanOptions
 from pmm.cli.screen import error_line, output
 from pmm.cli.terminal import Terminal
-from pmm.devices.live import Live, Row
-from pmm.devices.opening import RigTables
+from pmm.devices.live import DeviceRow, Live
+from pmm.devices.opening import DeviceTables
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -42,7 +42,7 @@ class DeviceReadOptions(DeviceScanOptions):
 
 @dataclass(frozen=True)
 class _Shown:
-    rows: tuple[Row, ...]
+    rows: tuple[DeviceRow, ...]
     said: Sequence[str] = ()
 
 
@@ -68,7 +68,7 @@ def run(request: DeviceReadOptions) -> None:
 
 
 @contextmanager
-def _source(request: DeviceReadOptions, tables: RigTables | None) -> Iterator[Look]:
+def _source(request: DeviceReadOptions, tables: DeviceTables | None) -> Iterator[Look]:
     """Open what is named, and return what looks at it for so many seconds."""
     if tables is not None:
         with opened(tables.configuration()) as rig:
@@ -100,14 +100,20 @@ def _of_rig(live: Live, seconds: float) -> _Shown:
 def _of_bus(objects: MappedObjects, seconds: float) -> _Shown:
     time.sleep(seconds if seconds == _REFRESH_S else 0.0)  # once: there is nothing to wait for
     values = objects.read()
-    return _Shown(tuple(Row(f"node {one.node_id}", one.name, one.value) for one in values))
+    return _Shown(tuple(DeviceRow(f"node {one.node_id}", one.name, one.value) for one in values))
 
 
 def _of_port(port: SerialPort, heard: Heard, seconds: float) -> _Shown:
     listen(port, seconds, time.monotonic, time.sleep, heard)
-    rows = [Row("port", "is", heard.what), Row("port", "lines", float(sum(heard.counts.values())))]
-    rows += [Row("port", f"last {kind}", line.value) for kind, line in heard.last.items()]
-    rows += [Row("port", "lost", float(heard.lost)), Row("port", "refused", float(heard.refused))]
+    rows = [
+        DeviceRow("port", "is", heard.what),
+        DeviceRow("port", "lines", float(sum(heard.counts.values()))),
+    ]
+    rows += [DeviceRow("port", f"last {kind}", line.value) for kind, line in heard.last.items()]
+    rows += [
+        DeviceRow("port", "lost", float(heard.lost)),
+        DeviceRow("port", "refused", float(heard.refused)),
+    ]
     return _Shown(tuple(rows))
 
 
@@ -131,12 +137,12 @@ def _live(look: Look, request: DeviceReadOptions, terminal: Terminal, console: "
     return shown
 
 
-def _draw(screen: "Screen", rows: Sequence[Row]) -> None:
+def _draw(screen: "Screen", rows: Sequence[DeviceRow]) -> None:
     screen.start()
     screen.update(_table(rows), refresh=True)
 
 
-def _table(rows: Sequence[Row]) -> "Table":
+def _table(rows: Sequence[DeviceRow]) -> "Table":
     lines = []
     before = ""
     for one in rows:

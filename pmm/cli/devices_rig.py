@@ -19,9 +19,9 @@ from pmm.cli.screen import error_line, output
 from pmm.cli.terminal import Terminal
 from pmm.devices.moving import NOTHING_MOVED, axis_of, look, turn
 from pmm.devices.moving import move as move_axis
-from pmm.devices.opening import RigTables
-from pmm.devices.pushing import Gauges, Pushed, push_each
-from pmm.devices.watching import Watched, watch
+from pmm.devices.opening import DeviceTables
+from pmm.devices.pushing import GaugeReadings, Pushed, push_each
+from pmm.devices.watching import PhotocellRecord, watch
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -39,7 +39,7 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
     ConfigurationError, HardwareError
         If the axis, the position or the rig's state do not allow it; nothing has moved then.
     """
-    tables = RigTables(Path(rig))
+    tables = DeviceTables(Path(rig))
     with (
         ExitStack() as shown,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
@@ -93,7 +93,7 @@ def photocell(
     turn_hz: float | None,
 ) -> None:
     """Test the photocell; ends with status 1 if a pulse is missing or too many."""
-    tables = RigTables(Path(rig))
+    tables = DeviceTables(Path(rig))
     with (
         ExitStack() as shown,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
@@ -122,12 +122,12 @@ def gauges(
     rig: str, free_running: bool, as_json: bool, channels: tuple[str, ...], within_s: float
 ) -> None:
     """Push test; ends with status 1 if a gauge is swapped, turned round or silent."""
-    tables = RigTables(Path(rig))
+    tables = DeviceTables(Path(rig))
     with (
         ExitStack() as shown,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
     ):
-        all_gauges = Gauges(opened_rig)
+        all_gauges = GaugeReadings(opened_rig)
         names = tuple(one.name for one in all_gauges.channels)
         for one in channels:
             if one not in names:
@@ -152,7 +152,7 @@ def _tell(terminal: Terminal, pulse: Pulse) -> None:
     terminal.say(f"pulse {pulse.number} at {pulse.time_s:.4f} s")
 
 
-def _print_pulses(watched: Watched, *, as_json: bool) -> None:
+def _print_pulses(watched: PhotocellRecord, *, as_json: bool) -> None:
     if as_json:
         print_json(
             "photocell",

@@ -19,7 +19,7 @@ from hardware.serial_port import PortSettings, SerialPort, plugged_ports
 from pmm.cli.devices_common import print_json, print_table
 from pmm.cli.devices_scan_printing import print_document, print_heard, print_nodes
 from pmm.cli.screen import busy, error_line, output
-from pmm.devices.opening import RigTables, bus_alone
+from pmm.devices.opening import DeviceTables, bus_alone
 
 _PORT: Final = "port"
 
@@ -38,7 +38,7 @@ class DeviceScanOptions:
     as_json: bool
     listen_s: float = 1.1
 
-    def tables(self) -> RigTables | None:
+    def tables(self) -> DeviceTables | None:
         """Return the rig's file.
 
         Raises
@@ -52,7 +52,7 @@ class DeviceScanOptions:
                 f"{' and '.join(named) or 'nothing'} to look at: name one of RIG.toml, "
                 "--interface (with --channel), --port"
             )
-        return RigTables(Path(self.rig)) if self.rig else None
+        return DeviceTables(Path(self.rig)) if self.rig else None
 
     def bus(self) -> BusConfiguration:
         """Return the bus that is named alone."""
@@ -91,7 +91,7 @@ class Survey:
     wrong: list[str]
 
 
-def survey_rig(tables: RigTables, listen_s: float) -> Survey:
+def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     """Ask all devices that a rig's file names; nothing is changed.
 
     Raises
@@ -183,7 +183,7 @@ def _hear(
         port.close()
 
 
-def _expected(tables: RigTables) -> tuple[_Expected, ...]:
+def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:
     from hardware.dictionary import Entry, load, variable
 
     found = []

@@ -10,7 +10,7 @@ import click
 
 from hardware.errors import HardwareError
 from pmm.cli.screen import busy, output
-from pmm.doctor.findings import Finding, Status
+from pmm.doctor.findings import MachineFinding, MachineStatus
 from pmm.doctor.host import check_host
 from pmm.doctor.installation import check_installation
 from pmm.doctor.machine import Machine
@@ -18,10 +18,10 @@ from pmm.doctor.reach import check_buses, check_ports, check_rig
 
 JSON_SCHEMA: Final = "pmm-doctor-1"
 _STYLES: Final = {
-    Status.OK: "green",
-    Status.NOTE: "cyan",
-    Status.WARNING: "yellow",
-    Status.FAULT: "bold red",
+    MachineStatus.OK: "green",
+    MachineStatus.NOTE: "cyan",
+    MachineStatus.WARNING: "yellow",
+    MachineStatus.FAULT: "bold red",
 }
 
 
@@ -42,7 +42,7 @@ def run(
     """
     with busy("looking"):
         found = list(_check(rig, Path(folder), listen_s, machine or Machine()))
-    faults = [one for one in found if one.status is Status.FAULT]
+    faults = [one for one in found if one.status is MachineStatus.FAULT]
     if as_json:
         findings = [asdict(one) for one in found]
         document = {"schema": JSON_SCHEMA, "faults": len(faults), "findings": findings}
@@ -53,7 +53,9 @@ def run(
         raise click.exceptions.Exit(1)
 
 
-def _check(rig: str | None, folder: Path, listen_s: float, machine: Machine) -> Iterator[Finding]:
+def _check(
+    rig: str | None, folder: Path, listen_s: float, machine: Machine
+) -> Iterator[MachineFinding]:
     yield from check_installation(machine)
     yield from check_buses(machine)
     yield from check_ports(machine)
@@ -62,16 +64,16 @@ def _check(rig: str | None, folder: Path, listen_s: float, machine: Machine) -> 
     yield from check_host(machine, folder)
 
 
-def _devices(path: Path, listen_s: float) -> Iterator[Finding]:
+def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
     from pmm.cli.devices_scan import survey_rig
-    from pmm.devices.opening import RigTables
+    from pmm.devices.opening import DeviceTables
 
-    tables = RigTables(path)
+    tables = DeviceTables(path)
     try:
         found = survey_rig(tables, listen_s)
     except HardwareError as error:
         cure = f"is the bus there and up, and no other program on it? `pmm devices scan {path}`"
-        yield Finding("devices", error.device, Status.FAULT, str(error), cure)
+        yield MachineFinding("devices", error.device, MachineStatus.FAULT, str(error), cure)
         return
     answering = {one.node_id for one in found.nodes}
     names = [name for node, name in found.names.items() if node in answering]
@@ -79,7 +81,7 @@ def _devices(path: Path, listen_s: float) -> Iterator[Finding]:
     yield from check_rig(path, [*names, *ports], found.wrong)
 
 
-def _print(found: Sequence[Finding], faults: int) -> None:
+def _print(found: Sequence[MachineFinding], faults: int) -> None:
     from rich.table import Table
     from rich.text import Text
 

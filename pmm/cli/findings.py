@@ -6,16 +6,20 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
 from pmm.cli.printing import counted
-from pmm.plan.findings import Finding, Verdict, largest_stated
+from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
 
 if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
-_STYLES: Final = {Verdict.REFUSE: "bold red", Verdict.WARN: "yellow", Verdict.NOTE: "cyan"}
+_STYLES: Final = {
+    PlanVerdict.REFUSE: "bold red",
+    PlanVerdict.WARN: "yellow",
+    PlanVerdict.NOTE: "cyan",
+}
 
 
-def finding_lines(found: Sequence[Finding], *, every: bool = False) -> "Iterator[Text]":
+def finding_lines(found: Sequence[PlanFinding], *, every: bool = False) -> "Iterator[Text]":
     """Yield a line for each finding; of those of one kind, unless every one is wanted, the worst.
 
     Parameters
@@ -33,15 +37,15 @@ def finding_lines(found: Sequence[Finding], *, every: bool = False) -> "Iterator
         )
 
 
-def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Finding, int]]:
+def _gathered(found: Sequence[PlanFinding], *, every: bool) -> Iterator[tuple[PlanFinding, int]]:
     """Yield findings; of those of one kind the one furthest off, and how many there are beside."""
     if every:
         yield from ((one, 0) for one in found)
         return
-    ranks = list(Verdict)
+    ranks = list(PlanVerdict)
     found = [one for one in found if not one.is_stated]
 
-    def kind(one: Finding) -> tuple[int, str, float]:
+    def kind(one: PlanFinding) -> tuple[int, str, float]:
         what = one.quantity if one.run else one.message
         return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
 
@@ -51,7 +55,7 @@ def _gathered(found: Sequence[Finding], *, every: bool) -> Iterator[tuple[Findin
         yield worst, len({one.run for one in alike}) - 1
 
 
-def condition_table(found: Sequence[Finding]) -> "Table | None":
+def condition_table(found: Sequence[PlanFinding]) -> "Table | None":
     """Return the numbers that state the runs' conditions, each at its largest; ``None`` if none."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table

@@ -9,8 +9,8 @@ import click
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.start.jobs import FILES, Task, write
-from pmm.start.questions import Question, answers
+from pmm.start.jobs import FILES, StartTask, write
+from pmm.start.questions import StartQuestion, answers
 from pmm.start.writing import check_free
 
 _NEXT: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
@@ -42,7 +42,7 @@ def run(job: str, options: dict[str, Any]) -> None:
     check_folder(folder, "--output")
     check_free(folder, FILES[job], force=options["force"])
     given = answers(job, options, _default if options["yes"] else _asked)
-    done = write(Task(job, given, folder, recordings), force=options["force"])
+    done = write(StartTask(job, given, folder, recordings), force=options["force"])
     for path in done.paths:
         messages().print(f"written: {path}")
     for note in done.notes:
@@ -54,11 +54,11 @@ def run(job: str, options: dict[str, Any]) -> None:
         output().print(f"next: {command}", soft_wrap=True)
 
 
-def _default(question: Question) -> str | float:
+def _default(question: StartQuestion) -> str | float:
     return question.default
 
 
-def _asked(question: Question) -> str | float:
+def _asked(question: StartQuestion) -> str | float:
     kind: Any = click.Choice(question.choices) if question.choices else type(question.default)
     answer: str | float = click.prompt(question.text, default=question.default, type=kind, err=True)
     return answer

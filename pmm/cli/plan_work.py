@@ -17,8 +17,9 @@ from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.printing import counted
 from pmm.cli.screen import output
-from pmm.plan.checks import Finding, Verdict, check_plan
+from pmm.plan.checks import check_plan
 from pmm.plan.duration import duration_rows, tank_length_m
+from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan, read_plan_and_rig
@@ -51,7 +52,7 @@ def check(file: str, *, every: bool, as_json: bool) -> None:
     """
     plan, rig = read_plan_and_rig(file)
     found = check_plan(plan, rig, datetime.now(UTC).date())
-    refused = any(one.verdict is Verdict.REFUSE for one in found)
+    refused = any(one.verdict is PlanVerdict.REFUSE for one in found)
     if as_json:
         click.echo(json.dumps(_check_document(plan, rig, found, refused), indent=1))
     else:
@@ -97,7 +98,7 @@ def clock(seconds: float) -> str:
 
 
 def _check_document(
-    plan: Plan, rig: RigFile, found: Sequence[Finding], refused: bool
+    plan: Plan, rig: RigFile, found: Sequence[PlanFinding], refused: bool
 ) -> dict[str, Any]:
     return {
         "schema": CHECK_SCHEMA,
@@ -109,14 +110,14 @@ def _check_document(
     }
 
 
-def _print_findings(plan: Plan, found: Sequence[Finding], *, every: bool) -> None:
+def _print_findings(plan: Plan, found: Sequence[PlanFinding], *, every: bool) -> None:
     console = output()
     for line in finding_lines(found, every=every):
         console.print(line, soft_wrap=True)
     if not every and (table := condition_table(found)) is not None:
         console.print(table)
-    refused = sum(one.verdict is Verdict.REFUSE for one in found)
-    warned = sum(one.verdict is Verdict.WARN for one in found)
+    refused = sum(one.verdict is PlanVerdict.REFUSE for one in found)
+    warned = sum(one.verdict is PlanVerdict.WARN for one in found)
     what = f"{plan.name}: {counted(len(plan.runs), 'run')}"
     if refused:
         console.print(f"{what}; the rig cannot run it: {counted(refused, 'refusal')}")

@@ -10,7 +10,7 @@ from pmm.cli.printing import counted
 from pmm.cli.terminal import Terminal
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
-from pmm.run.status import HarmonicRow, RunOutcome, Status
+from pmm.run.status import ChannelReading, RunOutcome, RunStatus
 
 if TYPE_CHECKING:
     from rich.console import Group, RenderableType
@@ -47,7 +47,7 @@ class PlainView:
             self._outcomes += 1
             self._say(outcome_line(outcome))
 
-    def _news(self, status: Status, alarm_count: int) -> None:
+    def _news(self, status: RunStatus, alarm_count: int) -> None:
         new = alarm_count - self._alarms
         self._alarms = alarm_count
         for alarm in status.alarms[len(status.alarms) - new :] if new else ():
@@ -73,7 +73,7 @@ class LiveView:
         self._clock, self._due_s, self._asked = clock, -math.inf, question
         self._terminal = terminal
         self._control: RunControl | None = None
-        self._status: Status | None = None
+        self._status: RunStatus | None = None
         self._outcomes: tuple[RunOutcome, ...] = ()
         console = terminal.console
         console.soft_wrap = False  # alarms and questions are folded here, not cut
@@ -141,7 +141,7 @@ def outcome_line(one: RunOutcome) -> str:
     return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{off}{where}{reason}"
 
 
-def harmonics_table(rows: tuple[HarmonicRow, ...]) -> "Table":
+def harmonics_table(rows: tuple[ChannelReading, ...]) -> "Table":
     """Return mean and first harmonic of each channel; what is not final yet is dim.
 
     As many places as the interval allows; lengths in mm, angles in degrees. Where the plan has an
@@ -182,7 +182,7 @@ def _line(text: str, style: str = "") -> "Text":
     return Text(text, style=style, no_wrap=True, overflow="ellipsis")
 
 
-def _head(status: Status) -> "Iterator[Text]":
+def _head(status: RunStatus) -> "Iterator[Text]":
     """Yield state, run and time in a line, and how the computer fares in another."""
     first = _line(f"{str(status.state).upper():10s}", _COLOURS.get(status.state, "bold"))
     run = f"{status.run}  {status.frequency_hz:g} Hz" if status.frequency_hz else status.run
@@ -200,7 +200,7 @@ def _head(status: Status) -> "Iterator[Text]":
     yield _line("   ".join(said), "dim")
 
 
-def _bars(status: Status, ended: int) -> "Table":
+def _bars(status: RunStatus, ended: int) -> "Table":
     from rich.progress_bar import ProgressBar
     from rich.table import Table
 

@@ -27,13 +27,13 @@ from pmm.cli.screen import messages, output
 from pmm.cli.terminal import Terminal
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.checks import require_possible
-from pmm.plan.findings import Finding
+from pmm.plan.findings import PlanFinding
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.real_time import before_others, step_back
 from pmm.recorder.campaign_owner import own_campaign
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.campaign_folder import (
     check_names,
     chosen_runs,
@@ -44,7 +44,7 @@ from pmm.run.campaign_folder import (
 )
 from pmm.run.identity import change_lines
 from pmm.run.journal import Taps
-from pmm.run.recording import Recording
+from pmm.run.recording import RecorderFactory
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError
@@ -76,7 +76,7 @@ class Job:
     rig_file: RigFile
     folder: Path
     runs: tuple[RunPlan, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[PlanFinding, ...]
     real_time: bool
     changes: tuple[str, ...]
 
@@ -181,7 +181,7 @@ def _carry_out(job: Job, terminal: Terminal, *, quiet: bool) -> tuple[list[RunOu
         rig = stack.enter_context(_rig(job, answers, taps))
         executor = stack.enter_context(_executor(job.real_time))
         recording = stack.enter_context(
-            Recording(rig, job.rig_file, job.plan, job.folder, _utc, taps, _provenance(job))
+            RecorderFactory(rig, job.rig_file, job.plan, job.folder, _utc, taps, _provenance(job))
         )
         control = RunControl(
             rig, job.rig_file, job.runs, recording.begin, time.monotonic, view, executor
@@ -294,9 +294,9 @@ def _report(request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault
         return
     for one in outcomes:
         told = bool(fault) and one.reason == fault  # as the error
-        if one.outcome != Outcome.COMPLETE and not told:
+        if one.outcome != RunEnd.COMPLETE and not told:
             console.print(outcome_line(one), soft_wrap=True)
-    complete = sum(one.outcome == Outcome.COMPLETE for one in outcomes)
+    complete = sum(one.outcome == RunEnd.COMPLETE for one in outcomes)
     console.print(f"{complete} of {len(job.runs)} runs complete in {job.folder}")
     if complete:
         console.print(pasted("analyse", job.folder), soft_wrap=True)

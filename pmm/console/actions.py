@@ -58,7 +58,7 @@ class TooLargeError(PmmError):
     """A request that is larger than any of its kind."""
 
 
-class Actions:
+class PageActions:
     """Carries out what is posted.
 
     Parameters

@@ -20,8 +20,8 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket
 
 from hardware.description.errors import PmmError
-from pmm.console.actions import Actions, TooLargeError, body_of, who_asks
-from pmm.console.app_settings import Settings
+from pmm.console.actions import PageActions, TooLargeError, body_of, who_asks
+from pmm.console.app_settings import ConsoleSettings
 from pmm.console.checking import look_around
 from pmm.console.client import Client
 from pmm.console.finished import Finished
@@ -53,7 +53,7 @@ class Console:
 
     def __init__(
         self,
-        settings: Settings,
+        settings: ConsoleSettings,
         connection: Connection,
         quick_stop: QuickStop,
         end: Callable[[], None],
@@ -65,7 +65,9 @@ class Console:
         self._lockout = Lockout(time.monotonic)
         plans = Plans(settings.rig_path, settings.plans, settings.output)
         self.workers = Workers()
-        self.actions = Actions(self.hub, self.loop, self.workers, plans, settings.log_folder, _utc)
+        self.actions = PageActions(
+            self.hub, self.loop, self.workers, plans, settings.log_folder, _utc
+        )
         figures = self.workers.figures
         self.finished = Finished(self.hub, figures, settings.earlier, settings.reference)
         self.pages = Pages(self.actions.folders, settings.log_folder)
@@ -155,7 +157,10 @@ class Console:
 
 
 def application(
-    settings: Settings, connection: Connection, quick_stop: QuickStop, end: Callable[[], None]
+    settings: ConsoleSettings,
+    connection: Connection,
+    quick_stop: QuickStop,
+    end: Callable[[], None],
 ) -> Guard:
     """Return the application; it is set up when its event loop runs.
 

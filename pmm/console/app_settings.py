@@ -7,7 +7,7 @@ from pmm.console.security import Door
 
 
 @dataclass(frozen=True)
-class Settings:
+class ConsoleSettings:
     """How a console is set up.
 
     Attributes

@@ -1,7 +1,7 @@
 """The operator's answers, given in the browser."""
 
 
-class Answers:
+class BrowserAnswers:
     """Keeps the question that the rig asks until somebody answers it.
 
     Attributes

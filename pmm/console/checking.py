@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from pmm.console.encoding import Made, encode
+from pmm.console.encoding import EncodedText, encode
 from pmm.console.messages import PackedPlan
 from pmm.console.packing import pack
 from pmm.console.pages import pages_in
@@ -15,12 +15,12 @@ class ReadyPlan:
     """A plan that may be queued, and its picture."""
 
     packed: PackedPlan
-    picture: Made
+    picture: EncodedText
 
 
-def check_plan_text(plans: Plans, name: str, text: str) -> Made:
+def check_plan_text(plans: Plans, name: str, text: str) -> EncodedText:
     """Return the picture of a plan; raises ConfigurationError for what is wrong with it."""
-    return Made(encode(plan_picture(plans.check(name, text))))
+    return EncodedText(encode(plan_picture(plans.check(name, text))))
 
 
 def ready_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
@@ -32,7 +32,7 @@ def ready_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
         If it is wrong, or the rig cannot run it.
     """
     found = plans.queue(name, text)
-    return ReadyPlan(pack(found.waiting), Made(encode(plan_picture(found))))
+    return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
 
 
 def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dict[Path, list[str]]]:

@@ -125,7 +125,7 @@ class Connection(H11Protocol):
             self._crowd.gone(self)
 
 
-class Stream(WebSocketsSansIOProtocol):
+class PageStream(WebSocketsSansIOProtocol):
     """uvicorn's stream, which ends where nothing is taken for long: it would be kept for ever."""
 
     _full: asyncio.TimerHandle | None = None

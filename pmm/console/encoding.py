@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from pmm.console.messages import Frame, Hello, Needles, Notice, Trace
-from pmm.run.status import HarmonicRow, RunOutcome
+from pmm.console.messages import Frame, Hello, Needles, Notice, SignalTrace
+from pmm.run.status import ChannelReading, RunOutcome
 
 _DIGITS = 6
 
 
-class Made(str):
+class EncodedText(str):
     """JSON that is made already."""
 
 
@@ -26,7 +26,9 @@ def encode(message: object) -> str:
 
 def encode_answer(parts: Mapping[str, Any]) -> str:
     """Return a message of which some parts are made already."""
-    texts = (f"{encode(k)}:{v if isinstance(v, Made) else encode(v)}" for k, v in parts.items())
+    texts = (
+        f"{encode(k)}:{v if isinstance(v, EncodedText) else encode(v)}" for k, v in parts.items()
+    )
     return f"{{{','.join(texts)}}}"
 
 
@@ -90,7 +92,7 @@ def frame_picture(frame: Frame) -> dict[str, Any]:
     }
 
 
-def trace_picture(trace: Trace) -> dict[str, Any]:
+def trace_picture(trace: SignalTrace) -> dict[str, Any]:
     """Return the points of a trace."""
     return {"first": trace.first, "start_s": trace.start_s, "values": table(trace.values)}
 
@@ -141,7 +143,7 @@ def needles_picture(needles: Needles | None) -> dict[str, Any] | None:
     }
 
 
-def _row(row: HarmonicRow) -> dict[str, Any]:
+def _row(row: ChannelReading) -> dict[str, Any]:
     return {
         "channel": row.channel,
         "unit": row.unit,

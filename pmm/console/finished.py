@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pmm.console.figures import figures_of
 from pmm.console.hub import Hub
-from pmm.console.worker import NotWorkedOutError, Worker
+from pmm.console.worker import NotWorkedOutError, WorkerProcess
 
 
 class Finished:
@@ -20,7 +20,7 @@ class Finished:
     """
 
     def __init__(
-        self, hub: Hub, worker: Worker, earlier: tuple[Path, ...], reference: Path | None
+        self, hub: Hub, worker: WorkerProcess, earlier: tuple[Path, ...], reference: Path | None
     ) -> None:
         self._worker = worker
         self._hub, self._earlier, self._reference = hub, earlier, reference

@@ -7,7 +7,7 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Final
 
-from pmm.console.messages import Frame, Order, PackedPlan, Told
+from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told
 from pmm.console.packing import unpack
 
 _POLL_S: Final = 0.2
@@ -30,7 +30,7 @@ class Link:
         self._connection = connection
         self._frames: deque[Frame] = deque(maxlen=_FRAMES)
         self._others: deque[Told] = deque()
-        self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
+        self._orders: queue.SimpleQueue[LoopOrder] = queue.SimpleQueue()
         self._wake = threading.Event()
         self._closed = threading.Event()
         self._threads = [
@@ -58,7 +58,7 @@ class Link:
         self._others.append(message)
         self._wake.set()
 
-    def orders(self) -> list[Order]:
+    def orders(self) -> list[LoopOrder]:
         """Return what has come since the last call."""
         found = []
         while True:

@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
-from pmm.console.messages import Order, OrderKind, PackedPlan, Reply, Told
+from pmm.console.messages import LoopOrder, OrderKind, PackedPlan, Reply, Told
 from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
 
@@ -56,7 +56,7 @@ class LoopSide:
             If it is refused, or the loop does not answer.
         """
         self._count += 1
-        order = Order(self._count, kind, text, question, plan, self._quick_stop.pressed)
+        order = LoopOrder(self._count, kind, text, question, plan, self._quick_stop.pressed)
         future: asyncio.Future[Reply] = self._loop.create_future()
         self._open[order.number] = future
         try:

@@ -11,7 +11,7 @@ from hardware.description.setpoint import SetPoint
 from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.lateness import CycleStatistics
-from pmm.run.status import RunOutcome, Status
+from pmm.run.status import RunOutcome, RunStatus
 
 WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
 
@@ -56,7 +56,7 @@ class PackedPlan:
 
 
 @dataclass(frozen=True)
-class Order:
+class LoopOrder:
     """A wish of the server; each gets one :class:`Reply`.
 
     Attributes
@@ -160,7 +160,7 @@ class Notice:
 
 
 @dataclass(frozen=True)
-class Trace:
+class SignalTrace:
     """Points since the last frame: shape ``(channels, points)``; the first has number ``first``."""
 
     first: int
@@ -211,7 +211,7 @@ class Frame:
     """
 
     number: int
-    status: Status
+    status: RunStatus
     plan: int
     queue: tuple[int, ...]
     set_point: SetPoint | None
@@ -224,7 +224,7 @@ class Frame:
     bus: Bus
     loop: CycleStatistics
     needles: Needles | None
-    trace: Trace
+    trace: SignalTrace
     following: tuple[str, ...] = ()
 
 

@@ -16,7 +16,7 @@ from pmm.run.measurement import Measurement
 from pmm.run.readings import rows_of
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, is_allowed
-from pmm.run.status import HarmonicRow, Status
+from pmm.run.status import ChannelReading, RunStatus
 
 HARMONICS: Final = 3
 _FOLLOWING: Final = 3
@@ -54,12 +54,12 @@ def allowed(control: RunControl) -> tuple[str, ...]:
     return tuple(str(one) for one in Command if is_allowed(one, control.state))
 
 
-def present_run(control: RunControl, status: Status) -> RunPlan | None:
+def present_run(control: RunControl, status: RunStatus) -> RunPlan | None:
     """Return the run that a status tells of."""
     return control.runs[status.run_number - 1] if status.run_number else None
 
 
-def following(control: RunControl, status: Status) -> tuple[str, ...]:
+def following(control: RunControl, status: RunStatus) -> tuple[str, ...]:
     """Return the names of the runs that come after that one."""
     after = status.run_number
     return tuple(one.name for one in control.runs[after : after + _FOLLOWING])
@@ -73,7 +73,7 @@ class NeedleReader:
         self._widths: FloatArray | None = None
 
     def read(
-        self, measurement: Measurement | None, rows: tuple[HarmonicRow, ...]
+        self, measurement: Measurement | None, rows: tuple[ChannelReading, ...]
     ) -> Needles | None:
         """Return the needles; ``None`` where nothing is known yet."""
         if measurement is None or not rows:

@@ -4,7 +4,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from pmm.console.encoding import encode, frame_picture, trace_picture
-from pmm.console.messages import Frame, Trace
+from pmm.console.messages import Frame, SignalTrace
 from pmm.console.traces import POINTS
 
 
@@ -54,7 +54,7 @@ class Pictures:
         texts = [one.text for one in self._pieces]
         return f"[{','.join(texts[max(since - first, 0) :])}]"
 
-    def _keep(self, trace: Trace) -> None:
+    def _keep(self, trace: SignalTrace) -> None:
         points = trace.values.shape[1] if trace.values.size else 0
         if not points:
             return

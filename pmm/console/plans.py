@@ -14,9 +14,9 @@ from pmm.configuration import read_toml
 from pmm.console.encoding import number
 from pmm.console.limits import LARGEST_PLAN
 from pmm.console.messages import QueuedPlan
-from pmm.plan.checks import Verdict, check_plan, require_possible
+from pmm.plan.checks import check_plan, require_possible
 from pmm.plan.duration import duration_rows
-from pmm.plan.findings import Finding, largest_stated
+from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -37,13 +37,13 @@ class CheckedPlan:
 
     waiting: QueuedPlan
     rig: RigFile
-    findings: tuple[Finding, ...]
+    findings: tuple[PlanFinding, ...]
     durations_s: tuple[float, ...]
 
     @property
     def refused(self) -> bool:
         """Whether the rig cannot run it."""
-        return any(one.verdict is Verdict.REFUSE for one in self.findings)
+        return any(one.verdict is PlanVerdict.REFUSE for one in self.findings)
 
 
 @dataclass(frozen=True)

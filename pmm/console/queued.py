@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pmm.console.checking import ReadyPlan
-from pmm.console.encoding import Made
+from pmm.console.encoding import EncodedText
 
 
 class Queued:
@@ -49,6 +49,6 @@ class Queued:
         """Return the folders of all campaigns that were queued, each once."""
         return list(self._folders)
 
-    def pictures(self) -> dict[str, Made]:
+    def pictures(self) -> dict[str, EncodedText]:
         """Return the pictures of the plans at hand, by their numbers."""
         return {str(number): one.picture for number, one in self._plans.items()}

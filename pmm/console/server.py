@@ -9,13 +9,13 @@ from pathlib import Path
 from socket import socket
 from typing import cast
 
-from pmm.console.app_settings import Settings
+from pmm.console.app_settings import ConsoleSettings
 from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE
 from pmm.console.quick_stop import QuickStop
 
 
 def serve(
-    settings: Settings,
+    settings: ConsoleSettings,
     listening: socket,
     connection: Connection,
     quick_stop: QuickStop,
@@ -31,7 +31,7 @@ def serve(
     import uvicorn
 
     from pmm.console.app import application
-    from pmm.console.connections import Connection, Crowd, Stream
+    from pmm.console.connections import Connection, Crowd, PageStream
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -45,7 +45,7 @@ def serve(
 
     configuration = uvicorn.Config(
         application(settings, connection, quick_stop, end),
-        ws=Stream,
+        ws=PageStream,
         ws_per_message_deflate=False,
         ws_max_size=LARGEST_MESSAGE,
         h11_max_incomplete_event_size=LARGEST_HEADERS,

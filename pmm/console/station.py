@@ -12,15 +12,15 @@ from typing import Final
 from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from hardware.rig import Rig
-from pmm.console.asking import Answers
+from pmm.console.asking import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import (
     Frame,
     Hello,
+    LoopOrder,
     Needles,
     Notice,
-    Order,
     OrderKind,
     QueuedPlan,
     Reply,
@@ -37,13 +37,13 @@ from pmm.console.picture import (
     present_run,
 )
 from pmm.console.quick_stop import QuickStop
-from pmm.console.traces import Traces, points_a_second
+from pmm.console.traces import TraceBuffer, points_a_second
 from pmm.console.writing import Writer
 from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.measurement import Measurement
-from pmm.run.recording import Recording
+from pmm.run.recording import RecorderFactory
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError, State
 
@@ -77,7 +77,7 @@ class Station:
         rig_file: RigFile,
         link: Link,
         quick_stop: QuickStop,
-        answers: Answers,
+        answers: BrowserAnswers,
         pacer: CountingPacer,
         taps: Taps,
         clock: Callable[[], float],
@@ -92,11 +92,11 @@ class Station:
         self._clock, self._utc, self._provenance = clock, utc, provenance
         self._executor, self._speed = executor, speed
         self._channels = channels_of(rig, rig_file)
-        self._traces = Traces(len(self._channels), rig.configuration.sample_rate_hz)
+        self._traces = TraceBuffer(len(self._channels), rig.configuration.sample_rate_hz)
         self._needles = NeedleReader()
         self._waiting: deque[QueuedPlan] = deque()
         self._present: QueuedPlan | None = None
-        self._recording: Recording | None = None
+        self._recording: RecorderFactory | None = None
         self._writer = Writer(rig_file, executor)
         self._due_s = clock()
         self._ticks = self._told_alarms = self._told_outcomes = 0
@@ -172,14 +172,14 @@ class Station:
         """Whether the web server is gone."""
         return self._link.lost
 
-    def _carry_out(self, order: Order) -> Reply:
+    def _carry_out(self, order: LoopOrder) -> Reply:
         try:
             text = self._obey(order)
         except (PmmError, ValueError) as error:
             return Reply(order.number, False, str(error))
         return Reply(order.number, True, text)
 
-    def _obey(self, order: Order) -> str:
+    def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:
             raise RunStateError(
                 "there was a quick stop after this; give it again if you still mean it"
@@ -267,11 +267,11 @@ class Station:
             control.free_bytes = self._recording.free_bytes
         return control
 
-    def _recorded(self, plan: QueuedPlan) -> Recording:
+    def _recorded(self, plan: QueuedPlan) -> RecorderFactory:
         kept = {**self._provenance, "plan": plan.plan.name}
         if plan.plan.operator:
             kept["operator"] = plan.plan.operator
-        return Recording(
+        return RecorderFactory(
             self._rig, self._rig_file, plan.plan, plan.folder, self._utc, self._taps, kept
         )
 

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from pmm.console.messages import Trace
+from pmm.console.messages import SignalTrace
 
 POINTS: Final = 2000  # of each trace
 WINDOW_S: Final = 20.0
@@ -21,7 +21,7 @@ def points_a_second(sample_rate_hz: float) -> tuple[int, float]:
     return samples, sample_rate_hz / samples
 
 
-class Traces:
+class TraceBuffer:
     """Collects samples between two frames.
 
     Parameters
@@ -46,13 +46,13 @@ class Traces:
         self._rest = np.hstack((self._rest, values))
         self._next = max(first + values.shape[1], self._next or 0)
 
-    def take(self) -> Trace:
+    def take(self) -> SignalTrace:
         """Return the points that are complete."""
         bucket = self._each if self._each == 1 else 2 * self._each
         whole = self._rest.shape[1] // bucket * bucket
         done, self._rest = self._rest[:, :whole], self._rest[:, whole:]
         first = (self._next or 0) - self._rest.shape[1] - whole
-        return Trace(first // self._each, first / self._rate_hz, self._thin(done))
+        return SignalTrace(first // self._each, first / self._rate_hz, self._thin(done))
 
     def _thin(self, samples: FloatArray) -> FloatArray:
         if self._each == 1 or not samples.size:

@@ -30,7 +30,7 @@ class NotWorkedOutError(PmmError):
 
 
 @dataclass(frozen=True)
-class Bounds:
+class WorkLimits:
     """What work may take.
 
     Attributes
@@ -46,7 +46,7 @@ class Bounds:
     waiting: int
 
 
-class Worker:
+class WorkerProcess:
     """Does one piece of work after the other in a process that is started with the first.
 
     Parameters
@@ -55,7 +55,7 @@ class Worker:
         What it does, for messages.
     """
 
-    def __init__(self, what: str, bounds: Bounds) -> None:
+    def __init__(self, what: str, bounds: WorkLimits) -> None:
         self._what, self._bounds = what, bounds
         self._waiting, self._closed = 0, False
         self._thread: ThreadPoolExecutor | None = None

@@ -5,24 +5,24 @@ from collections.abc import Awaitable, Callable
 from typing import Final, Generic, TypeVar
 
 from pmm.console.limits import CHECK_MEMORY, CHECK_S, MOST_CHECKS
-from pmm.console.worker import Bounds, Worker
+from pmm.console.worker import WorkerProcess, WorkLimits
 
 T = TypeVar("T")
-_CHECKS: Final = Bounds(CHECK_S, CHECK_MEMORY, MOST_CHECKS)
+_CHECKS: Final = WorkLimits(CHECK_S, CHECK_MEMORY, MOST_CHECKS)
 # Recordings are read there: they may be as large as the machine takes, and nobody but us asks.
-_FIGURES: Final = Bounds(3600.0, 0, 1)
+_FIGURES: Final = WorkLimits(3600.0, 0, 1)
 
 
 class Workers:
     """Processes beside the server; none is started before it is needed."""
 
     def __init__(self) -> None:
-        self._control = Worker("checking plans", _CHECKS)
-        self._watchers = Worker("checking plans of those who watch", _CHECKS)
-        self.around = Worker("looking through the folders", _CHECKS)
-        self.figures = Worker("coefficients", _FIGURES)
+        self._control = WorkerProcess("checking plans", _CHECKS)
+        self._watchers = WorkerProcess("checking plans of those who watch", _CHECKS)
+        self.around = WorkerProcess("looking through the folders", _CHECKS)
+        self.figures = WorkerProcess("coefficients", _FIGURES)
 
-    def for_whom(self, *, in_control: bool) -> Worker:
+    def for_whom(self, *, in_control: bool) -> WorkerProcess:
         """Return who checks plans: nobody who watches holds up who has control."""
         return self._control if in_control else self._watchers
 

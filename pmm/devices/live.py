@@ -13,7 +13,7 @@ from hardware.roles import PositionAxis, Powered, Sampled, Shaft
 
 
 @dataclass(frozen=True)
-class Row:
+class DeviceRow:
     """One value of a device.
 
     Attributes
@@ -55,7 +55,7 @@ class Live:
                 self.said.append(str(error))
         self._take()
 
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[DeviceRow, ...]:
         """Return what is known now."""
         return tuple(self._rows())
 
@@ -74,7 +74,7 @@ class Live:
             self._pulses += 1
             self._pulse_s = pulse.time_s
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[DeviceRow]:
         rig = self.rig
         if rig.shaft is not None:
             yield from _shaft(rig.shaft)
@@ -85,33 +85,37 @@ class Live:
         for device in (*rig.forces, *((rig.inclinometer,) if rig.inclinometer else ())):
             yield from self._channels(device)
         if rig.photocell is not None:
-            yield Row(rig.photocell.name, "pulses", float(self._pulses))
-            yield Row(rig.photocell.name, "last pulse", self._pulse_s, "s")
+            yield DeviceRow(rig.photocell.name, "pulses", float(self._pulses))
+            yield DeviceRow(rig.photocell.name, "last pulse", self._pulse_s, "s")
         if rig.master is not None:
-            yield Row("bus", "error frames", float(rig.master.error_frames.total))
+            yield DeviceRow("bus", "error frames", float(rig.master.error_frames.total))
 
-    def _channels(self, device: Sampled) -> Iterator[Row]:
+    def _channels(self, device: Sampled) -> Iterator[DeviceRow]:
         unknown = (math.nan,) * len(device.channels)
         values = self._latest.get(device.name, unknown)
         for one, value in zip(device.channels, values, strict=True):
-            yield Row(device.name, one.name, value, one.unit)
+            yield DeviceRow(device.name, one.name, value, one.unit)
 
 
-def _state(device: Powered) -> Row:
+def _state(device: Powered) -> DeviceRow:
     """Return a drive's own state; of another device, whether it has power."""
     drive = getattr(device, "drive", None)
     if drive is None:
-        return Row(device.name, "state", "enabled" if device.enabled else "disabled")
-    return Row(device.name, "state", state_of(int(drive.status)).name.lower().replace("_", " "))
+        return DeviceRow(device.name, "state", "enabled" if device.enabled else "disabled")
+    return DeviceRow(
+        device.name, "state", state_of(int(drive.status)).name.lower().replace("_", " ")
+    )
 
 
-def _shaft(shaft: Shaft) -> Iterator[Row]:
+def _shaft(shaft: Shaft) -> Iterator[DeviceRow]:
     yield _state(shaft)
-    yield Row(shaft.name, "frequency", shaft.measured_frequency_hz, "Hz")
+    yield DeviceRow(shaft.name, "frequency", shaft.measured_frequency_hz, "Hz")
 
 
-def _axis(axis: PositionAxis) -> Iterator[Row]:
+def _axis(axis: PositionAxis) -> Iterator[DeviceRow]:
     yield _state(axis)
     reading = axis.reading
-    yield Row(axis.name, "homed", "yes" if axis.homed else "no")
-    yield Row(axis.name, "position", math.nan if reading is None else reading.value, axis.unit)
+    yield DeviceRow(axis.name, "homed", "yes" if axis.homed else "no")
+    yield DeviceRow(
+        axis.name, "position", math.nan if reading is None else reading.value, axis.unit
+    )

@@ -15,7 +15,7 @@ _SIM: Final = "sim://"
 _DEVICES: Final = (*ROLES, "bus", "cycle_rate_hz")
 
 
-class RigTables:
+class DeviceTables:
     """The tables of a rig's file that name devices; the file may have others, not looked at here.
 
     Raises

@@ -41,7 +41,7 @@ class Pushed:
     wrong: tuple[str, ...]
 
 
-class Gauges:
+class GaugeReadings:
     """Keeps what the force channels of a rig have read since :meth:`begin`."""
 
     def __init__(self, rig: Rig) -> None:
@@ -83,7 +83,7 @@ class Gauges:
 
 
 def push_each(
-    gauges: Gauges, names: tuple[str, ...], plane: Plane | None, within_s: float = 30.0
+    gauges: GaugeReadings, names: tuple[str, ...], plane: Plane | None, within_s: float = 30.0
 ) -> Iterator[Pushed]:
     """Have the gauges pushed one after the other; yield what came of each.
 
@@ -122,7 +122,7 @@ def direction(channel: str, plane: Plane | None) -> str:
 
 
 def _wait_for_push(
-    gauges: Gauges,
+    gauges: GaugeReadings,
     name: str,
     rest: Mapping[str, FloatArray],
     plane: Plane | None,
@@ -143,7 +143,7 @@ def _wait_for_push(
     return Pushed(name, None, (f"{why} (waited {within_s:g} s)",))
 
 
-def _judged(gauges: Gauges, name: str, rest: Mapping[str, FloatArray]) -> Pushed:
+def _judged(gauges: GaugeReadings, name: str, rest: Mapping[str, FloatArray]) -> Pushed:
     try:
         push = judge(gauges.channels, rest, gauges.records())
     except PushError as error:
@@ -152,7 +152,7 @@ def _judged(gauges: Gauges, name: str, rest: Mapping[str, FloatArray]) -> Pushed
 
 
 def _wait_for_rest(
-    gauges: Gauges, name: str, rest: Mapping[str, FloatArray], within_s: float
+    gauges: GaugeReadings, name: str, rest: Mapping[str, FloatArray], within_s: float
 ) -> None:
     """Let cycles pass until no gauge shows a push any more, or the time is over."""
     demand = Demand(f"let go of {name}", "load", 0.0, 1.0, name)
@@ -166,6 +166,6 @@ def _wait_for_rest(
             continue
 
 
-def _load(gauges: Gauges, name: str) -> float:
+def _load(gauges: GaugeReadings, name: str) -> float:
     full = next(one.full_scale for one in gauges.channels if one.name == name)
     return _PUSH_SHARE * (full or 1.0)

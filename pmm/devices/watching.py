@@ -18,7 +18,7 @@ _PHOTOCELL_FAULTS = (PhotocellDeadError, PhotocellExtraError, PhotocellMissedErr
 
 
 @dataclass(frozen=True)
-class Watched:
+class PhotocellRecord:
     """What a photocell said.
 
     Attributes
@@ -42,7 +42,9 @@ class Watched:
         return self.enough and not self.said and not any(one.verdict for one in self.intervals)
 
 
-def watch(rig: Rig, count: int, within_s: float, on_pulse: Callable[[Pulse], None]) -> Watched:
+def watch(
+    rig: Rig, count: int, within_s: float, on_pulse: Callable[[Pulse], None]
+) -> PhotocellRecord:
     """Wait for so many pulses, and judge them.
 
     Parameters
@@ -75,4 +77,4 @@ def watch(rig: Rig, count: int, within_s: float, on_pulse: Callable[[Pulse], Non
             on_pulse(one)
         if len(pulses) >= count:
             break
-    return Watched(tuple(pulses), judge_pulses(pulses), tuple(said), len(pulses) >= count)
+    return PhotocellRecord(tuple(pulses), judge_pulses(pulses), tuple(said), len(pulses) >= count)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Status(StrEnum):
+class MachineStatus(StrEnum):
     """How much a finding matters."""
 
     OK = "ok"
@@ -14,7 +14,7 @@ class Status(StrEnum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class MachineFinding:
     """One thing that was looked at.
 
     Attributes
@@ -29,6 +29,6 @@ class Finding:
 
     area: str
     what: str
-    status: Status
+    status: MachineStatus
     found: str
     cure: str = ""

@@ -6,18 +6,21 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Final
 
-from pmm.doctor.findings import Finding, Status
+from pmm.doctor.findings import MachineFinding, MachineStatus
 from pmm.doctor.machine import Machine
 
 _OLDEST: Final = (3, 11)
 _AREA: Final = "installation"
-_NEEDED: Final = (("can.interface", "pmm-simulated"), ("pmm.serial_urls", "sim"),
-                  ("pmm.drivers", "cia402-shaft"))  # fmt: skip
+_NEEDED: Final = (
+    ("can.interface", "pmm-simulated"),
+    ("pmm.serial_urls", "sim"),
+    ("pmm.drivers", "cia402-shaft"),
+)
 _REQUIREMENT: Final = re.compile(r"([\w.-]+)(?:\[[\w,]*\])?\s*(?:>=\s*([\d.]+))?")
 _INSTALL: Final = "python -m pip install --upgrade"
 
 
-def check_installation(machine: Machine) -> Iterator[Finding]:
+def check_installation(machine: Machine) -> Iterator[MachineFinding]:
     """Look at Python, the libraries that are asked for, and what makes loops fast."""
     yield _python(machine)
     yield from _libraries(machine)
@@ -26,19 +29,24 @@ def check_installation(machine: Machine) -> Iterator[Finding]:
         if not entry_points(group=group, name=name):
             told = f"{name} is not registered"
             cure = "install the package anew: python -m pip install --editable ."
-            yield Finding(_AREA, f"entry point {group}", Status.FAULT, told, cure)
+            yield MachineFinding(_AREA, f"entry point {group}", MachineStatus.FAULT, told, cure)
 
 
-def _python(machine: Machine) -> Finding:
+def _python(machine: Machine) -> MachineFinding:
     found = ".".join(map(str, machine.python))
     if machine.python >= _OLDEST:
-        return Finding(_AREA, "Python", Status.OK, found)
+        return MachineFinding(_AREA, "Python", MachineStatus.OK, found)
     oldest = ".".join(map(str, _OLDEST))
-    return Finding(_AREA, "Python", Status.FAULT, f"{found}, needed is {oldest}",
-                   f"install Python {oldest} or newer and make the environment anew")  # fmt: skip
+    return MachineFinding(
+        _AREA,
+        "Python",
+        MachineStatus.FAULT,
+        f"{found}, needed is {oldest}",
+        f"install Python {oldest} or newer and make the environment anew",
+    )
 
 
-def _libraries(machine: Machine) -> Iterator[Finding]:
+def _libraries(machine: Machine) -> Iterator[MachineFinding]:
     wanted = [one for one in machine.requirements() if "extra ==" not in one]
     wrong = 0
     for one in wanted:
@@ -47,30 +55,37 @@ def _libraries(machine: Machine) -> Iterator[Finding]:
         found = machine.installed(name)
         if found is None:
             wrong += 1
-            yield Finding(_AREA, name, Status.FAULT, "not installed", f"{_INSTALL} '{one}'")
+            yield MachineFinding(
+                _AREA, name, MachineStatus.FAULT, "not installed", f"{_INSTALL} '{one}'"
+            )
         elif least and _numbers(found) < _numbers(least):
             wrong += 1
             told = f"{found}, needed is {least} or newer"
-            yield Finding(_AREA, name, Status.FAULT, told, f"{_INSTALL} '{one}'")
+            yield MachineFinding(_AREA, name, MachineStatus.FAULT, told, f"{_INSTALL} '{one}'")
     if not wrong:
-        yield Finding(_AREA, "libraries", Status.OK, f"{len(wanted)} of {len(wanted)} are there")
+        yield MachineFinding(
+            _AREA, "libraries", MachineStatus.OK, f"{len(wanted)} of {len(wanted)} are there"
+        )
 
 
 def _numbers(text: str) -> tuple[int, ...]:
     return tuple(int(part) for part in re.findall(r"\d+", text.split("+")[0])[:3])
 
 
-def _compiled(machine: Machine) -> Finding:
+def _compiled(machine: Machine) -> MachineFinding:
     what = "compiled loops (numba)"
     found = machine.installed("numba")
     if found is None:
         told = "not installed: loops that go from sample to sample are interpreted, which is slow"
-        return Finding(_AREA, what, Status.WARNING, told, "python -m pip install 'pmm[fast]'")
+        return MachineFinding(
+            _AREA, what, MachineStatus.WARNING, told, "python -m pip install 'pmm[fast]'"
+        )
     folder = Path(machine.compiled_in) if machine.compiled_in else machine.home / "sim"
     if not machine.may_write(folder):
         told = f"{found}, but {folder} cannot be written to: compiled anew in every process"
-        return Finding(_AREA, what, Status.WARNING, told,
-                       "set NUMBA_CACHE_DIR to a folder of your own")  # fmt: skip
+        return MachineFinding(
+            _AREA, what, MachineStatus.WARNING, told, "set NUMBA_CACHE_DIR to a folder of your own"
+        )
     kept = sum(1 for _ in folder.rglob("*.nbi")) if folder.is_dir() else 0
     later = "" if kept else "; the first use compiles for some 20 s"
-    return Finding(_AREA, what, Status.OK, f"{found}, {kept} loops kept{later}")
+    return MachineFinding(_AREA, what, MachineStatus.OK, f"{found}, {kept} loops kept{later}")

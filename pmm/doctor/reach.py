@@ -4,57 +4,75 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
-from pmm.doctor.findings import Finding, Status
+from pmm.doctor.findings import MachineFinding, MachineStatus
 from pmm.doctor.machine import Machine
 
 _CAN: Final = "280"  # ARPHRD_CAN
 _UP: Final = 1  # IFF_UP
 
 
-def check_buses(machine: Machine) -> Iterator[Finding]:
+def check_buses(machine: Machine) -> Iterator[MachineFinding]:
     """Look at the CAN interfaces that the kernel knows."""
     folders = sorted((machine.root / "sys/class/net").glob("*"))
     buses = [folder for folder in folders if _read(folder / "type") == _CAN]
     if not buses:
-        yield Finding("buses", "SocketCAN", Status.NOTE,
-                      "no interface: a rig on another adapter, or simulated, needs none",
-                      "for a USB adapter: plug it in and look at `ip -details link`")  # fmt: skip
+        yield MachineFinding(
+            "buses",
+            "SocketCAN",
+            MachineStatus.NOTE,
+            "no interface: a rig on another adapter, or simulated, needs none",
+            "for a USB adapter: plug it in and look at `ip -details link`",
+        )
     for folder in buses:
         up = int(_read(folder / "flags") or "0", 16) & _UP
         state = _read(folder / "operstate") or "unknown"
         if up:
-            yield Finding("buses", f"CAN {folder.name}", Status.OK, f"up ({state})")
+            yield MachineFinding("buses", f"CAN {folder.name}", MachineStatus.OK, f"up ({state})")
         else:
-            yield Finding("buses", f"CAN {folder.name}", Status.FAULT, "down",
-                          f"sudo ip link set {folder.name} up type can bitrate 1000000"
-                          )  # fmt: skip
+            yield MachineFinding(
+                "buses",
+                f"CAN {folder.name}",
+                MachineStatus.FAULT,
+                "down",
+                f"sudo ip link set {folder.name} up type can bitrate 1000000",
+            )
 
 
-def check_ports(machine: Machine) -> Iterator[Finding]:
+def check_ports(machine: Machine) -> Iterator[MachineFinding]:
     """Look at the serial ports that are plugged in."""
     ports = machine.ports()
     if not ports:
-        yield Finding("ports", "serial ports", Status.NOTE, "none is plugged in")
+        yield MachineFinding("ports", "serial ports", MachineStatus.NOTE, "none is plugged in")
     for port in ports:
         what = f"serial port {port.device}"
         named = f'{port.description or "no description"}, url = "{port.url}"'
         if machine.may_use(port.device):
-            yield Finding("ports", what, Status.OK, named)
+            yield MachineFinding("ports", what, MachineStatus.OK, named)
         else:
             group = _group(port.device)
-            yield Finding("ports", what, Status.FAULT, f"no permission to read and write; {named}",
-                          f"sudo usermod -aG {group} $USER, then log in anew")  # fmt: skip
+            yield MachineFinding(
+                "ports",
+                what,
+                MachineStatus.FAULT,
+                f"no permission to read and write; {named}",
+                f"sudo usermod -aG {group} $USER, then log in anew",
+            )
 
 
-def check_rig(path: Path, found: Sequence[str], wrong: Sequence[str]) -> Iterator[Finding]:
+def check_rig(path: Path, found: Sequence[str], wrong: Sequence[str]) -> Iterator[MachineFinding]:
     """Turn what a survey of a rig's devices found, and found wrong, into findings."""
     for one in wrong:
         where, _, why = one.partition(": ")
         what, _, cure = why.partition("; ")
-        yield Finding("devices", where, Status.FAULT, what or "does not fit", cure or
-                      f"see {path} and `pmm devices scan {path}`")  # fmt: skip
+        yield MachineFinding(
+            "devices",
+            where,
+            MachineStatus.FAULT,
+            what or "does not fit",
+            cure or f"see {path} and `pmm devices scan {path}`",
+        )
     if found:
-        yield Finding("devices", str(path), Status.OK, f"{', '.join(found)} answer")
+        yield MachineFinding("devices", str(path), MachineStatus.OK, f"{', '.join(found)} answer")
 
 
 def _read(path: Path) -> str:

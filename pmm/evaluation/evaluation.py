@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pmm.campaign.calibration import Calibration
 from pmm.evaluation.control_chart import Chart
-from pmm.evaluation.rig_tests import InPlaceResponse, RungMode, ZeroDrift
+from pmm.evaluation.rig_tests import GaugeZeros, InPlaceResponse, RungMode
 from pmm.evaluation.water_tests import InWater
 
 
@@ -23,7 +23,7 @@ class Evaluation:
         What was written.
     """
 
-    zeros: tuple[ZeroDrift, ...]
+    zeros: tuple[GaugeZeros, ...]
     calibration: Calibration | None
     modes: tuple[RungMode, ...]
     responses: tuple[InPlaceResponse, ...]

@@ -18,7 +18,7 @@ _RING_TIMES: Final = 10.0  # over the median of the spectrum: what stands out so
 
 
 @dataclass(frozen=True)
-class ZeroDrift:
+class GaugeZeros:
     """A gauge's zero over the campaign, and its largest change from one to the next."""
 
     channel: str
@@ -65,7 +65,7 @@ class InPlaceResponse:
     lag_s: float
 
 
-def zero_drifts(runs: Sequence[RunResult]) -> tuple[ZeroDrift, ...]:
+def zero_drifts(runs: Sequence[RunResult]) -> tuple[GaugeZeros, ...]:
     """Return how the zero of each gauge moved over the zero runs."""
     if not runs:
         return ()
@@ -74,7 +74,7 @@ def zero_drifts(runs: Sequence[RunResult]) -> tuple[ZeroDrift, ...]:
     for name in runs[0].forces:
         values = np.array([one[name] for one in means])
         largest = float(np.abs(np.diff(values)).max()) if values.size > 1 else 0.0
-        drifts.append(ZeroDrift(name, float(values[0]), float(values[-1]), largest))
+        drifts.append(GaugeZeros(name, float(values[0]), float(values[-1]), largest))
     return tuple(drifts)
 
 

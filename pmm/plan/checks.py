@@ -8,16 +8,14 @@ from pmm.campaign.calibrated_recording import expiry_text
 from pmm.plan.check_table import CALIBRATION
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.field_checks import field_findings
-from pmm.plan.findings import Finding, PlanRefusedError, Verdict
+from pmm.plan.findings import PlanFinding, PlanRefusedError, PlanVerdict
 from pmm.plan.limits import bus_finding, limit_findings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.simulated_rig import departure_findings
 
-__all__ = ["Finding", "PlanRefusedError", "Verdict", "check_plan", "require_possible"]
 
-
-def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Finding, ...]:
+def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[PlanFinding, ...]:
     """Return what the rig cannot do, and what the field advises against.
 
     In the order of the runs, the whole plan first; a refusal stands before advice.
@@ -39,11 +37,13 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Fin
             *field_findings(run, rig),
             *condition_findings(run, rig),
         ]
-    ranks = list(Verdict)
+    ranks = list(PlanVerdict)
     return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
 
 
-def require_possible(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Finding, ...]:
+def require_possible(
+    plan: Plan, rig: RigFile, today: date | None = None
+) -> tuple[PlanFinding, ...]:
     """Return the findings of a plan that the rig can run; ``today`` as in :func:`check_plan`.
 
     Raises
@@ -52,22 +52,22 @@ def require_possible(plan: Plan, rig: RigFile, today: date | None = None) -> tup
         If it cannot; the message gives every run with its value and its limit.
     """
     found = check_plan(plan, rig, today)
-    refused = [one for one in found if one.verdict is Verdict.REFUSE]
+    refused = [one for one in found if one.verdict is PlanVerdict.REFUSE]
     if refused:
         lines = "\n  ".join(f"{one.run or 'plan'}: {one.message}" for one in refused)
         raise PlanRefusedError(f"{plan.path}: the rig cannot run this plan\n  {lines}")
     return found
 
 
-def _expired(rig: RigFile, today: date | None) -> Iterator[Finding]:
+def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
     one = rig.calibration
     if one is not None and today is not None and one.is_expired(today):
         late = float((today - one.expires).days)
         text = expiry_text(one, today)
-        yield Finding(Verdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
+        yield PlanFinding(PlanVerdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
 
 
-def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:
+def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig's file does not say, and which checks are missing for it."""
     model, towed = rig.model, any(one.set_point.carriage_speed_m_s for one in plan.runs)
     turning = any(one.oscillates for one in plan.runs)
@@ -97,4 +97,4 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[Finding]:
     ):
         if absent:
             message = f"{rig.path.name} has no {table}: {what} not checked"
-            yield Finding(Verdict.NOTE, "not checked", math.nan, math.nan, "", message)
+            yield PlanFinding(PlanVerdict.NOTE, "not checked", math.nan, math.nan, "", message)

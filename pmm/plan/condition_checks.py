@@ -17,7 +17,7 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan import check_table as table
 from pmm.plan.check_table import Check
 from pmm.plan.echoes import echo_limit
-from pmm.plan.findings import Finding, Verdict
+from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.geometry import geometry_of
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
@@ -42,10 +42,10 @@ class _Condition(NamedTuple):
     check: Check
     value: float
     limit: float = math.nan
-    verdict: Verdict = Verdict.NOTE
+    verdict: PlanVerdict = PlanVerdict.NOTE
 
 
-def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield the numbers of a run in water that are not nothing."""
     if run.kind.in_air or not (run.oscillates or run.set_point.carriage_speed_m_s):
         return
@@ -62,9 +62,9 @@ def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
         check, quantity = one.check, one.check.quantity.format(**words)
         limit = f"limit {one.limit:.4g}" if math.isfinite(one.limit) else "no limit stated"
         text = f"{quantity} = {one.value:.4g} ({limit}, {check.source})"
-        if one.verdict is not Verdict.NOTE:
+        if one.verdict is not PlanVerdict.NOTE:
             text += f": {check.reason}"
-        yield Finding(one.verdict, quantity, one.value, one.limit, run.name, text, check.source)
+        yield PlanFinding(one.verdict, quantity, one.value, one.limit, run.name, text, check.source)
 
 
 def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
@@ -111,7 +111,9 @@ def _tau(tau: float, plane: Plane) -> _Condition:
     if plane is Plane.HORIZONTAL:
         return _below(table.TAU_SWAY, tau, critical - clearance)
     near = abs(tau - critical) < clearance
-    return _Condition(table.TAU_HEAVE, tau, critical, Verdict.WARN if near else Verdict.NOTE)
+    return _Condition(
+        table.TAU_HEAVE, tau, critical, PlanVerdict.WARN if near else PlanVerdict.NOTE
+    )
 
 
 def _of_depth(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
@@ -136,11 +138,13 @@ def _of_room(rig: RigFile, made: MotionWaves) -> Iterator[_Condition]:
     if rig.oscillator.plane is Plane.HORIZONTAL:
         sides = (model.beam_m or 0.0) / 2.0 * np.cos(made.rotation_rad)
         reach = float((np.abs(made.across_m) + ends + sides).max())
-        yield _below(table.REACH, reach, tank.width_m / 2.0, Verdict.REFUSE)
+        yield _below(table.REACH, reach, tank.width_m / 2.0, PlanVerdict.REFUSE)
     elif tank.depth_m is not None and model.draught_m is not None:
         reach = float((made.across_m + ends).max()) + model.draught_m
-        yield _below(table.KEEL, reach, tank.depth_m, Verdict.REFUSE)
+        yield _below(table.KEEL, reach, tank.depth_m, PlanVerdict.REFUSE)
 
 
-def _below(check: Check, value: float, limit: float, beyond: Verdict = Verdict.WARN) -> _Condition:
-    return _Condition(check, value, limit, beyond if value >= limit else Verdict.NOTE)
+def _below(
+    check: Check, value: float, limit: float, beyond: PlanVerdict = PlanVerdict.WARN
+) -> _Condition:
+    return _Condition(check, value, limit, beyond if value >= limit else PlanVerdict.NOTE)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from hardware.rig_configuration import Part
+from hardware.rig_configuration import RigPart
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
@@ -60,7 +60,7 @@ def _setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
     return max(_move_s(part, abs(to - (start or 0.0))) for part, to, start in ways)
 
 
-def _move_s(part: Part | None, way: float) -> float:
+def _move_s(part: RigPart | None, way: float) -> float:
     """Return the time of a move on a trapezoid; 0 for an axis that is set by hand."""
     speed, acceleration = _setting(part, "speed"), _setting(part, "acceleration")
     if not (speed and acceleration and way):
@@ -70,7 +70,7 @@ def _move_s(part: Part | None, way: float) -> float:
     return way / speed + speed / acceleration
 
 
-def _setting(part: Part | None, key: str) -> float | None:
+def _setting(part: RigPart | None, key: str) -> float | None:
     """Return a number of a device's settings; a lab's own driver may not have it."""
     value = None if part is None else getattr(part.settings, key, None)
     return float(value) if isinstance(value, int | float) else None

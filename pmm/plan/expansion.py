@@ -9,7 +9,7 @@ from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import LoadDirection, LoadStep
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.plan.plan_tables import Defaults, Entry, first_of
+from pmm.plan.plan_tables import Defaults, PlanEntry, first_of
 from pmm.plan.run_plan import RunPlan
 
 Lists = Sequence[Sequence[Any]]
@@ -54,7 +54,7 @@ def snake(lists: Lists) -> Iterator[tuple[Any, ...]]:
 
 
 def expand(
-    entry: Entry,
+    entry: PlanEntry,
     defaults: Defaults,
     oscillator: Oscillator,
     channels: Sequence[str],
@@ -87,7 +87,7 @@ def expand(
     return [_run(entry, defaults, oscillator, one) for one in combine(lists)]
 
 
-def run_count(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> int:
+def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> int:
     """Return how many runs :func:`expand` would make of an entry."""
     repeats = first_of(entry.repeats, defaults.repeats)
     if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
@@ -102,7 +102,9 @@ def run_count(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> int:
     return repeats * math.prod(max(1, len(one)) for one in lists)
 
 
-def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]) -> RunPlan:
+def _run(
+    entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
+) -> RunPlan:
     repeat, speed, drift, phase, amplitude, frequency = one
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
@@ -131,7 +133,7 @@ def _run(entry: Entry, defaults: Defaults, oscillator: Oscillator, one: tuple[An
     )
 
 
-def _lengths(entry: Entry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:
+def _lengths(entry: PlanEntry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:
     """Return how long a run takes: its periods, or its duration."""
     if not oscillates:
         return {"duration_s": first_of(entry.duration_s, defaults.duration_s)}
@@ -146,13 +148,13 @@ def _lengths(entry: Entry, defaults: Defaults, *, oscillates: bool) -> dict[str,
     }
 
 
-def _prefix(entry: Entry) -> str:
+def _prefix(entry: PlanEntry) -> str:
     if entry.kind is RunKind.OSCILLATION and entry.motion is not None:
         return str(entry.motion)
     return f"{entry.kind}-{entry.motion}" if entry.motion else str(entry.kind)
 
 
-def _name(entry: Entry, one: tuple[Any, ...]) -> str:
+def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
     """Return ``heave-f0.5-a20-u1.2-r2``: mm and degrees; what the entry does not vary is left out.
 
     Frequency and amplitude always stand there.
@@ -172,7 +174,7 @@ def _name(entry: Entry, one: tuple[Any, ...]) -> str:
     return "-".join(parts)
 
 
-def _loads(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> list[RunPlan]:
+def _loads(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> list[RunPlan]:
     """Return load steps up and down again, or one push, for each channel and repeat."""
     steps = [(load, LoadDirection.UP) for load in entry.loads_n]
     if entry.kind is RunKind.CHECK_WEIGHT:
@@ -186,7 +188,9 @@ def _loads(entry: Entry, defaults: Defaults, channels: Sequence[str]) -> list[Ru
     return runs
 
 
-def _loaded(entry: Entry, defaults: Defaults, step: LoadStep, repeat: int, number: int) -> RunPlan:
+def _loaded(
+    entry: PlanEntry, defaults: Defaults, step: LoadStep, repeat: int, number: int
+) -> RunPlan:
     parts = [entry.name or _prefix(entry), step.channel]
     if entry.kind is RunKind.CHECK_WEIGHT:
         parts.append(f"{number:02d}-{step.force_n:g}n")

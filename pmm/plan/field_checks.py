@@ -9,9 +9,9 @@ from typing import Final
 
 from hardware.description.kinds import RunKind
 from pmm.plan.check_table import CYCLES, SAMPLING, SETTLING, STRUCTURE, TANK_MODE
-from pmm.plan.findings import Finding, Verdict
+from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.rig_file import RigFile
-from pmm.plan.rig_tables import Tank
+from pmm.plan.rig_tables import TankTable
 from pmm.plan.run_plan import RunPlan
 
 _NEAR_TANK_MODE: Final = TANK_MODE.numbers[0]
@@ -19,7 +19,7 @@ _STRONG_HARMONICS: Final = 3
 _HARMONICS: Final = 6
 
 
-def field_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def field_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the field advises against in a run, and what is near it."""
     if not run.oscillates:
         return
@@ -30,21 +30,21 @@ def field_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
         yield from _tank_modes(run, rig)
 
 
-def _cycles(run: RunPlan) -> Iterator[Finding]:
+def _cycles(run: RunPlan) -> Iterator[PlanFinding]:
     for check, value in ((CYCLES, run.periods), (SETTLING, run.settling_periods)):
         (limit,) = check.numbers
         if value < limit:
             text = (
                 f"{check.quantity}: {value}, where at least {limit:g} are advised: {check.reason}"
             )
-            yield Finding(Verdict.WARN, check.quantity, float(value), limit, run.name, text)
+            yield PlanFinding(PlanVerdict.WARN, check.quantity, float(value), limit, run.name, text)
 
 
-def _sampling(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def _sampling(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     nyquist, highest = rig.sample_rate_hz / 2.0, _HARMONICS * run.set_point.frequency_hz
     if highest >= nyquist:
-        yield Finding(
-            Verdict.WARN,
+        yield PlanFinding(
+            PlanVerdict.WARN,
             SAMPLING.quantity,
             highest,
             nyquist,
@@ -54,7 +54,7 @@ def _sampling(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
         )
 
 
-def _structure(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def _structure(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield harmonics within 10 % of a structural mode, or three damping ratios if that is more."""
     nearest, damped = STRUCTURE.numbers
     for mode in rig.modes:
@@ -65,8 +65,8 @@ def _structure(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
             if abs(off) >= near:
                 continue
             strong = order <= _STRONG_HARMONICS
-            yield Finding(
-                Verdict.WARN if strong else Verdict.NOTE,
+            yield PlanFinding(
+                PlanVerdict.WARN if strong else PlanVerdict.NOTE,
                 STRUCTURE.quantity,
                 abs(off),
                 near,
@@ -76,7 +76,7 @@ def _structure(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
             )
 
 
-def tank_modes_hz(tank: Tank) -> tuple[float, ...]:
+def tank_modes_hz(tank: TankTable) -> tuple[float, ...]:
     """Return the frequencies of the tank's transverse waves, of lengths ``2 W / n``.
 
     From ``omega^2 = g k tanh(k h)``; up to where they lie so close that none can be avoided.
@@ -89,7 +89,7 @@ def tank_modes_hz(tank: Tank) -> tuple[float, ...]:
     return tuple(modes)
 
 
-def _tank_modes(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def _tank_modes(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield a tank mode nearby; at speed the model runs away from what it stirs up."""
     if rig.tank is None or run.kind is RunKind.RESTORING:
         return
@@ -97,8 +97,8 @@ def _tank_modes(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
     for n, mode in enumerate(tank_modes_hz(rig.tank), 1):
         off = frequency / mode - 1.0
         if abs(off) < _NEAR_TANK_MODE:
-            yield Finding(
-                Verdict.NOTE if speed else Verdict.WARN,
+            yield PlanFinding(
+                PlanVerdict.NOTE if speed else PlanVerdict.WARN,
                 TANK_MODE.quantity,
                 abs(off),
                 _NEAR_TANK_MODE,

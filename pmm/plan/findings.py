@@ -7,7 +7,7 @@ from enum import StrEnum
 from hardware.description.errors import PmmError
 
 
-class Verdict(StrEnum):
+class PlanVerdict(StrEnum):
     """What a finding means for the plan."""
 
     REFUSE = "refuse"  # the rig cannot, or must not, do it
@@ -16,7 +16,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class PlanFinding:
     """One finding.
 
     Attributes
@@ -35,7 +35,7 @@ class Finding:
         Whose limit it is, of a number that is stated for each run; empty for others.
     """
 
-    verdict: Verdict
+    verdict: PlanVerdict
     quantity: str
     value: float
     limit: float
@@ -46,12 +46,12 @@ class Finding:
     @property
     def is_stated(self) -> bool:
         """Whether it only states a number of the run's condition, with nothing against it."""
-        return bool(self.source) and self.verdict is Verdict.NOTE
+        return bool(self.source) and self.verdict is PlanVerdict.NOTE
 
 
-def largest_stated(found: Sequence[Finding]) -> tuple[Finding, ...]:
+def largest_stated(found: Sequence[PlanFinding]) -> tuple[PlanFinding, ...]:
     """Return the numbers that only state the runs' conditions, each at its largest, by name."""
-    largest: dict[str, Finding] = {}
+    largest: dict[str, PlanFinding] = {}
     for one in found:
         if one.is_stated and one.value >= largest.get(one.quantity, one).value:
             largest[one.quantity] = one

@@ -5,11 +5,11 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from hardware.rig_configuration import Part, load_of
+from hardware.rig_configuration import RigPart, load_of
 from pmm.plan import check_table as table
 from pmm.plan.check_table import Check
 from pmm.plan.duration import tank_length_m
-from pmm.plan.findings import Finding, Verdict
+from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.rig_file import RigFile
@@ -27,7 +27,7 @@ class _Bound(NamedTuple):
     channel: str = ""
 
 
-def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig cannot do, and forces that come near their limit."""
     for one in (*_turning(run, rig), *_setting(run, rig), *_towing(run, rig), *_loading(run, rig)):
         if not one.low <= one.value <= one.high:
@@ -38,7 +38,7 @@ def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
                 f"{quantity} = {one.value:.4g} is {side} {limit:.4g} ({one.where}): "
                 f"{one.check.reason}"
             )
-            yield Finding(Verdict.REFUSE, quantity, one.value, limit, run.name, text)
+            yield PlanFinding(PlanVerdict.REFUSE, quantity, one.value, limit, run.name, text)
     yield from _near_full_scale(run, rig)
 
 
@@ -94,7 +94,7 @@ def _loading(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
         yield _Bound(table.GAUGE_FORCE, force, 0.0, least, "full scale of the gauges")
 
 
-def _near_full_scale(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
+def _near_full_scale(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     force = force_peak_n(run, rig) if run.oscillates else None
     if force is None or not rig.gauges:
         return
@@ -105,10 +105,10 @@ def _near_full_scale(run: RunPlan, rig: RigFile) -> Iterator[Finding]:
             f"{least:g} N: {table.GAUGE_FORCE.reason}"
         )
         quantity = table.GAUGE_FORCE.quantity
-        yield Finding(Verdict.WARN, quantity, force, share * least, run.name, text)
+        yield PlanFinding(PlanVerdict.WARN, quantity, force, share * least, run.name, text)
 
 
-def bus_finding(rig: RigFile) -> Iterator[Finding]:
+def bus_finding(rig: RigFile) -> Iterator[PlanFinding]:
     """Yield the bus load; reading the rig's file has refused one that is beyond the limit."""
     bus = rig.hardware.bus
     if bus is None:
@@ -117,15 +117,15 @@ def bus_finding(rig: RigFile) -> Iterator[Finding]:
     layouts = [one for plan in plans for pdos in plan.layouts() for one in pdos]
     load = load_of(bus, Counter(one.size for one in layouts), len(plans))
     (largest,) = table.BUS.numbers
-    verdict = Verdict.NOTE if load <= largest else Verdict.REFUSE
+    verdict = PlanVerdict.NOTE if load <= largest else PlanVerdict.REFUSE
     text = (
         f"the bus carries {load:.1%} of {bus.bit_rate} bit/s at {bus.sync_rate_hz:g} Hz; the limit "
         f"is {largest:.0%}"
     )
-    yield Finding(verdict, table.BUS.quantity, load, largest, "", text)
+    yield PlanFinding(verdict, table.BUS.quantity, load, largest, "", text)
 
 
-def _ends(part: Part | None, low: str, high: str) -> tuple[float, float]:
+def _ends(part: RigPart | None, low: str, high: str) -> tuple[float, float]:
     """Return limits from a device's settings; a lab's own driver may not have them."""
     settings = None if part is None else part.settings
     return (

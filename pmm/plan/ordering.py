@@ -10,7 +10,7 @@ from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import SetPoint
 from pmm.plan.expansion import all_of, expand, snake
-from pmm.plan.plan_tables import Entry, Order, PlanTables, Scheme, Zero
+from pmm.plan.plan_tables import OrderTable, PlanEntry, PlanTables, Scheme, ZeroTable
 from pmm.plan.run_plan import RunPlan
 
 _ORDERED = (RunKind.OSCILLATION, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
@@ -21,7 +21,7 @@ def runs_of(
 ) -> tuple[RunPlan, ...]:
     """Return all runs of a plan in the order in which they are made."""
 
-    def made(entry: Entry) -> list[RunPlan]:
+    def made(entry: PlanEntry) -> list[RunPlan]:
         turns = tables.order.scheme is Scheme.SNAKE and entry.kind in _ORDERED
         combine = snake if turns else all_of
         return expand(entry, tables.defaults, oscillator, channels, combine)
@@ -35,7 +35,7 @@ def runs_of(
     return tuple(with_prompts(one) for one in runs)
 
 
-def in_order(entries: Sequence[Sequence[RunPlan]], order: Order) -> list[RunPlan]:
+def in_order(entries: Sequence[Sequence[RunPlan]], order: OrderTable) -> list[RunPlan]:
     """Return the runs of all entries; neighbouring oscillations and tows in the random order.
 
     Calibrations, dry runs and the like keep their place.
@@ -77,7 +77,7 @@ def with_control(runs: Sequence[RunPlan], control: RunPlan, every: int) -> list[
     return result
 
 
-def with_zeros(runs: Sequence[RunPlan], zero: Zero) -> list[RunPlan]:
+def with_zeros(runs: Sequence[RunPlan], zero: ZeroTable) -> list[RunPlan]:
     """Put zero runs before, between and after runs that want them, anew where the medium changes.
 
     The pause for calm water goes before the zero run; the run behind it follows at once.
@@ -109,7 +109,7 @@ def _zero_group(run: RunPlan) -> tuple[Any, ...]:
     return run.kind.wants_zeros, run.set_point.medium, run.known_mass
 
 
-def _zero_run(name: str, like: RunPlan, zero: Zero, prompts: tuple[str, ...]) -> RunPlan:
+def _zero_run(name: str, like: RunPlan, zero: ZeroTable, prompts: tuple[str, ...]) -> RunPlan:
     """Return a record at rest with the settings of the run that it stands beside."""
     point = like.set_point
     return RunPlan(

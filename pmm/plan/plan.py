@@ -21,9 +21,9 @@ from pmm.plan.plan_rules import (
     gate_faults,
     rig_faults,
 )
-from pmm.plan.plan_tables import Control, Defaults, Entry, PlanTables
+from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, PlanTables
 from pmm.plan.plan_units import EXTRA_KEYS, expand_units
-from pmm.plan.rig_file import Examined, RigFile, examine_rig
+from pmm.plan.rig_file import RigFile, RigFileReading, examine_rig
 from pmm.plan.run_plan import RunPlan
 
 T = TypeVar("T")
@@ -105,7 +105,7 @@ def _rig_path(path: Path, table: dict[str, Any]) -> Path:
     return path.parent / (rig if isinstance(rig, str) else "rig.toml")
 
 
-def _faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
+def _faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
     """Yield what is wrong with tables that are right key by key; each is looked at by itself."""
     yield from limit_faults(table)
     yield from campaign_name_faults(table)
@@ -114,14 +114,14 @@ def _faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
         yield Fault((), "the plan has no runs; add a table [[runs]] for each motion")
     defaults = _part(Defaults, table, "defaults") or Defaults()
     for number, one in enumerate(runs if isinstance(runs, list) else []):
-        entry = validate(Entry, one, []) if isinstance(one, dict) else None
+        entry = validate(PlanEntry, one, []) if isinstance(one, dict) else None
         if entry is not None:
             yield from _entry_faults(one, entry, defaults, found, ("runs", number))
     yield from _table_faults(table, found)
 
 
 def _entry_faults(
-    table: dict[str, Any], entry: Entry, defaults: Defaults, found: Examined, place: Place
+    table: dict[str, Any], entry: PlanEntry, defaults: Defaults, found: RigFileReading, place: Place
 ) -> Iterator[Fault]:
     fault = no_file_name(entry.name) if entry.name else None
     if fault is not None:
@@ -132,12 +132,12 @@ def _entry_faults(
     yield from channel_faults(entry, found.channels, place)
 
 
-def _table_faults(table: dict[str, Any], found: Examined) -> Iterator[Fault]:
+def _table_faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
     """Yield what is wrong with the tables beside the runs."""
     defaults = _part(Defaults, table, "defaults")
     if defaults is not None:
         yield from gate_faults(defaults, ("defaults",))
-    control = _part(Control, table, "control")
+    control = _part(ControlTable, table, "control")
     if control is not None:
         yield from control_faults(control, ("control",))
         yield from rig_faults(control.motion, found.oscillator, ("control",))

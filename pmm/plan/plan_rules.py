@@ -6,9 +6,9 @@ from typing import Any, Final
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator, Plane
 from pmm.configuration import Fault, Place, unknown
-from pmm.plan.plan_tables import Control, Defaults, Entry, first_of
+from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, first_of
 
-_KEYS: Final = tuple(Entry.__dataclass_fields__)
+_KEYS: Final = tuple(PlanEntry.__dataclass_fields__)
 _ALWAYS: Final = {"kind", "name", "repeats", "pause_s", "prompt"}
 _GATE: Final = {"periods", "settling_periods", "target_relative", "max_periods"}
 _MATRIX: Final = _GATE | {
@@ -59,7 +59,7 @@ _PLANES: Final = {
 }
 
 
-def entry_faults(table: dict[str, Any], entry: Entry, place: Place) -> Iterator[Fault]:
+def entry_faults(table: dict[str, Any], entry: PlanEntry, place: Place) -> Iterator[Fault]:
     """Yield what is wrong with an entry that is right key by key.
 
     Parameters
@@ -81,7 +81,7 @@ def entry_faults(table: dict[str, Any], entry: Entry, place: Place) -> Iterator[
     yield from _motion_faults(entry, place)
 
 
-def _number_faults(entry: Entry, place: Place) -> Iterator[Fault]:
+def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
     for key in (*_ABOVE_0, *_NOT_BELOW_0):
         strict = key in _ABOVE_0
         for value in getattr(entry, key):
@@ -100,14 +100,14 @@ def _number_faults(entry: Entry, place: Place) -> Iterator[Fault]:
     yield from gate_faults(entry, place)
 
 
-def gate_faults(one: Entry | Defaults, place: Place) -> Iterator[Fault]:
+def gate_faults(one: PlanEntry | Defaults, place: Place) -> Iterator[Fault]:
     """Yield a target that cannot be reached."""
     target = one.target_relative
     if target is not None and not 0.0 < target < 1.0:
         yield Fault((*place, "target_relative"), f"= {target:g} should be between 0 and 1")
 
 
-def control_faults(control: Control, place: Place) -> Iterator[Fault]:
+def control_faults(control: ControlTable, place: Place) -> Iterator[Fault]:
     """Yield what is wrong with the control condition."""
     if control.amplitude_m <= 0.0:
         yield Fault((*place, "amplitude_m"), f"= {control.amplitude_m:g} should be above 0")
@@ -120,7 +120,7 @@ def control_faults(control: Control, place: Place) -> Iterator[Fault]:
         yield Fault(tuple(_SINGLE.get(str(key), key) for key in fault.place), message)
 
 
-def end_faults(entry: Entry, defaults: Defaults, place: Place) -> Iterator[Fault]:
+def end_faults(entry: PlanEntry, defaults: Defaults, place: Place) -> Iterator[Fault]:
     """Yield what is wrong with an end by target, defaults included."""
     if entry.motion is None:
         return
@@ -135,7 +135,7 @@ def end_faults(entry: Entry, defaults: Defaults, place: Place) -> Iterator[Fault
         yield Fault(place, f"has max_periods = {most}, which is below periods = {fewest}")
 
 
-def _motion_faults(entry: Entry, place: Place) -> Iterator[Fault]:
+def _motion_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
     motion = entry.motion
     if motion is Motion.NONE:
         yield Fault((*place, "motion"), '= "none" is for runs at rest, which need no motion')
@@ -166,7 +166,9 @@ def rig_faults(
         )
 
 
-def channel_faults(entry: Entry, channels: Sequence[str] | None, place: Place) -> Iterator[Fault]:
+def channel_faults(
+    entry: PlanEntry, channels: Sequence[str] | None, place: Place
+) -> Iterator[Fault]:
     """Yield channels that the rig does not have."""
     if channels is None:
         return

@@ -20,7 +20,7 @@ class Scheme(StrEnum):
 
 
 @dataclass(frozen=True)
-class Order:
+class OrderTable:
     """The order of oscillations, drifts and tows that follow each other in the file.
 
     Attributes
@@ -37,7 +37,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Zero:
+class ZeroTable:
     """Records at rest before, between and after the runs that need the gauges' zero.
 
     Attributes
@@ -64,7 +64,7 @@ class Defaults:
 
 
 @dataclass(frozen=True)
-class Entry:
+class PlanEntry:
     """A matrix of runs: every combination of its lists.
 
     Attributes
@@ -108,7 +108,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Control:
+class ControlTable:
     """The condition that is repeated: before, between and after the oscillations in water.
 
     Attributes
@@ -130,9 +130,9 @@ class Control:
     settling_periods: int | None = None
     pause_s: float | None = None
 
-    def entry(self) -> Entry:
+    def entry(self) -> PlanEntry:
         """Return it as an entry of one run."""
-        return Entry(
+        return PlanEntry(
             kind=RunKind.CONTROL,
             motion=self.motion,
             name="control",
@@ -162,10 +162,10 @@ class PlanTables:
     rig: str = "rig.toml"
     operator: str = ""
     defaults: Defaults = field(default_factory=Defaults)
-    order: Order = field(default_factory=Order)
-    zero: Zero | None = None
-    control: Control | None = None
-    runs: tuple[Entry, ...] = ()
+    order: OrderTable = field(default_factory=OrderTable)
+    zero: ZeroTable | None = None
+    control: ControlTable | None = None
+    runs: tuple[PlanEntry, ...] = ()
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}

@@ -12,7 +12,7 @@ from hardware.description.body import Ship
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
-from hardware.watch import Watched
+from hardware.watch import WatchLimits
 from pmm.campaign.calibration import Calibration, read_calibration
 from pmm.campaign.oscillator_table import expand_preset
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
@@ -33,7 +33,7 @@ from pmm.plan.rig_tables import (
     RecorderSettings,
     RigTables,
     StructuralMode,
-    Tank,
+    TankTable,
 )
 
 
@@ -71,7 +71,7 @@ class RigFile:
     name: str = "rig"
     model: Ship | None = None
     hull: HullEstimate | None = None
-    tank: Tank | None = None
+    tank: TankTable | None = None
     limits: Limits = field(default_factory=Limits)
     gauges: tuple[Gauge, ...] = ()
     modes: tuple[StructuralMode, ...] = ()
@@ -83,10 +83,10 @@ class RigFile:
     tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
-    def watched(self) -> Watched:
+    def watched(self) -> WatchLimits:
         """What the rig watches in every cycle: highest frequency, safe loads."""
         loads = {one.channel: one.safe_n for one in self.gauges}
-        return Watched(self.oscillator.frequency_hz.high, MappingProxyType(loads))
+        return WatchLimits(self.oscillator.frequency_hz.high, MappingProxyType(loads))
 
     @property
     def sample_rate_hz(self) -> float:
@@ -95,7 +95,7 @@ class RigFile:
 
 
 @dataclass(frozen=True)
-class Examined:
+class RigFileReading:
     """What could be made of a rig's file: all of it, or the parts that a plan is read against.
 
     Attributes
@@ -130,12 +130,12 @@ def read_rig_file(path: str | Path) -> RigFile:
     return found.rig
 
 
-def examine_rig(path: Path) -> Examined:
+def examine_rig(path: Path) -> RigFileReading:
     """Read a rig's file as far as it goes."""
     try:
         original = read_toml(path)
     except ConfigurationError as error:
-        return Examined(error=error)
+        return RigFileReading(error=error)
     faults: list[Fault] = []
     table = deepcopy(original)
     devices = {key: table.pop(key) for key in TABLES if key in table}
@@ -151,13 +151,13 @@ def examine_rig(path: Path) -> Examined:
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
-        return Examined(None, oscillator, channels, as_error(path, faults, original))
+        return RigFileReading(None, oscillator, channels, as_error(path, faults, original))
     rig = _built(path, replace(own, modes=own.modes + modes), hardware, devices)
     # As written: a table that is read again elsewhere is handed on untouched.
     kept = MappingProxyType(dict(original.get("campaign", {})))
     tables = MappingProxyType(original)
     rig = replace(rig, campaign=kept, calibration=calibration, tables=tables)
-    return Examined(rig, oscillator, channels)
+    return RigFileReading(rig, oscillator, channels)
 
 
 def _more_modes(

@@ -26,7 +26,7 @@ class HullEstimate:
 
 
 @dataclass(frozen=True)
-class Tank:
+class TankTable:
     """The towing tank.
 
     Attributes
@@ -143,7 +143,7 @@ class RigTables:
     realtime: bool | None = None
     model: Ship | None = None
     hull: HullEstimate | None = None
-    tank: Tank | None = None
+    tank: TankTable | None = None
     limits: Limits = field(default_factory=Limits)
     gauges: tuple[Gauge, ...] = ()
     modes: tuple[StructuralMode, ...] = ()

@@ -13,7 +13,7 @@ import numpy as np
 from hardware.description.channels import SHAFT_ANGLE, STANDARD, Channel
 from hardware.description.simulation_tables import GAUGES, merged
 from hardware.dictionary import Entry, entry
-from hardware.rig_configuration import Part, RigConfiguration
+from hardware.rig_configuration import RigConfiguration, RigPart
 from pmm.campaign.calibration import Calibration
 from pmm.plan.rig_file import RigFile
 
@@ -71,7 +71,7 @@ def resolutions(hardware: RigConfiguration) -> dict[str, float]:
     return found if not counts else found | {SHAFT_ANGLE.name: 2.0 * math.pi / abs(counts)}
 
 
-def _counting(part: Part) -> Iterator[Any]:
+def _counting(part: RigPart) -> Iterator[Any]:
     """Yield the channels of an amplifier whose objects are whole numbers."""
     whole = set(_whole_numbers(part))
     for one in getattr(part.settings, "channels", ()):
@@ -79,7 +79,7 @@ def _counting(part: Part) -> Iterator[Any]:
             yield one
 
 
-def _whole_numbers(part: Part) -> Iterator[Entry]:
+def _whole_numbers(part: RigPart) -> Iterator[Entry]:
     for plan in part.nodes():
         for one in plan.layouts()[0]:
             codes = one.code.format.lstrip("<")

@@ -15,7 +15,7 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.simulation_tables import simulation_tables, with_preset
 from hardware.simulated import SimulatedTables, simulated_behind
 from pmm.configuration import read_toml
-from pmm.plan.findings import Finding, Verdict
+from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.rig_file import RigFile
 
 CODE: Final = "simulated_differs"
@@ -65,18 +65,20 @@ def departures(rig: RigFile) -> tuple[Departure, ...]:
     return tuple(_departures(stated, simulated, rig.path.name))
 
 
-def departure_findings(rig: RigFile) -> Iterator[Finding]:
+def departure_findings(rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what a plan's check says of it; a simulated rig that cannot be made is refused."""
     try:
         found = departures(rig)
     except ConfigurationError as error:
         nan = float("nan")
-        yield Finding(Verdict.REFUSE, _QUANTITY, nan, nan, "", f"the simulated rig: {error}")
+        yield PlanFinding(
+            PlanVerdict.REFUSE, _QUANTITY, nan, nan, "", f"the simulated rig: {error}"
+        )
         return
     for one in found:
-        verdict = Verdict.WARN if one.contradicts else Verdict.NOTE
-        yield Finding(verdict, _QUANTITY, _number(one.simulated), _number(one.stated), "",
-                      one.message)  # fmt: skip
+        verdict = PlanVerdict.WARN if one.contradicts else PlanVerdict.NOTE
+        yield PlanFinding(verdict, _QUANTITY, _number(one.simulated), _number(one.stated), "",
+                          one.message)  # fmt: skip
 
 
 def departure_flag(found: tuple[Departure, ...]) -> Iterator[Flag]:

@@ -13,7 +13,7 @@ from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.rig import Rig
-from hardware.roles import Block, Pulse, Sampled
+from hardware.roles import Pulse, SampleBlock, Sampled
 from pmm.recorder.header import LiveSettings
 
 PATIENCE_CYCLES: Final = 4
@@ -56,7 +56,7 @@ class _Source:
     rows: slice
     last: int
     offset: int | None = None  # SYNC of its sample number 0: for a device that counts its own
-    waiting: list[Block] = field(default_factory=list)
+    waiting: list[SampleBlock] = field(default_factory=list)
 
     def listen(self, number: int) -> None:
         """Take what has come by cycle ``number``."""
@@ -64,7 +64,7 @@ class _Source:
             if self.offset is None:
                 off = number - _last(taken[-1])
                 self.offset = 0 if abs(off) <= PATIENCE_CYCLES else off
-            block = Block(one.first + self.offset, one.values)
+            block = SampleBlock(one.first + self.offset, one.values)
             self.waiting.append(block)
             self.last = _last(block)
 
@@ -185,5 +185,5 @@ def as_record(reading: Harmonics) -> dict[str, Any]:
     }
 
 
-def _last(block: Block) -> int:
+def _last(block: SampleBlock) -> int:
     return block.first + int(block.values.shape[1]) - 1

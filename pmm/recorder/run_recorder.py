@@ -49,7 +49,7 @@ class RecordingStalledError(DataError):
     """The disk takes nothing any more: what is recorded now would be lost."""
 
 
-class Outcome(StrEnum):
+class RunEnd(StrEnum):
     """How a run ended."""
 
     COMPLETE = "complete"
@@ -222,7 +222,7 @@ class RunRecorder:
         if self._short is not None:
             raise self._short.with_traceback(None)
 
-    def close(self, outcome: Outcome, flags: Sequence[Flag] = ()) -> Path:
+    def close(self, outcome: RunEnd, flags: Sequence[Flag] = ()) -> Path:
         """Write the completion marker and the recording as NetCDF; return its path.
 
         Raises
@@ -238,7 +238,7 @@ class RunRecorder:
             self._closed = True
             self._journal.close()
 
-    def _close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+    def _close(self, outcome: RunEnd, flags: Sequence[Flag]) -> Path:
         self.frame = _let_go  # the loop may go on while another thread closes
         self._hand_over()
         self._journal.finish()

@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.kinds import RunKind
-from pmm.plan.findings import Verdict
+from pmm.plan.findings import PlanVerdict
 from pmm.plan.limits import limit_findings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
@@ -95,7 +95,7 @@ def _point(run: RunPlan) -> tuple[float, float]:
 
 
 def _refused(run: RunPlan, rig: RigFile) -> Iterator[bool]:
-    return (one.verdict is Verdict.REFUSE for one in limit_findings(run, rig))
+    return (one.verdict is PlanVerdict.REFUSE for one in limit_findings(run, rig))
 
 
 def _finish(

@@ -13,7 +13,7 @@ from pmm.recorder.files import HEADER, RECORDING, is_run
 from pmm.recorder.header import RunHeader
 from pmm.recorder.marker import read_marker
 from pmm.recorder.recording import NOISE
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.identity import KEPT, Sources, check_unchanged
 
 
@@ -26,7 +26,7 @@ def folder_of(plan: Plan, folder: str, output: str | None) -> Path:
 
 def done_runs(folder: Path, runs: Sequence[RunPlan]) -> tuple[str, ...]:
     """Return the names of the runs that are recorded and complete."""
-    return tuple(one.name for one in runs if _outcome(folder / one.name) == Outcome.COMPLETE)
+    return tuple(one.name for one in runs if _outcome(folder / one.name) == RunEnd.COMPLETE)
 
 
 def chosen_runs(

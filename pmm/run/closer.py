@@ -5,10 +5,10 @@ from concurrent.futures import Executor, Future
 from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.conduct import Conduct
 from pmm.run.measurement import Measurement
-from pmm.run.status import HarmonicRow, RunOutcome
+from pmm.run.status import ChannelReading, RunOutcome
 
 
 class Closing:
@@ -26,13 +26,13 @@ class Closing:
         self,
         measurement: Measurement,
         run: RunPlan,
-        outcome: Outcome,
+        outcome: RunEnd,
         reason: str,
         executor: Executor | None,
     ) -> None:
         self._measurement, self._run = measurement, run
         self._outcome, self._reason = outcome, reason
-        self._rows: tuple[HarmonicRow, ...] = ()
+        self._rows: tuple[ChannelReading, ...] = ()
         try:
             self._rows = measurement.rows()
         except Exception as error:  # closing is never skipped
@@ -66,7 +66,7 @@ class Closing:
             return str(self._measurement.journal.close(self._outcome, self._measurement.flags))
         except Exception as error:  # whatever it is, the loop goes on and the journals stay
             why = error if isinstance(error, PmmError | OSError) else as_fault("recorder", error)
-            self._outcome = Outcome.FAULT
+            self._outcome = RunEnd.FAULT
             if not self._measurement.journal.begun:
                 self._reason = self._reason or str(why)
                 return ""
@@ -99,14 +99,14 @@ class Closer:
         """Whether a recording is still being completed."""
         return self._closing is not None
 
-    def close(self, c: Conduct, outcome: Outcome, reason: str = "") -> None:
+    def close(self, c: Conduct, outcome: RunEnd, reason: str = "") -> None:
         """End the present run; one that left before it recorded anything is none but complete."""
         if c.run is None:
             return
         if c.measurement is not None:
             self._closing = Closing(c.measurement, c.run, outcome, reason, self.executor)
             c.measurement = None
-        elif outcome is not Outcome.COMPLETE and not self.ended(c.run):
+        elif outcome is not RunEnd.COMPLETE and not self.ended(c.run):
             run = c.run
             self.outcomes.append(
                 RunOutcome(run.name, str(run.kind), str(outcome), "", 0, (), (), None, reason)

@@ -11,9 +11,9 @@ from hardware.roles import PositionAxis
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import LivePath
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.measurement import Measurement
-from pmm.run.states import Machine, State
+from pmm.run.states import RunStateMachine, State
 from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
@@ -64,10 +64,10 @@ class Conduct:
     pushed: int = 0
     restless: int = 0
     astray: int = 0
-    ending: Outcome = Outcome.COMPLETE
+    ending: RunEnd = RunEnd.COMPLETE
     leaves_plan: bool = False
     placed: dict[str, float] = field(default_factory=dict)
-    machine: Machine = field(default_factory=Machine)
+    machine: RunStateMachine = field(default_factory=RunStateMachine)
     questions: Questions = field(init=False)
     path: LivePath = field(init=False)
 
@@ -78,10 +78,10 @@ class Conduct:
     def take(self, run: RunPlan) -> None:
         """Make a run the present one."""
         self.run, self.pushed = run, 0
-        self.ending, self.leaves_plan = Outcome.COMPLETE, False
+        self.ending, self.leaves_plan = RunEnd.COMPLETE, False
 
     def go(self, state: State) -> None:
-        """Enter a state in the present cycle; raises as :meth:`pmm.run.states.Machine.go`."""
+        """Enter a state in the present cycle; raises as the state machine does."""
         self.machine.go(state)
         self.since, self.told = self.rig.number, False
 

@@ -37,7 +37,7 @@ _TABLES: Final = ("oscillator", "model", "model_uncertainty", "hull", "reference
 
 
 @dataclass(frozen=True)
-class Made:
+class RunOrigin:
     """What a run was made from, seen from what plan and rig say now.
 
     Attributes
@@ -59,7 +59,7 @@ class Sources:
         self._folder, self._plan, self._rig = folder, plan, rig
         self._planned = {one.name: one for one in plan.runs}
 
-    def made(self, header: RunHeader, run: RunPlan) -> Made:
+    def made(self, header: RunHeader, run: RunPlan) -> RunOrigin:
         """Return what a recorded run was made from.
 
         Parameters
@@ -70,16 +70,16 @@ class Sources:
         told = [*self._plan_changes(run), *_calibration_changes(header, self._rig)]
         hashed = header.configuration_sha256.get("rig", "")
         if hashed == self._rig.sha256:
-            return Made(tuple(told))
+            return RunOrigin(tuple(told))
         name, before = self._rig.path.name, self._copies.get(hashed)
         if before is None:
             text = (
                 f"{name} was another file (sha256 {hashed[:12] or 'unknown'}), of which "
                 f"{self._folder / KEPT} has no copy"
             )
-            return Made((*told, text))
+            return RunOrigin((*told, text))
         told += _changes(name, before, dict(self._rig.tables))
-        return Made(tuple(told), _tables_before(before, self._rig.tables) or None)
+        return RunOrigin(tuple(told), _tables_before(before, self._rig.tables) or None)
 
     @cached_property
     def _copies(self) -> dict[str, dict[str, Any]]:

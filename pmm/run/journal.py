@@ -9,10 +9,10 @@ from hardware.description.flags import Flag
 from hardware.raw_log import Frame
 from hardware.roles import Pulse
 from pmm.recorder.lateness import CycleStatistics
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 
 
-class Journal(Protocol):
+class RunJournal(Protocol):
     """Keeps a run; :class:`pmm.recorder.run_recorder.RunRecorder` does it on disk."""
 
     @property
@@ -52,7 +52,7 @@ class Journal(Protocol):
         """Flush what is due by the monotonic clock."""
         ...
 
-    def close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+    def close(self, outcome: RunEnd, flags: Sequence[Flag]) -> Path:
         """Complete the run; return its recording."""
         ...
 

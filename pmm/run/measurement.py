@@ -18,10 +18,10 @@ from pmm.recorder.header import LiveSettings
 from pmm.recorder.live_path import GateResolver, Taken, as_record, header_channels
 from pmm.run.errors import GateVoidError, RecordingError
 from pmm.run.gate import Gate, GateState
-from pmm.run.journal import Journal
+from pmm.run.journal import RunJournal
 from pmm.run.push import PushRecord
 from pmm.run.readings import Means, beside, far_text, needles, rows_of, worst_relative
-from pmm.run.status import HarmonicRow
+from pmm.run.status import ChannelReading
 
 _TRIES = 3  # gates of a run; the third void one ends it
 
@@ -63,7 +63,7 @@ class Measurement:
         self,
         rig: Rig,
         run: RunPlan,
-        journal: Journal,
+        journal: RunJournal,
         live: LiveSettings,
         expected: Mapping[str, Expected] = MappingProxyType({}),
     ) -> None:
@@ -193,7 +193,7 @@ class Measurement:
         with kept(self.run.name):
             self.journal.event(number, number / self._rate_hz, kind, text)
 
-    def rows(self) -> tuple[HarmonicRow, ...]:
+    def rows(self) -> tuple[ChannelReading, ...]:
         """Return what is known of the channels by now: final, else the needles, else nothing."""
         if self.gate.state is GateState.HELD and self.reading is not None:
             return beside(rows_of(self.reading), self._expected)

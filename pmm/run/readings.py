@@ -11,14 +11,14 @@ from analysis.resolver.live import Provisional
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from pmm.plan.force_estimate import Expected
-from pmm.run.status import HarmonicRow
+from pmm.run.status import ChannelReading
 
 
-def rows_of(reading: Harmonics) -> tuple[HarmonicRow, ...]:
+def rows_of(reading: Harmonics) -> tuple[ChannelReading, ...]:
     """Return mean and first harmonic of each channel with the larger 95 % half-width."""
     widths = half_widths(reading)
     return tuple(
-        HarmonicRow(
+        ChannelReading(
             name,
             unit,
             float(row[0]),
@@ -35,13 +35,15 @@ def rows_of(reading: Harmonics) -> tuple[HarmonicRow, ...]:
 
 def needles(
     channels: Sequence[Channel], now: Provisional | None, last: Harmonics | None
-) -> tuple[HarmonicRow, ...]:
+) -> tuple[ChannelReading, ...]:
     """Return the provisional readings, with the interval of the last final one."""
     if now is None:
         return ()
     widths = half_widths(last) if last is not None else np.full(len(channels), math.nan)
     return tuple(
-        HarmonicRow(one.name, one.unit, float(row[0]), float(row[1]), float(row[2]), float(width))
+        ChannelReading(
+            one.name, one.unit, float(row[0]), float(row[1]), float(row[2]), float(width)
+        )
         for one, row, width in zip(channels, now.coefficients, widths, strict=True)
     )
 
@@ -61,7 +63,7 @@ class Means:
         self._square += (good**2).sum(axis=1)
         self._count += good.shape[1]
 
-    def rows(self) -> tuple[HarmonicRow, ...]:
+    def rows(self) -> tuple[ChannelReading, ...]:
         """Return the means; the half-width is that of white noise."""
         if not self._count:
             return ()
@@ -69,14 +71,14 @@ class Means:
         spread = np.sqrt(np.maximum(self._square / self._count - means**2, 0.0))
         widths = 1.96 * spread / math.sqrt(self._count)
         return tuple(
-            HarmonicRow(one.name, one.unit, float(mean), 0.0, 0.0, float(width), final=True)
+            ChannelReading(one.name, one.unit, float(mean), 0.0, 0.0, float(width), final=True)
             for one, mean, width in zip(self._channels, means, widths, strict=True)
         )
 
 
 def beside(
-    rows: Sequence[HarmonicRow], expected: Mapping[str, Expected]
-) -> tuple[HarmonicRow, ...]:
+    rows: Sequence[ChannelReading], expected: Mapping[str, Expected]
+) -> tuple[ChannelReading, ...]:
     """Return the rows with what the plan estimates; without an interval yet none is far."""
     found = []
     for row in rows:
@@ -88,7 +90,7 @@ def beside(
     return tuple(found)
 
 
-def far_text(row: HarmonicRow) -> str:
+def far_text(row: ChannelReading) -> str:
     """Return in words that a force is far from its estimate, and what to look at."""
     return (
         f"{row.channel}: first harmonic {row.amplitude:.4g} N, the plan estimates "

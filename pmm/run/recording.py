@@ -33,7 +33,7 @@ _MEGA: Final = 1e6
 
 
 @dataclass
-class Recording:
+class RecorderFactory:
     """Opens recorders in a campaign's folder.
 
     Attributes
@@ -55,7 +55,7 @@ class Recording:
     provenance: Mapping[str, str] = field(default_factory=dict)
     _free_bytes: int | None = field(default=None, init=False)
 
-    def __enter__(self) -> "Recording":
+    def __enter__(self) -> "RecorderFactory":
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -11,7 +11,7 @@ from analysis.resolver.live import LiveResolver
 from hardware.description.channels import Channel
 from hardware.description.errors import PmmError
 from pmm.recorder.header import RunHeader
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from pmm.run.readings import needles
 
 _CHANNELS: Final = (Channel("nothing", "1"),)
@@ -42,7 +42,7 @@ def rehearse() -> None:
         RunRecorder(Path(folder) / about.run_name, about) as recorder,
     ):
         recorder.samples(1, values)
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
 
 
 def _resolve(values: np.ndarray) -> None:

@@ -14,7 +14,7 @@ from hardware.errors import HardwareError, Reaction, as_fault
 from hardware.rig import Rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.closer import Closer
 from pmm.run.conduct import Begin, Conduct
 from pmm.run.errors import RecordingError
@@ -22,7 +22,7 @@ from pmm.run.fault_latch import FaultLatch
 from pmm.run.measurement import Measurement
 from pmm.run.phases import PHASES, enter
 from pmm.run.states import Command, RunStateError, State
-from pmm.run.status import Alarms, RunOutcome, Status
+from pmm.run.status import Alarms, RunOutcome, RunStatus
 from pmm.run.stopper import Stopper
 
 if TYPE_CHECKING:
@@ -173,11 +173,11 @@ class RunControl:
         except Exception as error:  # nor by what only shows
             self._faults.take(as_fault("view", error))
 
-    def status(self) -> Status:
+    def status(self) -> RunStatus:
         """Return a picture of this moment."""
         c, number = self._conduct, self.rig.number
         run, measurement = c.run, c.measurement
-        return Status(
+        return RunStatus(
             state=self.state,
             cycle=number,
             time_s=number / c.rate_hz,
@@ -186,7 +186,7 @@ class RunControl:
             run_number=self._numbers[run.name] if run else 0,
             run_count=len(self.runs),
             frequency_hz=run.set_point.frequency_hz if run else 0.0,
-            gate=measurement.gate.state if measurement else Status.gate,
+            gate=measurement.gate.state if measurement else RunStatus.gate,
             periods=measurement.gate.periods if measurement else 0,
             wanted_periods=measurement.gate.wanted if measurement else 0,
             harmonics=measurement.rows() if measurement else (),
@@ -215,7 +215,7 @@ class RunControl:
     def _hear_closer(self) -> None:
         """Take how a run ended; a recording that could not be completed is a fault."""
         ended = self._closer.closed()
-        if ended is not None and ended.outcome == Outcome.FAULT and self.fault is None:
+        if ended is not None and ended.outcome == RunEnd.FAULT and self.fault is None:
             self._faults.take(RecordingError(f"recorder of {ended.run}", ended.reason))
 
     def _do(self) -> None:
@@ -236,7 +236,7 @@ class RunControl:
 
     def _wind_down(self) -> None:
         """In a fault: close the recording once the axes rest, or whatever goes wrong meanwhile."""
-        close = partial(self._closer.close, self._conduct, Outcome.FAULT, str(self.fault))
+        close = partial(self._closer.close, self._conduct, RunEnd.FAULT, str(self.fault))
         try:
             if self._stopper.winding_down and self._stopper.wound_down():
                 close()
@@ -267,7 +267,7 @@ class RunControl:
         enter(self._conduct, State.HOMING)
 
     def _skip(self) -> None:
-        self._conduct.ending = Outcome.STOPPED
+        self._conduct.ending = RunEnd.STOPPED
         enter(self._conduct, State.STOPPING)
 
     def _reset(self) -> None:

@@ -196,7 +196,7 @@ def is_allowed(command: Command, state: State) -> bool:
     return command is Command.QUICK_STOP or command in STATES[state].commands
 
 
-class Machine:
+class RunStateMachine:
     """Holds the state; refuses what the table does not know."""
 
     def __init__(self) -> None:

@@ -38,7 +38,7 @@ class Alarms:
 
 
 @dataclass(frozen=True)
-class HarmonicRow:
+class ChannelReading:
     """First harmonic and mean of a channel.
 
     Attributes
@@ -72,7 +72,7 @@ class HarmonicRow:
 
 
 @dataclass(frozen=True)
-class Status:
+class RunStatus:
     """One moment of run control.
 
     Attributes
@@ -102,7 +102,7 @@ class Status:
     gate: GateState = GateState.CLOSED
     periods: int = 0
     wanted_periods: int = 0
-    harmonics: tuple[HarmonicRow, ...] = ()
+    harmonics: tuple[ChannelReading, ...] = ()
     question: str = ""
     alarms: tuple[str, ...] = ()
     statistics: CycleStatistics | None = None
@@ -126,7 +126,7 @@ class RunOutcome:
     outcome: str
     file: str
     periods: int
-    harmonics: tuple[HarmonicRow, ...]
+    harmonics: tuple[ChannelReading, ...]
     flags: tuple[Flag, ...]
     statistics: CycleStatistics | None
     reason: str = ""

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from typing import Final
 
-from pmm.start.behaviour import Watched
+from pmm.start.behaviour import RecordingBehaviour
 
 _STANDS: Final = 0.02  # of a run's amplitude: what moves no more in any column stands
 _TIMELESS: Final = 0.2  # the same where nothing keeps time either
 
 
-def at_rest(watched: Sequence[Watched]) -> list[bool]:
+def at_rest(watched: Sequence[RecordingBehaviour]) -> list[bool]:
     """Tell of each recording whether it is one at rest.
 
     Judged by the columns that carry the line of the recording with the cleanest one: at rest none
@@ -27,7 +27,7 @@ def at_rest(watched: Sequence[Watched]) -> list[bool]:
     return [_stands(one, amplitudes, in_time=one in timed) for one in watched]
 
 
-def _stands(one: Watched, amplitudes: dict[str, float], *, in_time: bool) -> bool:
+def _stands(one: RecordingBehaviour, amplitudes: dict[str, float], *, in_time: bool) -> bool:
     moved = [
         one.columns[name].spread / amplitude
         for name, amplitude in amplitudes.items()

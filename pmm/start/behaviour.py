@@ -11,7 +11,7 @@ from analysis.readers.photocell import edges_of_level
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE
-from pmm.start.shared_line import NO_PART, SAME_TIME, Line, Part, parts_in, shared_line
+from pmm.start.shared_line import NO_PART, SAME_TIME, LinePart, SharedLine, parts_in, shared_line
 
 TURNS: Final[Mapping[str, float]] = {"deg": 360.0, "rad": 2.0 * np.pi, "rev": 1.0}
 _STRAIGHT: Final = 0.1  # turns, standard deviation about an even turn: a drive's ripple is less
@@ -52,29 +52,31 @@ class Behaviour:
     unit: str
     mean: float
     spread: float
-    part: Part = NO_PART
+    part: LinePart = NO_PART
     turn: Turn | None = None
     pulses: bool = False
 
 
 @dataclass(frozen=True, eq=False)
-class Watched:
+class RecordingBehaviour:
     """A recording's line, if it has one, and its columns by name."""
 
-    line: Line | None
+    line: SharedLine | None
     columns: Mapping[str, Behaviour]
 
 
-def watch(recording: Recording) -> Watched:
+def watch(recording: Recording) -> RecordingBehaviour:
     """Return what the columns of a recording do."""
     line = shared_line(recording)
     names = recording.channel_names
     parts = [NO_PART] * len(names) if line is None else parts_in(recording, names, line.reference)
     behaviours = map(partial(_behaviour, recording, line), names, parts)
-    return Watched(line, dict(zip(names, behaviours, strict=True)))
+    return RecordingBehaviour(line, dict(zip(names, behaviours, strict=True)))
 
 
-def _behaviour(recording: Recording, line: Line | None, name: str, part: Part) -> Behaviour:
+def _behaviour(
+    recording: Recording, line: SharedLine | None, name: str, part: LinePart
+) -> Behaviour:
     unit = recording.channels[recording.index(name)].unit
     values = recording.values(name)
     finite = values[np.isfinite(values)]
@@ -89,7 +91,7 @@ def _behaviour(recording: Recording, line: Line | None, name: str, part: Part) -
     )
 
 
-def _turn(recording: Recording, name: str, line: Line) -> Turn | None:
+def _turn(recording: Recording, name: str, line: SharedLine) -> Turn | None:
     """Tell whether a column rises by one turn, in some unit, in each period of the line."""
     start_s, end_s = line.reference.times_s[[0, -1]].tolist()
     inside = recording.between(start_s, end_s)
@@ -109,7 +111,7 @@ def _turn(recording: Recording, name: str, line: Line) -> Turn | None:
     return None
 
 
-def _pulses(recording: Recording, values: FloatArray, line: Line) -> bool:
+def _pulses(recording: Recording, values: FloatArray, line: SharedLine) -> bool:
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     margin = _LEVEL * (high - low)
     if not margin or np.mean((values < low + margin) | (values > high - margin)) < _MOSTLY:

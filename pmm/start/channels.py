@@ -8,14 +8,14 @@ import numpy as np
 
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from pmm.start import words
-from pmm.start.behaviour import Watched
+from pmm.start.behaviour import RecordingBehaviour
 from pmm.start.found import CHANNELS, Column
-from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, Role
+from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, ColumnRole
 
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres
 
 
-def as_columns(roles: Sequence[Role], running: Sequence[Watched]) -> list[Column]:
+def as_columns(roles: Sequence[ColumnRole], running: Sequence[RecordingBehaviour]) -> list[Column]:
     """Return the channels, sure or not, and the columns with the line that keep their names."""
     found: list[Column] = []
     for kind, channels in ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES)):
@@ -30,7 +30,7 @@ def as_columns(roles: Sequence[Role], running: Sequence[Watched]) -> list[Column
     return [*found, *_keeping_names({one.column for one in found if not one.doubt}, running)]
 
 
-def _of_struts(roles: Sequence[Role], channels: Sequence[str]) -> Iterator[Column]:
+def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator[Column]:
     doubts = {one.column: one.doubt for one in roles}
     names = words.struts_in_order(list(doubts))
     told = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
@@ -50,7 +50,7 @@ def by_order_of_names(columns: Sequence[Column]) -> bool:
     )
 
 
-def _with_unit(one: Column, running: Sequence[Watched]) -> Column:
+def _with_unit(one: Column, running: Sequence[RecordingBehaviour]) -> Column:
     """Say the unit that the numbers have where the header has none."""
     seen = [watched.columns[one.column] for watched in running if one.column in watched.columns]
     if seen[0].unit or one.name == PULSES.name:
@@ -69,7 +69,7 @@ def _with_unit(one: Column, running: Sequence[Watched]) -> Column:
     return replace(one, remark="no unit in the header")
 
 
-def _keeping_names(taken: set[str], running: Sequence[Watched]) -> Iterator[Column]:
+def _keeping_names(taken: set[str], running: Sequence[RecordingBehaviour]) -> Iterator[Column]:
     """Yield what carries the line in most runs and is no channel of the rig for sure."""
     names = sorted({name for one in running for name in one.columns} - taken, key=words.natural)
     for name in names:

@@ -23,7 +23,7 @@ FILES: Final[Mapping[str, tuple[str, ...]]] = {
 
 
 @dataclass(frozen=True)
-class Task:
+class StartTask:
     """What a job is to write: its answers, for which folder, from which recordings."""
 
     job: str
@@ -47,14 +47,14 @@ class Draft:
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenFiles:
     """Files that were written, and what to look at in them."""
 
     paths: Sequence[Path]
     notes: tuple[str, ...] = ()
 
 
-def write(task: Task, *, force: bool = False) -> Written:
+def write(task: StartTask, *, force: bool = False) -> WrittenFiles:
     """Write a job's files.
 
     Raises
@@ -71,10 +71,10 @@ def write(task: Task, *, force: bool = False) -> Written:
         raise ConfigurationError(f"{', '.join(missing)}: no such recording")
     draft = _DRAFTS[task.job](task)
     paths = write_tried(task.folder, draft.files, draft.trial, force=force)
-    return Written(paths, draft.notes)
+    return WrittenFiles(paths, draft.notes)
 
 
-def _rig(task: Task) -> Draft:
+def _rig(task: StartTask) -> Draft:
     from pmm.plan.plan import read_plan_and_rig
 
     simulated = task.answers["interface"] == SIMULATED
@@ -83,7 +83,7 @@ def _rig(task: Task) -> Draft:
     return Draft(files, lambda tried: read_plan_and_rig(tried / "plan.toml"))
 
 
-def _campaign(task: Task) -> Draft:
+def _campaign(task: StartTask) -> Draft:
     found = find_campaign(task.recordings, task.folder) if task.recordings else None
     widened = _widened(task.answers["plane"], found.runs if found else ())
     text = render("campaign.toml", task.values(found=found, widened=widened))
@@ -108,7 +108,7 @@ def _widened(plane: str, runs: Sequence[FoundRun]) -> dict[str, tuple[float, flo
     }
 
 
-def _inertia(task: Task) -> Draft:
+def _inertia(task: StartTask) -> Draft:
     """Do the test once with the records where they lie: a file that gives no number is no start."""
     from pmm.inertia import bifilar, swing
 
@@ -125,7 +125,7 @@ def _inertia(task: Task) -> Draft:
     return Draft({name: render(name, task.values(records=near))}, trial)
 
 
-_DRAFTS: Final[Mapping[str, Callable[[Task], Draft]]] = {
+_DRAFTS: Final[Mapping[str, Callable[[StartTask], Draft]]] = {
     "rig": _rig,
     "campaign": _campaign,
     "swing": _inertia,

@@ -11,7 +11,7 @@ AXES: Final = ("driven", "by-hand")
 
 
 @dataclass(frozen=True)
-class Question:
+class StartQuestion:
     """One question, which an option of the same name answers beforehand.
 
     Attributes
@@ -53,48 +53,52 @@ class Question:
         return f"--{self.name.replace('_', '-')}"
 
 
-Ask = Callable[[Question], str | float]
-NAME = Question("name", "What is it called", "first")
+Ask = Callable[[StartQuestion], str | float]
+NAME = StartQuestion("name", "What is it called", "first")
 MODEL: Final = (
-    Question("mass_kg", "Mass of the model with all below the gauges [kg]", 70.0, lowest=0.0),
-    Question("inertia_kg_m2", "Its inertia about the midpoint of the struts [kg m2]", 27.5,
+    StartQuestion("mass_kg", "Mass of the model with all below the gauges [kg]", 70.0, lowest=0.0),
+    StartQuestion("inertia_kg_m2", "Its inertia about the midpoint of the struts [kg m2]", 27.5,
              lowest=0.0),
 )  # fmt: skip
-PLANE = Question("plane", "Plane of the oscillator: heave and pitch, or sway and yaw",
-                 "vertical", PLANES)  # fmt: skip
-SPACING = Question("half_spacing_m", "Half the distance between the struts [m]", 0.5, lowest=0.0)
+PLANE = StartQuestion("plane", "Plane of the oscillator: heave and pitch, or sway and yaw",
+                      "vertical", PLANES)  # fmt: skip
+SPACING = StartQuestion(
+    "half_spacing_m", "Half the distance between the struts [m]", 0.5, lowest=0.0
+)
 RIG: Final = (
     NAME,
     PLANE,
-    Question("interface", "CAN interface (pmm-simulated: no hardware needed)", "pmm-simulated"),
-    Question("channel", "Its channel", "simulated.toml"),
-    Question("axes", "Eccentricity and strut phase are set", "driven", AXES),
+    StartQuestion(
+        "interface", "CAN interface (pmm-simulated: no hardware needed)", "pmm-simulated"
+    ),
+    StartQuestion("channel", "Its channel", "simulated.toml"),
+    StartQuestion("axes", "Eccentricity and strut phase are set", "driven", AXES),
     SPACING,
     *MODEL,
-    Question("length_m", "Length of the model [m]", 2.5, lowest=0.0),
-    Question("beam_m", "Its beam [m]", 0.36, lowest=0.0),
-    Question("draught_m", "Its draught [m]", 0.13, lowest=0.0),
-    Question("tank_length_m", "Length that the carriage may use [m]", 120.0, lowest=0.0),
-    Question("tank_width_m", "Width of the tank [m]", 4.2, lowest=0.0),
-    Question("tank_depth_m", "Depth of the water [m]", 2.5, lowest=0.0),
-    Question("full_scale_n", "Full scale of a force gauge [N]", 500.0, lowest=0.0),
+    StartQuestion("length_m", "Length of the model [m]", 2.5, lowest=0.0),
+    StartQuestion("beam_m", "Its beam [m]", 0.36, lowest=0.0),
+    StartQuestion("draught_m", "Its draught [m]", 0.13, lowest=0.0),
+    StartQuestion("tank_length_m", "Length that the carriage may use [m]", 120.0, lowest=0.0),
+    StartQuestion("tank_width_m", "Width of the tank [m]", 4.2, lowest=0.0),
+    StartQuestion("tank_depth_m", "Depth of the water [m]", 2.5, lowest=0.0),
+    StartQuestion("full_scale_n", "Full scale of a force gauge [N]", 500.0, lowest=0.0),
 )
 CAMPAIGN: Final = (NAME, PLANE, SPACING, *MODEL)
-GRAVITY = Question("gravity_m_s2", "Gravity at the place [m/s2]", 9.81, lowest=0.0)
+GRAVITY = StartQuestion("gravity_m_s2", "Gravity at the place [m/s2]", 9.81, lowest=0.0)
 SWING: Final = (
     NAME,
     GRAVITY,
-    Question("swing_mass_kg", "Mass of the empty swing [kg]", 42.28, lowest=0.0),
-    Question("lever_m", "Lever of the tilting weights [m]", 0.2, lowest=0.0),
+    StartQuestion("swing_mass_kg", "Mass of the empty swing [kg]", 42.28, lowest=0.0),
+    StartQuestion("lever_m", "Lever of the tilting weights [m]", 0.2, lowest=0.0),
 )
 BIFILAR: Final = (
     NAME,
     GRAVITY,
-    Question("half_spacing_m", "Half the distance between the lines [m]", 0.9, lowest=0.0),
-    Question("line_m", "Length of the lines [m]", 3.477, lowest=0.0),
-    Question("mass_kg", "Mass of what hangs on them [kg]", 603.2, lowest=0.0),
+    StartQuestion("half_spacing_m", "Half the distance between the lines [m]", 0.9, lowest=0.0),
+    StartQuestion("line_m", "Length of the lines [m]", 3.477, lowest=0.0),
+    StartQuestion("mass_kg", "Mass of what hangs on them [kg]", 603.2, lowest=0.0),
 )
-JOBS: Final[Mapping[str, Sequence[Question]]] = {
+JOBS: Final[Mapping[str, Sequence[StartQuestion]]] = {
     "rig": RIG,
     "campaign": CAMPAIGN,
     "swing": SWING,
@@ -114,6 +118,6 @@ def answers(job: str, given: Mapping[str, Any], ask: Ask) -> dict[str, str | flo
     for question in JOBS[job]:
         told = given.get(question.name)
         if told is None and question.name == "channel" and found["interface"] != "pmm-simulated":
-            question = Question("channel", question.text, "can0")
+            question = StartQuestion("channel", question.text, "can0")
         found[question.name] = question.checked(ask(question) if told is None else told)
     return found

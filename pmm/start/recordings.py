@@ -17,7 +17,7 @@ from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.start import words
 from pmm.start.at_rest import at_rest
-from pmm.start.behaviour import Watched, watch
+from pmm.start.behaviour import RecordingBehaviour, watch
 from pmm.start.channels import as_columns, by_order_of_names
 from pmm.start.found import CHANNELS, PHOTOCELL, Column, FoundCampaign, FoundRest, FoundRun
 from pmm.start.pulse_files import STEM, edges_beside, once_a_period, pulse_files, stem_of
@@ -35,7 +35,7 @@ class _Look:
     """What was taken from one recording, so that its samples need not be kept."""
 
     path: Path
-    watched: Watched
+    watched: RecordingBehaviour
     duration_s: float
     sample_rate_hz: float
     set_point: SetPoint | None

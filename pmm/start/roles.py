@@ -20,7 +20,7 @@ from hardware.description.channels import (
     SHAFT_ANGLE,
 )
 from pmm.start import words
-from pmm.start.behaviour import Behaviour, Watched
+from pmm.start.behaviour import Behaviour, RecordingBehaviour
 from pmm.start.found import CHANNELS
 
 # Powers of ten of odds, judged and tried on made-up laboratories
@@ -44,7 +44,7 @@ class Evidence(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Kind:
+class ChannelKind:
     """A kind of channel: what it is called, its SI units and the words of it; ``places`` of it."""
 
     name: str
@@ -53,26 +53,26 @@ class Kind:
     places: int = 1
 
 
-DISPLACEMENT: Final = Kind("displacement", (DISPLACEMENT_AFT.unit,), words.DISPLACEMENT, 2)
-FORCE: Final = Kind("force", (FORCE_AFT.unit,), words.FORCE, 2)
-ANGLE: Final = Kind(SHAFT_ANGLE.name, (SHAFT_ANGLE.unit,), words.ANGLE)
-SPEED: Final = Kind(CARRIAGE_SPEED.name, (CARRIAGE_SPEED.unit,), words.SPEED)
-ALONG: Final = Kind(FORCE_X.name, (FORCE_X.unit,), words.ALONG)
-PULSES: Final = Kind("photocell", ("V", "1"), words.PULSES)
+DISPLACEMENT: Final = ChannelKind("displacement", (DISPLACEMENT_AFT.unit,), words.DISPLACEMENT, 2)
+FORCE: Final = ChannelKind("force", (FORCE_AFT.unit,), words.FORCE, 2)
+ANGLE: Final = ChannelKind(SHAFT_ANGLE.name, (SHAFT_ANGLE.unit,), words.ANGLE)
+SPEED: Final = ChannelKind(CARRIAGE_SPEED.name, (CARRIAGE_SPEED.unit,), words.SPEED)
+ALONG: Final = ChannelKind(FORCE_X.name, (FORCE_X.unit,), words.ALONG)
+PULSES: Final = ChannelKind("photocell", ("V", "1"), words.PULSES)
 KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES)
 
 
 @dataclass(frozen=True)
-class Role:
+class ColumnRole:
     """A column that seems to be of a kind; ``doubt`` says why it may not be, empty where sure."""
 
     column: str
-    kind: Kind
+    kind: ChannelKind
     odds: float
     doubt: str = ""
 
 
-def find_roles(watched: Sequence[Watched]) -> list[Role]:
+def find_roles(watched: Sequence[RecordingBehaviour]) -> list[ColumnRole]:
     """Return the columns that seem to be channels of a rig, by kind and then by name.
 
     Parameters
@@ -104,7 +104,7 @@ def find_roles(watched: Sequence[Watched]) -> list[Role]:
         if margin < SURE:
             instead = [columns[r] for r, k in second.items() if k == at and best.get(r) != at]
             doubt = _doubt(reasons[column, kind], instead)
-        found.append(Role(column, kind, margin, doubt))
+        found.append(ColumnRole(column, kind, margin, doubt))
     return found
 
 
@@ -135,7 +135,9 @@ def _doubt(reasons: Sequence[Evidence], instead: Sequence[str]) -> str:
     )
 
 
-def _reasons(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Evidence]:
+def _reasons(
+    column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
+) -> Iterator[Evidence]:
     """Yield what speaks for a role and against it; what a column does, in most recordings."""
     seen = [(one, one.columns[column]) for one in telling if column in one.columns]
     if len(seen) < len(telling):
@@ -150,7 +152,9 @@ def _reasons(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Ev
     yield from sorted(done, key=lambda one: sum(e.odds for e in one))[(len(done) - 1) // 2]
 
 
-def _of_name(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Evidence]:
+def _of_name(
+    column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
+) -> Iterator[Evidence]:
     if column in CHANNELS:  # our own name says it, and no other
         own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
         yield Evidence(SURE if own else -np.inf, "its name is that of the channel")
@@ -167,7 +171,7 @@ def _of_name(column: str, kind: Kind, telling: Sequence[Watched]) -> Iterator[Ev
         yield Evidence(_AGAINST, f"it is one of a balance's axes ({named}), not of a strut's gauge")
 
 
-def _displacement(one: Behaviour, watch: Watched) -> Iterator[Evidence]:
+def _displacement(one: Behaviour, watch: RecordingBehaviour) -> Iterator[Evidence]:
     if not one.part.carried or one.turn:
         yield Evidence(-np.inf, "it does not move at the line")
         return
@@ -182,14 +186,14 @@ def _displacement(one: Behaviour, watch: Watched) -> Iterator[Evidence]:
         yield Evidence(_AGAINST, f"its amplitude is {apart:.2g} times that of the cleanest motion")
 
 
-def _force(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+def _force(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
     if one.part.carried:
         yield Evidence(_DOES, "it answers at the line")
     else:
         yield Evidence(_AGAINST, "it does not answer at the line")
 
 
-def _angle(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+def _angle(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
     if one.turn is None:
         yield Evidence(-np.inf, "it does not turn once in each period")
         return
@@ -198,23 +202,23 @@ def _angle(one: Behaviour, _: Watched) -> Iterator[Evidence]:
         yield Evidence(_DOES, "it begins anew after each turn")
 
 
-def _speed(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+def _speed(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
     if one.part.carried and one.part.beside < _SWINGS:
         yield Evidence(_AGAINST, "it swings with the line")
     elif one.spread <= _EVEN * abs(one.mean):
         yield Evidence(_DOES, "it is even")
 
 
-def _along(_one: Behaviour, _watch: Watched) -> Iterator[Evidence]:
+def _along(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[Evidence]:
     yield Evidence(-_NAME, "few rigs have a gauge along the model")
 
 
-def _pulses(one: Behaviour, _: Watched) -> Iterator[Evidence]:
+def _pulses(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
     odds = 3.0 * _DOES if one.pulses else -np.inf
     yield Evidence(odds, "it has one pulse in each period")
 
 
-_DOING: Final[Mapping[str, Callable[[Behaviour, Watched], Iterator[Evidence]]]] = {
+_DOING: Final[Mapping[str, Callable[[Behaviour, RecordingBehaviour], Iterator[Evidence]]]] = {
     DISPLACEMENT.name: _displacement,
     FORCE.name: _force,
     ANGLE.name: _angle,

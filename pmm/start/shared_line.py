@@ -34,7 +34,7 @@ _FEW: Final = "few_reference_periods"
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class SharedLine:
     """What is common to the columns.
 
     Attributes
@@ -69,7 +69,7 @@ class Share(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Part:
+class LinePart:
     """A column's part in a line.
 
     Attributes
@@ -87,10 +87,10 @@ class Part:
     beside: float = 1.0
 
 
-NO_PART: Final = Part()
+NO_PART: Final = LinePart()
 
 
-def shared_line(recording: Recording) -> Line | None:
+def shared_line(recording: Recording) -> SharedLine | None:
     """Return the line of a recording; ``None`` where nothing keeps time.
 
     Parameters
@@ -109,23 +109,23 @@ def shared_line(recording: Recording) -> Line | None:
     return replace(line, doubt=_doubt(line, len(asked) > 1))
 
 
-def _alone(recording: Recording, name: str, reference: PhaseReference) -> Line:
+def _alone(recording: Recording, name: str, reference: PhaseReference) -> SharedLine:
     """Return the line that a column would be of by itself."""
     even = _even(recording, name, reference)
     beside = shares(recording, even, [name])[name].beside
-    return Line(reference, even.frequency_hz, name, beside, ())
+    return SharedLine(reference, even.frequency_hz, name, beside, ())
 
 
-def _apart(lines: Sequence[Line]) -> list[Line]:
+def _apart(lines: Sequence[SharedLine]) -> list[SharedLine]:
     """Return the first of all that are one line: the cleanest."""
-    kept: list[Line] = []
+    kept: list[SharedLine] = []
     for line in lines:
         if all(abs(line.frequency_hz / one.frequency_hz - 1.0) > SAME_TIME for one in kept):
             kept.append(line)
     return kept
 
 
-def _judged(recording: Recording, line: Line) -> tuple[Line, float]:
+def _judged(recording: Recording, line: SharedLine) -> tuple[SharedLine, float]:
     names = [one for one in recording.channel_names if one != line.channel]
     known = shares(recording, line.reference, names)
     others = tuple(sorted(one for one, share in known.items() if share.first > _SHARED))
@@ -133,7 +133,7 @@ def _judged(recording: Recording, line: Line) -> tuple[Line, float]:
     return replace(line, others=others), -math.log10(max(line.beside, _PUREST)) * alike
 
 
-def _doubt(line: Line, rivals: bool) -> str:
+def _doubt(line: SharedLine, rivals: bool) -> str:
     if line.beside > _LARGEST_BESIDE:
         return f"{100.0 * line.beside:.0f} % of the cleanest column, {line.channel}, is no line"
     if rivals and not line.others:
@@ -206,13 +206,15 @@ def _fitted(rows: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.lstsq(rows @ rows.T, rows @ values, rcond=None)[0] @ rows)
 
 
-def parts_in(recording: Recording, names: Sequence[str], reference: PhaseReference) -> list[Part]:
+def parts_in(
+    recording: Recording, names: Sequence[str], reference: PhaseReference
+) -> list[LinePart]:
     """Return what columns have of a line; nothing where no period of one is whole."""
     known = shares(recording, reference, names)
     return [_part(recording.select([name]), reference, known[name].beside) for name in names]
 
 
-def _part(chosen: Recording, reference: PhaseReference, beside: float) -> Part:
+def _part(chosen: Recording, reference: PhaseReference, beside: float) -> LinePart:
     samples = chosen.sample_rate_hz / reference.frequency_hz
     harmonics = max(1, min(HARMONICS, int((samples - 1.0) // 2)))
     try:
@@ -224,4 +226,4 @@ def _part(chosen: Recording, reference: PhaseReference, beside: float) -> Part:
     alone = found.standard_uncertainty / found.widening
     scatter = float(np.hypot(*alone[0, 1:3]))
     rounding = _ROUNDING**0.5 * abs(float(found.mean[0]))
-    return Part(first, abs(first) > max(CARRIED * scatter, rounding), beside)
+    return LinePart(first, abs(first) > max(CARRIED * scatter, rounding), beside)

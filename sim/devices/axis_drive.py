@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from hardware.axis import PositionAxisSettings
-from hardware.cia402 import Control, Mode, State, Status
+from hardware.cia402 import ControlWord, DriveState, Mode, StatusWord
 from hardware.dictionary import Entry
 from hardware.drive import MODE_DISPLAY, POSITION, TARGET_POSITION, VELOCITY
 from sim.devices.drive import ACCELERATION, DECELERATION, SimulatedDrive, halting, wrapped
@@ -68,12 +68,12 @@ class AxisDrive(SimulatedDrive):
         if halting(control):
             self.ramp_down(self.number(DECELERATION))
         elif self.values[MODE_DISPLAY] == Mode.HOMING:
-            if risen & Control.START_HOMING:
+            if risen & ControlWord.START_HOMING:
                 self._home()
-        elif risen & Control.NEW_SET_POINT:
+        elif risen & ControlWord.NEW_SET_POINT:
             self._take_set_point()
-        elif not control & Control.NEW_SET_POINT:
-            self.bits &= ~Status.SET_POINT_ACKNOWLEDGED
+        elif not control & ControlWord.NEW_SET_POINT:
+            self.bits &= ~StatusWord.SET_POINT_ACKNOWLEDGED
 
     def ramp_down(self, deceleration: Number) -> None:
         """Decelerate to rest where it is."""
@@ -93,7 +93,7 @@ class AxisDrive(SimulatedDrive):
             if not self.blocked:
                 self.position = self._demand
                 self._moved(self.position)
-            if self._goal == self._demand and self.state is State.OPERATION_ENABLED:
+            if self._goal == self._demand and self.state is DriveState.OPERATION_ENABLED:
                 self._arrive()
         values = self.values
         values[POSITION] = wrapped(self.position * self._per_unit + self._shift)
@@ -114,9 +114,9 @@ class AxisDrive(SimulatedDrive):
         wanted = int(self.values[TARGET_POSITION])
         low, high = self.number(_LOWEST), self.number(_HIGHEST)
         limited = min(max(wanted, low), high) if low < high else wanted
-        self.bits = int(Status.SET_POINT_ACKNOWLEDGED)
+        self.bits = int(StatusWord.SET_POINT_ACKNOWLEDGED)
         if limited != wanted:
-            self.bits |= Status.INTERNAL_LIMIT
+            self.bits |= StatusWord.INTERNAL_LIMIT
         self._go((limited - self._shift) / self._per_unit, _SPEED, ACCELERATION)
 
     def _home(self) -> None:
@@ -148,7 +148,7 @@ class AxisDrive(SimulatedDrive):
 
     def _arrive(self) -> None:
         self._goal = None
-        self.bits |= Status.TARGET_REACHED
+        self.bits |= StatusWord.TARGET_REACHED
         if self.values[MODE_DISPLAY] == Mode.HOMING:
-            self.bits |= Status.HOMING_ATTAINED
+            self.bits |= StatusWord.HOMING_ATTAINED
             self._shift = self.number(_HOME_OFFSET) - self._demand * self._per_unit

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hardware.cia402 import TRANSITIONS, Command, Control, Mode, State, Status
+from hardware.cia402 import TRANSITIONS, ControlWord, DriveCommand, DriveState, Mode, StatusWord
 from hardware.dictionary import Entry
 from hardware.drive import (
     CONTROL_WORD,
@@ -24,14 +24,14 @@ _FOLLOWING_ERROR = Entry(0x60F4)
 _WINDOW, _WINDOW_MS = Entry(0x6065), Entry(0x6066)
 _ABORT_CONNECTION, _QUICK_STOP_OPTION = Entry(0x6007), Entry(0x605A)
 # "Shutdown" and "disable voltage" take the torque off at once (605B = 0, transitions 8, 9, 12).
-_WITHOUT_TORQUE: Final = (State.READY_TO_SWITCH_ON, State.SWITCH_ON_DISABLED)
-_STOPPING: Final = (State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
-_WITH_TORQUE: Final = (State.OPERATION_ENABLED, *_STOPPING)
+_WITHOUT_TORQUE: Final = (DriveState.READY_TO_SWITCH_ON, DriveState.SWITCH_ON_DISABLED)
+_STOPPING: Final = (DriveState.QUICK_STOP_ACTIVE, DriveState.FAULT_REACTION_ACTIVE)
+_WITH_TORQUE: Final = (DriveState.OPERATION_ENABLED, *_STOPPING)
 _WORDS: Final = {
     state: state.value[1]
-    | int(Status.REMOTE)
-    | (int(Status.VOLTAGE_ENABLED) if state.value[1] else 0)
-    for state in State
+    | int(StatusWord.REMOTE)
+    | (int(StatusWord.VOLTAGE_ENABLED) if state.value[1] else 0)
+    for state in DriveState
 }
 
 
@@ -56,7 +56,7 @@ class SimulatedDrive(SimulatedNode):
         self, wire: Wire, name: str, node_id: int, eds: str, sample_rate_hz: float
     ) -> None:
         super().__init__(wire, name, node_id, eds, sample_rate_hz)
-        self.state = State.SWITCH_ON_DISABLED
+        self.state = DriveState.SWITCH_ON_DISABLED
         self.bits = 0
         self.blocked = self.safe_torque_off = False
         self._control = 0
@@ -103,12 +103,14 @@ class SimulatedDrive(SimulatedNode):
         self._control = control
         command = _command(control, before)
         following = TRANSITIONS.get((self.state, command)) if command is not None else None
-        if following is not None and not (self.safe_torque_off and command is Command.SHUTDOWN):
+        if following is not None and not (
+            self.safe_torque_off and command is DriveCommand.SHUTDOWN
+        ):
             self._enter_state(following[1])
         mode = self.values.get(MODE, 0)
         if mode in self.modes:
             self.values[MODE_DISPLAY] = mode
-        if self.state is State.OPERATION_ENABLED:
+        if self.state is DriveState.OPERATION_ENABLED:
             self.obey(control, control & ~before)
         self._show()
 
@@ -131,7 +133,7 @@ class SimulatedDrive(SimulatedNode):
         """Go to FAULT with an error code, by the quick-stop ramp."""
         self.values[ERROR_CODE] = code
         self.emergency(code, register)
-        self._enter_state(State.FAULT_REACTION_ACTIVE)
+        self._enter_state(DriveState.FAULT_REACTION_ACTIVE)
         self._after_stop()
         self._show()
 
@@ -140,14 +142,14 @@ class SimulatedDrive(SimulatedNode):
         self.values[ERROR_CODE] = code
         self.emergency(code, 1)
         self.coast()
-        self.state = State.FAULT
+        self.state = DriveState.FAULT
         self._show()
 
     def cut_torque(self) -> None:
         """Have the emergency stop pressed."""
         self.safe_torque_off = True
-        if self.torque or self.state in (State.READY_TO_SWITCH_ON, State.SWITCHED_ON):
-            self._enter_state(State.SWITCH_ON_DISABLED)
+        if self.torque or self.state in (DriveState.READY_TO_SWITCH_ON, DriveState.SWITCHED_ON):
+            self._enter_state(DriveState.SWITCH_ON_DISABLED)
             self._show()
 
     def stray(self, counts: float) -> None:
@@ -156,48 +158,50 @@ class SimulatedDrive(SimulatedNode):
         beyond = abs(counts) > self.number(_WINDOW) > 0
         self._astray = self._astray + 1 if beyond else 0
         limit = self.number(_WINDOW_MS) * self.sample_rate_hz / 1000.0
-        if self._astray > limit and self.state is State.OPERATION_ENABLED:
+        if self._astray > limit and self.state is DriveState.OPERATION_ENABLED:
             self._astray = 0
             self.fault(FOLLOWING_ERROR_CODE, 0x21)
 
     def _begin(self) -> None:
-        self.state, self.bits, self._control = State.SWITCH_ON_DISABLED, 0, 0
+        self.state, self.bits, self._control = DriveState.SWITCH_ON_DISABLED, 0, 0
         for at in (MODE_DISPLAY, POSITION, VELOCITY, ERROR_CODE, _FOLLOWING_ERROR):
             self.values[at] = 0
         self._show()
 
-    def _enter_state(self, state: State) -> None:
+    def _enter_state(self, state: DriveState) -> None:
         before, self.state = self.state, state
         self.bits = 0
-        if before is State.FAULT:
+        if before is DriveState.FAULT:
             self.values[ERROR_CODE] = 0
             self.emergency(0, 0)
         if state in _WITHOUT_TORQUE and before not in _WITHOUT_TORQUE:
             self.coast()
-        elif before is State.OPERATION_ENABLED:
-            gentle = state is State.SWITCHED_ON
+        elif before is DriveState.OPERATION_ENABLED:
+            gentle = state is DriveState.SWITCHED_ON
             self.ramp_down(self.number(DECELERATION if gentle else QUICK_STOP_DECELERATION))
 
     def _after_stop(self) -> None:
         """Leave the states that end when the axis stands."""
         if not self.standing:
             return
-        if self.state is State.FAULT_REACTION_ACTIVE:
-            self.state = State.FAULT
-        elif self.state is State.QUICK_STOP_ACTIVE and self.number(_QUICK_STOP_OPTION) < 5:
-            self.state = State.SWITCH_ON_DISABLED
+        if self.state is DriveState.FAULT_REACTION_ACTIVE:
+            self.state = DriveState.FAULT
+        elif self.state is DriveState.QUICK_STOP_ACTIVE and self.number(_QUICK_STOP_OPTION) < 5:
+            self.state = DriveState.SWITCH_ON_DISABLED
 
     def _lose_master(self) -> None:
         """React to the loss of the controller's heartbeat as object 6007 says."""
         self.emergency(MASTER_LOST_CODE, 0x11)
         reaction = self.number(_ABORT_CONNECTION)
-        if self.state is not State.OPERATION_ENABLED or not reaction:
+        if self.state is not DriveState.OPERATION_ENABLED or not reaction:
             return
         if reaction == 1:
             self.fault(MASTER_LOST_CODE, 0x11)
         else:
             quick = reaction == 3
-            self._enter_state(State.QUICK_STOP_ACTIVE if quick else State.SWITCH_ON_DISABLED)
+            self._enter_state(
+                DriveState.QUICK_STOP_ACTIVE if quick else DriveState.SWITCH_ON_DISABLED
+            )
 
     def _show(self) -> None:
         self.values[STATUS_WORD] = _WORDS[self.state] | self.bits
@@ -210,16 +214,16 @@ def wrapped(counts: float) -> int:
 
 def halting(control: int) -> bool:
     """Tell whether a control word asks for a halt."""
-    return bool(control & Control.HALT)
+    return bool(control & ControlWord.HALT)
 
 
-def _command(control: int, before: int) -> Command | None:
-    if control & Command.FAULT_RESET:
-        return None if before & Command.FAULT_RESET else Command.FAULT_RESET
+def _command(control: int, before: int) -> DriveCommand | None:
+    if control & DriveCommand.FAULT_RESET:
+        return None if before & DriveCommand.FAULT_RESET else DriveCommand.FAULT_RESET
     if not control & 0x02:
-        return Command.DISABLE_VOLTAGE
+        return DriveCommand.DISABLE_VOLTAGE
     if not control & 0x04:
-        return Command.QUICK_STOP
+        return DriveCommand.QUICK_STOP
     if not control & 0x01:
-        return Command.SHUTDOWN
-    return Command.ENABLE_OPERATION if control & 0x08 else Command.SWITCH_ON
+        return DriveCommand.SHUTDOWN
+    return DriveCommand.ENABLE_OPERATION if control & 0x08 else DriveCommand.SWITCH_ON

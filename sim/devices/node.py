@@ -8,7 +8,7 @@ from canopen.objectdictionary import datatypes
 from canopen.sdo.exceptions import SdoAbortedError
 
 from hardware.description.errors import ConfigurationError
-from hardware.dictionary import Entry, Layout, layout, load, variable
+from hardware.dictionary import Entry, PdoLayout, layout, load, variable
 from sim.devices.network import HEARTBEAT, Wire
 
 Number = int | float
@@ -152,7 +152,7 @@ class SimulatedNode:
             for pdo in self._mapped(0x1400, 0x1600):
                 self.wire.rpdos[pdo.cob_id] = self._taker(pdo)
 
-    def _mapped(self, record: int, mapping: int) -> list[Layout]:
+    def _mapped(self, record: int, mapping: int) -> list[PdoLayout]:
         found = []
         for n in range(4):
             cob_id = int(self.number(Entry(record + n, 1)))
@@ -164,11 +164,11 @@ class SimulatedNode:
             self.number(at)  # from now on it has a value
         return found
 
-    def _layout(self, words: list[int], cob_id: int = 0) -> Layout:
+    def _layout(self, words: list[int], cob_id: int = 0) -> PdoLayout:
         entries = tuple(Entry(word >> 16, word >> 8 & 0xFF) for word in words)
         return layout(self.dictionary, entries, cob_id, self.name)
 
-    def _taker(self, pdo: Layout) -> Callable[[bytes | bytearray], None]:
+    def _taker(self, pdo: PdoLayout) -> Callable[[bytes | bytearray], None]:
         def take(data: bytes | bytearray) -> None:
             if len(data) >= pdo.size:
                 self.values.update(zip(pdo.entries, pdo.code.unpack_from(data), strict=True))

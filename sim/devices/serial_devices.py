@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from hardware.lines import Kind, Line, encode
+from hardware.lines import LineKind, SerialLine, encode
 from sim.chain import Chain
 from sim.devices.plant import Passage
 
@@ -46,8 +46,8 @@ class _Sayer:
         self.mute = False
         self._sequence = 0
 
-    def say(self, kind: Kind, ticks_us: int, value: float) -> None:
-        line = Line(kind, self._sequence, ticks_us, value)
+    def say(self, kind: LineKind, ticks_us: int, value: float) -> None:
+        line = SerialLine(kind, self._sequence, ticks_us, value)
         self._sequence += 1
         if not self.mute and self.cable.plugged:
             self.cable.waiting += encode(line)
@@ -74,10 +74,10 @@ class Timestamper(_Sayer):
         """Say the pulses, and once a second the time."""
         for one in passages:
             self._pulses += 1
-            self.say(Kind.PULSE, self._ticks(one.time_s), self._pulses)
+            self.say(LineKind.PULSE, self._ticks(one.time_s), self._pulses)
         if time_s >= self._marked_s + _MARK_EVERY_S:
             self._marked_s = time_s
-            self.say(Kind.TIME, self._ticks(time_s), self._pulses)
+            self.say(LineKind.TIME, self._ticks(time_s), self._pulses)
 
     def _ticks(self, time_s: float) -> int:
         return round((self._offset_s + time_s * self._rate) * 1e6)
@@ -128,5 +128,5 @@ class SimulatedInclinometer(_Sayer):
         """Say the samples up to a time."""
         while self._number <= time_s * self._rate_hz:
             angle = self.angles(self._number) / self._rad_per_unit
-            self.say(Kind.ANGLE, round(self._number / self._rate_hz * 1e6), angle)
+            self.say(LineKind.ANGLE, round(self._number / self._rate_hz * 1e6), angle)
             self._number += 1

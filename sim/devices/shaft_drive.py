@@ -3,7 +3,7 @@
 import math
 from typing import Final
 
-from hardware.cia402 import Mode, Status
+from hardware.cia402 import Mode, StatusWord
 from hardware.dictionary import Entry
 from hardware.drive import (
     POSITION,
@@ -33,7 +33,7 @@ _ON, _CONTINUOUS, _POSITIVE_EDGE = 0x01, 0x02, 0x10
 _INPUT_1: Final = 1
 _AT_ONCE: Final = 1e9  # rad/s2
 _FORCED: Final = 60.0  # rad/s2: a drive that runs away
-_REACHED, _STANDSTILL = int(Status.TARGET_REACHED), int(Status.STANDSTILL)
+_REACHED, _STANDSTILL = int(StatusWord.TARGET_REACHED), int(StatusWord.STANDSTILL)
 
 
 class ShaftDrive(SimulatedDrive):
@@ -79,7 +79,7 @@ class ShaftDrive(SimulatedDrive):
         wanted = 0.0 if halting(control) else self.values[TARGET_VELOCITY] / self._per_rad_s
         top = abs(self.number(_TOP_SPEED) / self._per_rad_s)
         limited = min(max(wanted, -top), top) if top else wanted
-        self._limit = int(Status.INTERNAL_LIMIT) if limited != wanted else 0
+        self._limit = int(StatusWord.INTERNAL_LIMIT) if limited != wanted else 0
         faster = abs(limited) > abs(self._demand.target_rad_s)
         self._turn(limited, self.number(ACCELERATION if faster else DECELERATION))
 

@@ -13,7 +13,7 @@ from hardware.manual_axis import ManualAxisSettings
 from hardware.manual_shaft import ManualShaftSettings
 from hardware.photocell_probe import ProbeSettings
 from hardware.photocell_serial import TimestamperSettings
-from hardware.rig_configuration import Part, RigConfiguration, check
+from hardware.rig_configuration import RigConfiguration, RigPart, check
 from hardware.shaft import ShaftSettings
 from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
@@ -140,7 +140,7 @@ class World:
             self.extra = 0
         return passages
 
-    def _add(self, part: Part, scene: Scene) -> None:
+    def _add(self, part: RigPart, scene: Scene) -> None:
         settings, rate = part.settings, self.plant.sample_rate_hz
         if isinstance(settings, ShaftSettings):
             self._shaft = ShaftDrive(self.wire, part.name, settings, self.plant)

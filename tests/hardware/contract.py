@@ -21,7 +21,7 @@ import pytest
 
 from hardware.errors import LimitError, NotReadyError, PhotocellMissedError
 from hardware.rig import Rig
-from hardware.roles import PROTOCOLS, Block, PositionAxis, Pulse, Role, Sampled, Shaft
+from hardware.roles import PROTOCOLS, PositionAxis, Pulse, Role, SampleBlock, Sampled, Shaft
 
 _TRIES = 4  # of what a busy machine has spoilt
 
@@ -49,7 +49,7 @@ class Bench:
         self.rig.run_until(condition, self.within, what)
 
 
-def _numbers(blocks: tuple[Block, ...]) -> list[int]:
+def _numbers(blocks: tuple[SampleBlock, ...]) -> list[int]:
     return [one.first + i for one in blocks for i in range(one.values.shape[1])]
 
 

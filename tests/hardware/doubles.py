@@ -14,19 +14,19 @@ from typing import ClassVar
 import can
 import canopen
 
-from hardware.cia402 import TRANSITIONS, Command, State, Status, state_of
+from hardware.cia402 import TRANSITIONS, DriveCommand, DriveState, StatusWord, state_of
 
 EDS = files("hardware") / "eds"
 OPERATIONAL = 5
 WORDS = {  # status words as CiA 402 lays them down, with voltage enabled and remote
-    State.NOT_READY_TO_SWITCH_ON: 0x0200,
-    State.SWITCH_ON_DISABLED: 0x0250,
-    State.READY_TO_SWITCH_ON: 0x0231,
-    State.SWITCHED_ON: 0x0233,
-    State.OPERATION_ENABLED: 0x0237,
-    State.QUICK_STOP_ACTIVE: 0x0217,
-    State.FAULT_REACTION_ACTIVE: 0x021F,
-    State.FAULT: 0x0218,
+    DriveState.NOT_READY_TO_SWITCH_ON: 0x0200,
+    DriveState.SWITCH_ON_DISABLED: 0x0250,
+    DriveState.READY_TO_SWITCH_ON: 0x0231,
+    DriveState.SWITCHED_ON: 0x0233,
+    DriveState.OPERATION_ENABLED: 0x0237,
+    DriveState.QUICK_STOP_ACTIVE: 0x0217,
+    DriveState.FAULT_REACTION_ACTIVE: 0x021F,
+    DriveState.FAULT: 0x0218,
 }
 
 
@@ -123,7 +123,7 @@ class Drive(Node):
 
     def __init__(self, network: Network, node_id: int, period_s: float = 0.01) -> None:
         super().__init__(network, node_id, "cia402-drive.eds")
-        self.state = State.SWITCH_ON_DISABLED
+        self.state = DriveState.SWITCH_ON_DISABLED
         self.bits = 0
         self.position = 0.0
         self.velocity = 0
@@ -135,7 +135,7 @@ class Drive(Node):
         self._show()
 
     def fault(self, code: int) -> None:
-        self.state, self.velocity = State.FAULT, 0
+        self.state, self.velocity = DriveState.FAULT, 0
         self.set(0x603F, code)
         self._show()
 
@@ -146,11 +146,11 @@ class Drive(Node):
         self.set(0x6061, mode)
         if self.obeys:
             self._transit(control, before)
-        if self.state is not State.OPERATION_ENABLED:
+        if self.state is not DriveState.OPERATION_ENABLED:
             self.velocity, self._target, self.bits = 0, None, 0
         elif mode == 3:
             self.velocity = int(self.get(0x60FF))
-            self.bits = int(Status.TARGET_REACHED)
+            self.bits = int(StatusWord.TARGET_REACHED)
         else:
             self._set_point(control, before, mode)
         self._show()
@@ -159,9 +159,9 @@ class Drive(Node):
         before = self.position
         if self._target is not None:
             self.position = float(self._target)
-            self.bits |= int(Status.TARGET_REACHED)
+            self.bits |= int(StatusWord.TARGET_REACHED)
             if int(self.get(0x6061)) == 6:
-                self.bits |= int(Status.HOMING_ATTAINED)
+                self.bits |= int(StatusWord.HOMING_ATTAINED)
             self._target = None
         self.position += self.velocity * self.period_s
         edge = self.photocell(before, self.position) if self.photocell else None
@@ -171,7 +171,7 @@ class Drive(Node):
         self._show()
 
     def _transit(self, control: int, before: int) -> None:
-        for command in (one for one in Command if _is(one, control, before)):
+        for command in (one for one in DriveCommand if _is(one, control, before)):
             following = TRANSITIONS.get((self.state, command))
             if following is not None:
                 self.state = following[1]
@@ -184,9 +184,9 @@ class Drive(Node):
         elif mode == 1:
             if risen:
                 self._target = int(self.get(0x607A))
-                self.bits = int(Status.SET_POINT_ACKNOWLEDGED)
+                self.bits = int(StatusWord.SET_POINT_ACKNOWLEDGED)
             elif not control & 0x10:
-                self.bits &= ~int(Status.SET_POINT_ACKNOWLEDGED)
+                self.bits &= ~int(StatusWord.SET_POINT_ACKNOWLEDGED)
 
     def _show(self) -> None:
         self.set(0x6041, WORDS[self.state] | self.bits)
@@ -195,14 +195,14 @@ class Drive(Node):
         assert state_of(int(self.get(0x6041))) is self.state
 
 
-def _is(command: Command, control: int, before: int) -> bool:
-    if command is Command.FAULT_RESET:
+def _is(command: DriveCommand, control: int, before: int) -> bool:
+    if command is DriveCommand.FAULT_RESET:
         return bool(control & ~before & 0x80)
-    if command is Command.DISABLE_VOLTAGE:
+    if command is DriveCommand.DISABLE_VOLTAGE:
         return control & 0x82 == 0
-    if command is Command.QUICK_STOP:
+    if command is DriveCommand.QUICK_STOP:
         return control & 0x86 == 0x02
-    if command is Command.SHUTDOWN:
+    if command is DriveCommand.SHUTDOWN:
         return control & 0x87 == 0x06
     return control & 0x8F == command
 

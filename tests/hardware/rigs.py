@@ -9,8 +9,8 @@ from typing import Any
 
 import serial
 
-from hardware.lines import Kind, encode
-from hardware.lines import Line as LineOfText
+from hardware.lines import LineKind, encode
+from hardware.lines import SerialLine as LineOfText
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
@@ -163,7 +163,7 @@ class Talker:
         self.line = Line()
         self.sequence = 0
 
-    def say(self, kind: Kind, time_s: float, value: float) -> None:
+    def say(self, kind: LineKind, time_s: float, value: float) -> None:
         self.send(encode(LineOfText(kind, self.sequence, round(time_s * 1e6), value)))
         self.sequence += 1
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import pytest
 
 from hardware.errors import EmergencyError
-from hardware.lines import Kind, Line, decode, encode
+from hardware.lines import LineKind, SerialLine, decode, encode
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
@@ -191,6 +191,6 @@ def test_an_emergency_carries_code_and_register() -> None:
 
 
 def test_lines_of_the_timestamper() -> None:
-    line = Line(Kind.PULSE, 17, 4294967295, 3)
+    line = SerialLine(LineKind.PULSE, 17, 4294967295, 3)
     assert encode(line) == b"P,17,4294967295,3*44\r\n"
     assert decode(b"P,17,4294967295,3*44\r", "cell") == line

@@ -4,28 +4,36 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.cia402 import TRANSITIONS, Command, Goal, State, Walk, next_command, state_of
+from hardware.cia402 import (
+    TRANSITIONS,
+    DriveCommand,
+    DriveState,
+    DriveStateMachine,
+    Goal,
+    next_command,
+    state_of,
+)
 from hardware.errors import DriveFaultError, DriveStateError, TransitionTimeoutError
 
 # The standard's table of the status word: bits 6 5 3 2 1 0, x where a bit does not matter.
 STATUS_TABLE = {
-    State.NOT_READY_TO_SWITCH_ON: "0x0000",
-    State.SWITCH_ON_DISABLED: "1x0000",
-    State.READY_TO_SWITCH_ON: "010001",
-    State.SWITCHED_ON: "010011",
-    State.OPERATION_ENABLED: "010111",
-    State.QUICK_STOP_ACTIVE: "000111",
-    State.FAULT_REACTION_ACTIVE: "0x1111",
-    State.FAULT: "0x1000",
+    DriveState.NOT_READY_TO_SWITCH_ON: "0x0000",
+    DriveState.SWITCH_ON_DISABLED: "1x0000",
+    DriveState.READY_TO_SWITCH_ON: "010001",
+    DriveState.SWITCHED_ON: "010011",
+    DriveState.OPERATION_ENABLED: "010111",
+    DriveState.QUICK_STOP_ACTIVE: "000111",
+    DriveState.FAULT_REACTION_ACTIVE: "0x1111",
+    DriveState.FAULT: "0x1000",
 }
 # The standard's table of the control word: bits 7 3 2 1 0, and the transitions.
 CONTROL_TABLE = {
-    Command.SHUTDOWN: ("0x110", {2, 6, 8}),
-    Command.SWITCH_ON: ("00111", {3, 5}),
-    Command.ENABLE_OPERATION: ("01111", {4, 16}),
-    Command.DISABLE_VOLTAGE: ("0xx0x", {7, 9, 10, 12}),
-    Command.QUICK_STOP: ("0x01x", {7, 10, 11}),
-    Command.FAULT_RESET: ("1xxxx", {15}),
+    DriveCommand.SHUTDOWN: ("0x110", {2, 6, 8}),
+    DriveCommand.SWITCH_ON: ("00111", {3, 5}),
+    DriveCommand.ENABLE_OPERATION: ("01111", {4, 16}),
+    DriveCommand.DISABLE_VOLTAGE: ("0xx0x", {7, 9, 10, 12}),
+    DriveCommand.QUICK_STOP: ("0x01x", {7, 10, 11}),
+    DriveCommand.FAULT_RESET: ("1xxxx", {15}),
 }
 
 
@@ -39,23 +47,23 @@ def test_every_status_word_shows_the_state_of_the_table(word: int) -> None:
         s for s, pattern in STATUS_TABLE.items() if _matches(pattern, word, (6, 5, 3, 2, 1, 0))
     ]
     assert len(found) <= 1
-    assert state_of(word) is (found[0] if found else State.NOT_READY_TO_SWITCH_ON)
+    assert state_of(word) is (found[0] if found else DriveState.NOT_READY_TO_SWITCH_ON)
 
 
-@pytest.mark.parametrize("command", list(Command))
-def test_every_command_has_the_bits_and_transitions_of_the_table(command: Command) -> None:
+@pytest.mark.parametrize("command", list(DriveCommand))
+def test_every_command_has_the_bits_and_transitions_of_the_table(command: DriveCommand) -> None:
     pattern, numbers = CONTROL_TABLE[command]
     assert _matches(pattern, command, (7, 3, 2, 1, 0))
     assert {number for (_, one), (number, _) in TRANSITIONS.items() if one is command} == numbers
 
 
-def tick(walk: Walk, word: int) -> int:
+def tick(walk: DriveStateMachine, word: int) -> int:
     """Tick the walk of an axis at rest."""
     return walk.tick(word, at_rest=True)
 
 
 def test_the_way_up_is_06_07_0f() -> None:
-    walk = Walk("axis", 10, 100)
+    walk = DriveStateMachine("axis", 10, 100)
     walk.head_for(Goal.ENABLED)
     words = [0x0250, 0x0231, 0x0233, 0x0237, 0x0237]
     assert [tick(walk, word) for word in words] == [0x06, 0x07, 0x0F, 0x0F, 0x0F]
@@ -63,7 +71,7 @@ def test_the_way_up_is_06_07_0f() -> None:
 
 
 def test_the_way_down_is_00_and_a_quick_stop_02() -> None:
-    walk = Walk("axis", 10, 100)
+    walk = DriveStateMachine("axis", 10, 100)
     walk.head_for(Goal.ENABLED)
     tick(walk, 0x0237)
     walk.head_for(Goal.QUICK_STOPPED)
@@ -77,7 +85,7 @@ def test_the_way_down_is_00_and_a_quick_stop_02() -> None:
 
 
 def test_a_fault_is_told_once_and_reset_by_a_rising_edge_only() -> None:
-    walk = Walk("axis", 10, 100)
+    walk = DriveStateMachine("axis", 10, 100)
     walk.head_for(Goal.ENABLED)
     tick(walk, 0x0237)
     with pytest.raises(DriveFaultError, match="0x021F"):
@@ -89,13 +97,13 @@ def test_a_fault_is_told_once_and_reset_by_a_rising_edge_only() -> None:
         0x80,
         0x00,
     ]
-    assert walk.state is State.SWITCH_ON_DISABLED
+    assert walk.state is DriveState.SWITCH_ON_DISABLED
     assert walk.goal is Goal.DISABLED
     assert tick(walk, 0x0250) == 0x00
 
 
 def test_a_fault_that_stays_is_told_after_the_reset_has_had_its_cycles() -> None:
-    walk = Walk("axis", 5, 100)
+    walk = DriveStateMachine("axis", 5, 100)
     with pytest.raises(DriveFaultError):
         tick(walk, 0x0218)
     walk.reset_fault()
@@ -107,7 +115,7 @@ def test_a_fault_that_stays_is_told_after_the_reset_has_had_its_cycles() -> None
 
 @pytest.mark.parametrize("limit", [1, 5, 50])
 def test_a_step_has_its_cycles_and_not_one_more(limit: int) -> None:
-    walk = Walk("axis", limit, 100)
+    walk = DriveStateMachine("axis", limit, 100)
     tick(walk, 0x0250)
     walk.head_for(Goal.ENABLED)
     for _ in range(limit):
@@ -118,7 +126,7 @@ def test_a_step_has_its_cycles_and_not_one_more(limit: int) -> None:
 
 
 def test_a_drive_that_leaves_by_itself_is_noticed_at_once_and_not_enabled_again() -> None:
-    walk = Walk("axis", 10, 100)
+    walk = DriveStateMachine("axis", 10, 100)
     walk.head_for(Goal.ENABLED)
     tick(walk, 0x0237)
     with pytest.raises(DriveStateError, match="SWITCH_ON_DISABLED"):
@@ -128,17 +136,17 @@ def test_a_drive_that_leaves_by_itself_is_noticed_at_once_and_not_enabled_again(
 
 @pytest.mark.parametrize("goal", list(Goal))
 @pytest.mark.parametrize(
-    "state", [s for s in State if "FAULT" not in s.name and "NOT" not in s.name]
+    "state", [s for s in DriveState if "FAULT" not in s.name and "NOT" not in s.name]
 )
 def test_every_goal_is_reached_from_every_state_by_legal_transitions(
-    goal: Goal, state: State
+    goal: Goal, state: DriveState
 ) -> None:
-    walk = Walk("axis", 10, 100)
+    walk = DriveStateMachine("axis", 10, 100)
     walk.head_for(Goal.ENABLED)  # of a drive that is to be without power a quick stop asks nothing
     walk.head_for(goal)
     for _ in range(6):
         word = next(w for w in range(0x80) if state_of(w) is state)
-        command = Command(tick(walk, word))
+        command = DriveCommand(tick(walk, word))
         assert command == next_command(state, goal)
         if not walk.arrived:
             state = TRANSITIONS[state, command][1]

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hardware.lines import Kind
+from hardware.lines import LineKind
 from tests.hardware.contract import (
     Bench,
     ForceContract,
@@ -128,11 +128,11 @@ class _Timestamped(Bench):
         for _ in range(count):
             now = self.rig.number * 0.01
             if self.rig.number % 50 == 0:
-                self._talker.say(Kind.TIME, 100.0 + now, self._pulses)
+                self._talker.say(LineKind.TIME, 100.0 + now, self._pulses)
             before, self._turns = self._turns, self._turns + self._hz * 0.01
             if int(self._turns + 1e-9) > int(before + 1e-9):
                 self._pulses += 1
-                self._talker.say(Kind.PULSE, 100.0 + now, self._pulses)
+                self._talker.say(LineKind.PULSE, 100.0 + now, self._pulses)
             self.rig.cycle()
         return 0.0  # keeps to no clock
 
@@ -160,7 +160,7 @@ class _Tilted(Bench):
 
     def cycles(self, count: int) -> float:
         for _ in range(count):
-            self._talker.say(Kind.ANGLE, self.rig.number * 0.01, self._angle)
+            self._talker.say(LineKind.ANGLE, self.rig.number * 0.01, self._angle)
             self.rig.cycle()
         return 0.0  # keeps to no clock
 

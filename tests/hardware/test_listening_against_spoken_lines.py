@@ -7,7 +7,7 @@ import pytest
 
 from hardware import serial_port
 from hardware.errors import PortOpenError
-from hardware.lines import Kind
+from hardware.lines import LineKind
 from hardware.listening import Heard, listen
 from hardware.serial_port import PortSettings, SerialPort
 from tests.hardware.rigs import Talker
@@ -36,22 +36,24 @@ def heard():
     return of
 
 
-def says(kind: Kind, time_s: float, value: float):
+def says(kind: LineKind, time_s: float, value: float):
     return lambda talker: talker.say(kind, time_s, value)
 
 
 def test_an_inclinometer_is_known_by_its_lines(heard) -> None:
-    found = heard(*(says(Kind.ANGLE, i / 256.0, 0.5) for i in range(20)))
+    found = heard(*(says(LineKind.ANGLE, i / 256.0, 0.5) for i in range(20)))
     assert found.what == "inclinometer"
     assert found.rate_hz == pytest.approx(256.0, rel=1e-4)
     assert (found.lost, found.refused) == (0, 0)
-    assert found.last[Kind.ANGLE].value == 0.5
+    assert found.last[LineKind.ANGLE].value == 0.5
 
 
 def test_a_timestamper_is_known_by_its_lines(heard) -> None:
-    found = heard(says(Kind.TIME, 1.0, 7), says(Kind.PULSE, 1.5, 8), says(Kind.TIME, 2.0, 8))
+    found = heard(
+        says(LineKind.TIME, 1.0, 7), says(LineKind.PULSE, 1.5, 8), says(LineKind.TIME, 2.0, 8)
+    )
     assert found.what == "timestamper"
-    assert found.counts == {Kind.TIME: 2, Kind.PULSE: 1}
+    assert found.counts == {LineKind.TIME: 2, LineKind.PULSE: 1}
     assert found.rate_hz == pytest.approx(2.0)
 
 
@@ -61,10 +63,10 @@ def test_lost_and_damaged_lines_are_counted_but_not_the_first_fragment(heard) ->
 
     found = heard(
         lambda talker: talker.send(b"3,17*44\r\n"),  # the port was opened within a line
-        says(Kind.TIME, 1.0, 0),
+        says(LineKind.TIME, 1.0, 0),
         lambda talker: talker.send(b"T,1,2,3*00\r\n"),
         skips,
-        says(Kind.TIME, 2.0, 0),
+        says(LineKind.TIME, 2.0, 0),
     )
     assert (found.refused, found.lost) == (1, 2)
     assert found.what == "timestamper"

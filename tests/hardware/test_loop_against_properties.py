@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.cia402 import State
+from hardware.cia402 import DriveState
 from hardware.dictionary import Entry, layout, load
 from hardware.lines import Unwrapped
-from hardware.node import Stream
+from hardware.node import PdoStream
 from hardware.pacing import FreeRunning, RealTime
 from tests.hardware.doubles import Amplifier, Drive
 from tests.hardware.rigs import ECCENTRICITY, FORCES, PHASE, SHAFT, on_bus
@@ -22,9 +22,9 @@ class _Owner:
         self.values = {}
 
 
-def stream() -> Stream:
+def stream() -> PdoStream:
     dictionary = load("cia404-amplifier.eds", 4, "forces")
-    return Stream(layout(dictionary, (Entry(0x9130, 1),), 0x184, "forces"), _Owner())
+    return PdoStream(layout(dictionary, (Entry(0x9130, 1),), 0x184, "forces"), _Owner())
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=40))
@@ -112,7 +112,7 @@ def test_three_drives_and_two_amplifiers_run_cycle_after_cycle() -> None:
         for _ in range(cycles):
             rig.cycle()
         done = rig.number - begun
-    assert doubles[0].state is State.SWITCH_ON_DISABLED
+    assert doubles[0].state is DriveState.SWITCH_ON_DISABLED
     assert done == cycles
 
 

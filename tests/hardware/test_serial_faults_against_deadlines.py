@@ -20,7 +20,7 @@ from hardware.errors import (
     SilentPortError,
     UnpluggedError,
 )
-from hardware.lines import TICK_MODULUS, Kind, Line, Unwrapped, decode, encode
+from hardware.lines import TICK_MODULUS, LineKind, SerialLine, Unwrapped, decode, encode
 from hardware.serial_port import PortSettings, SerialPort
 from tests.hardware.rigs import Talker, open_rig
 
@@ -48,7 +48,7 @@ def run(rig, count):
 def pulse(rig, talker, number, after):
     """Let cycles pass and then a pulse come, its mark of time before it."""
     run(rig, after)
-    talker.say(Kind.PULSE, 5.0 + rig.number * PERIOD_S, number)
+    talker.say(LineKind.PULSE, 5.0 + rig.number * PERIOD_S, number)
     rig.cycle()
 
 
@@ -58,7 +58,7 @@ def pulse(rig, talker, number, after):
 )
 def test_unplugging_is_one_type_whatever_pyserial_raises(cell, talker, where, error) -> None:
     run(cell, 2)
-    talker.say(Kind.TIME, 0.0, 0)
+    talker.say(LineKind.TIME, 0.0, 0)
     talker.line.fail_on = {where: error}
     with pytest.raises(UnpluggedError, match=r"photocell: reading double://.*plug in"):
         cell.cycle()
@@ -122,7 +122,7 @@ def test_an_unknown_port_and_adapter_are_named() -> None:
 
 def test_lines_arrive_whole_however_they_are_cut(talker) -> None:
     port = SerialPort("cell", PortSettings(talker.url))
-    text = b"".join(encode(Line(Kind.TIME, i, i, 0)) for i in range(20))
+    text = b"".join(encode(SerialLine(LineKind.TIME, i, i, 0)) for i in range(20))
     got = []
     for i in range(0, len(text), 7):
         talker.send(text[i : i + 7])
@@ -135,7 +135,7 @@ def test_lines_arrive_whole_however_they_are_cut(talker) -> None:
 
 
 def test_silence_is_noticed_once(cell, talker) -> None:
-    talker.say(Kind.TIME, 0.0, 0)
+    talker.say(LineKind.TIME, 0.0, 0)
     run(cell, 101)
     with pytest.raises(SilentPortError, match=r"1\.01 s \(limit 1 s\)"):
         cell.cycle()
@@ -160,17 +160,17 @@ def test_no_bytes_break_the_reader(raw: bytes) -> None:
         line = decode(raw, "cell")
     except LineError:
         return
-    assert isinstance(line, Line)
+    assert isinstance(line, SerialLine)
 
 
 @given(
-    st.sampled_from(Kind),
+    st.sampled_from(LineKind),
     st.integers(0, 2**16 - 1),
     st.integers(0, 2**32 - 1),
     st.integers(0, 10**9),
 )
-def test_a_line_survives_its_way(kind: Kind, sequence: int, ticks: int, value: int) -> None:
-    line = Line(kind, sequence, ticks, value)
+def test_a_line_survives_its_way(kind: LineKind, sequence: int, ticks: int, value: int) -> None:
+    line = SerialLine(kind, sequence, ticks, value)
     assert decode(encode(line), "cell") == line
 
 
@@ -187,7 +187,7 @@ def test_ticks_wrap_after_71_6_minutes_without_a_jump(cell, talker) -> None:
     wrap_s = TICK_MODULUS * 1e-6
     for number, now in enumerate((wrap_s - 1.0, wrap_s - 0.5, wrap_s, wrap_s + 0.5)):
         run(cell, 49)
-        talker.say(Kind.PULSE, now, number + 1)
+        talker.say(LineKind.PULSE, now, number + 1)
         cell.cycle()
     assert np.diff([one.time_s for one in cell.photocell.take()]) == pytest.approx(0.5, abs=0.02)
 
@@ -212,7 +212,7 @@ def test_the_first_pulse_may_come_at_any_time_after_it_is_expected(cell, talker)
     assert [one.number for one in cell.photocell.take()] == [1, 2, 3]
     cell.photocell.expect(1.0)
     run(cell, 90)
-    talker.say(Kind.TIME, 5.0 + cell.number * PERIOD_S, 3)
+    talker.say(LineKind.TIME, 5.0 + cell.number * PERIOD_S, 3)
     with pytest.raises(PhotocellMissedError, match=r"no pulse for 1\.5"):
         run(cell, 70)
 
@@ -226,7 +226,7 @@ def test_missed_dead_and_extra_pulses(cell, talker) -> None:
     run(cell, 73)
     with pytest.raises(PhotocellMissedError, match=r"limit 1\.5"):
         run(cell, 4)
-    talker.say(Kind.TIME, 5.0 + cell.number * PERIOD_S, 4)
+    talker.say(LineKind.TIME, 5.0 + cell.number * PERIOD_S, 4)
     with pytest.raises(PhotocellDeadError, match=r"limit 3\.5"):
         run(cell, 101)
 
@@ -238,7 +238,7 @@ def test_a_line_that_was_lost_shows_in_the_count(cell, talker) -> None:
 
 
 def test_swapped_ports_are_noticed(cell, talker) -> None:
-    talker.say(Kind.ANGLE, 0.0, 1.5)
+    talker.say(LineKind.ANGLE, 0.0, 1.5)
     with pytest.raises(LineError, match="swap"):
         cell.cycle()
 
@@ -246,13 +246,13 @@ def test_swapped_ports_are_noticed(cell, talker) -> None:
 def test_an_angle_beyond_the_range_is_raised_once_and_a_gap_shows(talker) -> None:
     table = {"driver": "serial-inclinometer", "port": {"url": talker.url}}
     with open_rig({"inclinometer": table}) as rig:
-        talker.say(Kind.ANGLE, 0.0, 2.0)
+        talker.say(LineKind.ANGLE, 0.0, 2.0)
         talker.sequence += 3
-        talker.say(Kind.ANGLE, 0.0, 2.0)
+        talker.say(LineKind.ANGLE, 0.0, 2.0)
         rig.cycle()
         blocks = rig.inclinometer.take()
         assert [one.first for one in blocks] == [0, 4]
         assert blocks[0].values[0, 0] == pytest.approx(math.radians(2.0))
-        talker.say(Kind.ANGLE, 0.0, 3.1)
+        talker.say(LineKind.ANGLE, 0.0, 3.1)
         with pytest.raises(SensorInvalidError, match=r"range of 0.0523"):
             rig.cycle()

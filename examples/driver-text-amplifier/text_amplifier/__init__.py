@@ -9,7 +9,7 @@ from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Driver, Services
 from hardware.errors import BridgeSaturatedError, LineError, NotReadyError
-from hardware.roles import Block, Cycle, Role, Sample, blocks
+from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 from hardware.serial_port import PortSettings, SerialPort
 
 
@@ -59,7 +59,7 @@ class TextAmplifier:
             raise NotReadyError(self.name, "no samples yet; let the loop run before the tare")
         self._zero = np.mean(np.array(self._recent), axis=0)
 
-    def take(self) -> tuple[Block, ...]:
+    def take(self) -> tuple[SampleBlock, ...]:
         """Return the samples since the last call."""
         taken, self._samples = self._samples, []
         return blocks(taken)

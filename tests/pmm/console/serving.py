@@ -12,8 +12,8 @@ from pathlib import Path
 from starlette.testclient import TestClient
 
 from pmm.console.app import application
-from pmm.console.app_settings import Settings
-from pmm.console.messages import Order, OrderKind, Reply
+from pmm.console.app_settings import ConsoleSettings
+from pmm.console.messages import LoopOrder, OrderKind, Reply
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 
@@ -29,7 +29,7 @@ class Served:
 
     browser: TestClient
     folder: Path
-    orders: list[Order] = field(default_factory=list)
+    orders: list[LoopOrder] = field(default_factory=list)
 
     @property
     def stream(self) -> str:
@@ -47,11 +47,11 @@ class Served:
 
 
 def _loop(
-    connection: Connection, quick_stop: QuickStop, orders: list[Order], end: threading.Event
+    connection: Connection, quick_stop: QuickStop, orders: list[LoopOrder], end: threading.Event
 ) -> None:
     while not end.is_set():
         if quick_stop.take():
-            orders.append(Order(0, OrderKind.COMMAND, "quick stop"))
+            orders.append(LoopOrder(0, OrderKind.COMMAND, "quick stop"))
         if connection.poll(0.02):
             order = connection.recv()
             orders.append(order)
@@ -67,7 +67,7 @@ def served(
     rig = folder / "rig"
     shutil.copytree(EXAMPLES, rig)
     ours, theirs = Pipe()
-    settings = Settings(
+    settings = ConsoleSettings(
         rig_path=rig / "rig.toml",
         plans=rig,
         output=folder,
@@ -75,7 +75,7 @@ def served(
         door=Door(host, PORT, token),
     )
     quick_stop = QuickStop()
-    orders: list[Order] = []
+    orders: list[LoopOrder] = []
     end, ended = threading.Event(), threading.Event()
     thread = threading.Thread(target=_loop, args=(ours, quick_stop, orders, end))
     thread.start()

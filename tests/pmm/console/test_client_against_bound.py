@@ -12,12 +12,12 @@ import numpy as np
 from pmm.console.client import WAITING, Client
 from pmm.console.desk import Desk, Holder
 from pmm.console.hub import Hub
-from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, Trace
+from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, SignalTrace
 from pmm.console.pump import send_round
 from pmm.console.traces import POINTS
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.states import State
-from pmm.run.status import Status
+from pmm.run.status import RunStatus
 
 EACH = 4  # points a frame
 
@@ -62,7 +62,7 @@ class Room:
         self.number += 1
         first = self.number * EACH
         values = np.arange(first, first + EACH, dtype=float)[None, :]
-        self.hub.take(_frame(self.number, Trace(first, first / 100.0, values)))
+        self.hub.take(_frame(self.number, SignalTrace(first, first / 100.0, values)))
         await self.round()
 
     async def round(self) -> None:
@@ -71,11 +71,25 @@ class Room:
             await asyncio.sleep(0)
 
 
-def _frame(number: int, trace: Trace) -> Frame:
+def _frame(number: int, trace: SignalTrace) -> Frame:
     nothing = math.nan
-    return Frame(number, Status(State.IDLE, number, number / 25.0), 0, (), None, nothing, nothing,
-                 nothing, (), (), "", Bus(True, 0, 0), CycleStatistics(0, 0.0, 0.0, 0.0, 0), None,
-                 trace)  # fmt: skip
+    return Frame(
+        number,
+        RunStatus(State.IDLE, number, number / 25.0),
+        0,
+        (),
+        None,
+        nothing,
+        nothing,
+        nothing,
+        (),
+        (),
+        "",
+        Bus(True, 0, 0),
+        CycleStatistics(0, 0.0, 0.0, 0.0, 0),
+        None,
+        trace,
+    )
 
 
 def _in_room(act: Callable[[Room], Coroutine[Any, Any, None]]) -> None:
@@ -137,7 +151,7 @@ def test_who_has_control_is_sent_to_before_each_batch_of_those_who_watch() -> No
         room.hub.desk.take_over("98")  # the last of the round
         last = room.hub.clients["98"]
         room.number += 1
-        room.hub.take(_frame(room.number, Trace(0, 0.0, np.empty((1, 0)))))
+        room.hub.take(_frame(room.number, SignalTrace(0, 0.0, np.empty((1, 0)))))
         sending = asyncio.ensure_future(send_round(room.hub))
         await asyncio.sleep(0)
         assert last.frame == room.number

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pmm.console.checking import ReadyPlan
-from pmm.console.encoding import Made
+from pmm.console.encoding import EncodedText
 from pmm.console.limits import MOST_WAITING
 from pmm.console.messages import PackedPlan
 from pmm.console.queued import Queued
@@ -19,7 +19,7 @@ _PLAN = Plan("plan", Path(), Path(), (), "", "")
 
 
 def _ready(folder: str) -> ReadyPlan:
-    return ReadyPlan(PackedPlan(0, _PLAN, Path(folder), (b"runs",)), Made("{}"))
+    return ReadyPlan(PackedPlan(0, _PLAN, Path(folder), (b"runs",)), EncodedText("{}"))
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -10,9 +10,9 @@ import can
 import numpy as np
 
 from hardware.pacing import FreeRunning
-from pmm.console.asking import Answers
+from pmm.console.asking import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
-from pmm.console.messages import Frame, Notice, Order, OrderKind, QueuedPlan, Reply, Told
+from pmm.console.messages import Frame, LoopOrder, Notice, OrderKind, QueuedPlan, Reply, Told
 from pmm.console.pacing import CountingPacer
 from pmm.console.quick_stop import QuickStop
 from pmm.console.station import Station
@@ -32,7 +32,7 @@ class Heard:
 
     frames: list[Frame] = field(default_factory=list)
     told: list[Told] = field(default_factory=list)
-    waiting: list[Order] = field(default_factory=list)
+    waiting: list[LoopOrder] = field(default_factory=list)
     lost: bool = False
 
     def frame(self, frame: Frame) -> None:
@@ -41,7 +41,7 @@ class Heard:
     def tell(self, message: Told) -> None:
         self.told.append(message)
 
-    def orders(self) -> list[Order]:
+    def orders(self) -> list[LoopOrder]:
         found, self.waiting = self.waiting, []
         return found
 
@@ -62,7 +62,7 @@ class Shown:
     def order(self, kind: OrderKind, text: str = "", plan: QueuedPlan | None = None) -> Reply:
         """Give an order and run the cycle that takes it."""
         stops = self.quick_stop.pressed
-        self.heard.waiting.append(Order(next(self.numbers), kind, text, "", plan, stops))
+        self.heard.waiting.append(LoopOrder(next(self.numbers), kind, text, "", plan, stops))
         self.station.step()
         replies = [one for one in self.heard.told if isinstance(one, Reply)]
         return replies[-1]
@@ -95,7 +95,7 @@ def _shown(folder: Path) -> Iterator[Shown]:
             one.control._conduct.rig_file,
             heard,  # type: ignore[arg-type]
             quick_stop,
-            Answers(),
+            BrowserAnswers(),
             CountingPacer(FreeRunning(), 0.01, 100),
             Taps(),
             lambda: one.world.time_s,
@@ -251,7 +251,7 @@ def test_a_quick_stop_is_on_the_bus_in_the_cycle_that_finds_it_before_any_order(
         one.queue(1, "plan", _short("a"))
         one.order(OrderKind.COMMAND, "start")
         one.until(State.GATE_OPEN)
-        one.heard.waiting += [Order(k, OrderKind.ANSWER, "5", "old") for k in range(1000, 2000)]
+        one.heard.waiting += [LoopOrder(k, OrderKind.ANSWER, "5", "old") for k in range(1000, 2000)]
         with can.Bus(interface="pmm-simulated", channel=NAME) as bus:
             one.station.step()
             assert _QUICKLY not in _shaft_words(bus)
@@ -268,7 +268,7 @@ def test_what_was_ordered_before_a_quick_stop_does_not_move_the_rig_after_it(
         one.queue(1, "plan", _short("a"))
         before = one.quick_stop.pressed
         one.quick_stop.press()
-        one.heard.waiting.append(Order(9, OrderKind.COMMAND, "start", quick_stops=before))
+        one.heard.waiting.append(LoopOrder(9, OrderKind.COMMAND, "start", quick_stops=before))
         for _ in range(100):
             one.station.step()
         assert one.station.at_rest

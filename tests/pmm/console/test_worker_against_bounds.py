@@ -16,16 +16,16 @@ import pytest
 from pmm.console.messages import QueuedPlan
 from pmm.console.packing import pack, unpack
 from pmm.console.plans import Plans
-from pmm.console.worker import Bounds, BusyError, NotWorkedOutError, Worker
+from pmm.console.worker import BusyError, NotWorkedOutError, WorkerProcess, WorkLimits
 from pmm.console.workers import Shared
 from tests.pmm.console.chromium import plan, rig_in
 
-BOUNDS = Bounds(seconds=120.0, memory_bytes=1 << 30, waiting=2)
+BOUNDS = WorkLimits(seconds=120.0, memory_bytes=1 << 30, waiting=2)
 
 
-def _with(bounds: Bounds, act: Callable[[Worker], Coroutine[Any, Any, None]]) -> None:
+def _with(bounds: WorkLimits, act: Callable[[WorkerProcess], Coroutine[Any, Any, None]]) -> None:
     async def run() -> None:
-        one = Worker("work", bounds)
+        one = WorkerProcess("work", bounds)
         try:
             await act(one)
         finally:
@@ -35,7 +35,7 @@ def _with(bounds: Bounds, act: Callable[[Worker], Coroutine[Any, Any, None]]) ->
 
 
 def test_it_returns_what_the_work_returns_and_raises_what_it_raises() -> None:
-    async def act(one: Worker) -> None:
+    async def act(one: WorkerProcess) -> None:
         first, second = await one.run(os.getpid), await one.run(os.getpid)
         assert first == second != os.getpid()
         with pytest.raises(ValueError, match="math domain error"):
@@ -46,7 +46,7 @@ def test_it_returns_what_the_work_returns_and_raises_what_it_raises() -> None:
 
 
 def test_what_takes_too_long_is_ended_and_the_next_work_is_done() -> None:
-    async def act(one: Worker) -> None:
+    async def act(one: WorkerProcess) -> None:
         with pytest.raises(NotWorkedOutError, match=r"work took longer than 0\.2 s and was ended"):
             await one.run(time.sleep, 600.0)
 
@@ -55,7 +55,7 @@ def test_what_takes_too_long_is_ended_and_the_next_work_is_done() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="others cannot limit memory")
 def test_what_takes_too_much_memory_is_told_so() -> None:
-    async def act(one: Worker) -> None:
+    async def act(one: WorkerProcess) -> None:
         with pytest.raises(NotWorkedOutError, match="work took more than 1024 MiB of memory"):
             await one.run(operator.mul, b"x", 3 << 30)
         assert await one.run(operator.mul, b"x", 3) == b"xxx"
@@ -64,7 +64,7 @@ def test_what_takes_too_much_memory_is_told_so() -> None:
 
 
 def test_what_ends_its_process_ends_no_other() -> None:
-    async def act(one: Worker) -> None:
+    async def act(one: WorkerProcess) -> None:
         with pytest.raises(NotWorkedOutError, match=r"work ended its process \(status 3\)"):
             await one.run(os._exit, 3)
         assert await one.run(operator.mul, 2, 3) == 6
@@ -73,7 +73,7 @@ def test_what_ends_its_process_ends_no_other() -> None:
 
 
 def test_no_more_wait_than_may_and_closing_waits_for_none() -> None:
-    async def act(one: Worker) -> None:
+    async def act(one: WorkerProcess) -> None:
         asked = [asyncio.ensure_future(one.run(time.sleep, 600.0)) for _ in range(2)]
         await asyncio.sleep(0)
         with pytest.raises(BusyError, match="work: 2 wait already, which is the limit"):

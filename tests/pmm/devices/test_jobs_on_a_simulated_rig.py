@@ -16,7 +16,7 @@ from hardware.rig import Rig
 from hardware.scan import Ear, scan
 from pmm.devices.live import Live
 from pmm.devices.moving import NOTHING_MOVED, axis_of, look, move, turn
-from pmm.devices.pushing import Gauges, direction, push_each
+from pmm.devices.pushing import GaugeReadings, direction, push_each
 from pmm.devices.watching import watch
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
@@ -51,7 +51,7 @@ def turned_round():
 
 
 def push_test(rig, within_s: float = 30.0):
-    gauges = Gauges(rig)
+    gauges = GaugeReadings(rig)
     names = tuple(one.name for one in gauges.channels)
     return list(push_each(gauges, names, Plane.VERTICAL, within_s))
 
@@ -142,7 +142,7 @@ def test_the_model_is_pushed_against_the_struts_positive_force(channel, plane, w
 def test_a_rig_without_gauges_has_no_push_test() -> None:
     refused = pytest.raises(ConfigurationError, match=r"needs a \[\[forces\]\] table")
     with in_process({"shaft": WHOLE["shaft"]}) as (rig, _), refused:
-        Gauges(rig)
+        GaugeReadings(rig)
 
 
 def test_an_axis_homes_and_moves_within_its_limits_only() -> None:

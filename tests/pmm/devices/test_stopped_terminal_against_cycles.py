@@ -13,10 +13,10 @@ import pytest
 
 from hardware.roles import Pulse
 from pmm.cli import devices_read, devices_rig
-from pmm.devices.live import Row
+from pmm.devices.live import DeviceRow
 from pmm.devices.push_test import Push
 from pmm.devices.pushing import Pushed
-from pmm.devices.watching import Watched
+from pmm.devices.watching import PhotocellRecord
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "vertical" / "rig.toml"
 
@@ -57,7 +57,7 @@ def test_values_are_read_on(monkeypatch: pytest.MonkeyPatch) -> None:
         if len(looked) == 20:
             terminal.goes_on.set()
             raise KeyboardInterrupt
-        return devices_read._Shown((Row("shaft", "looks", float(len(looked))),))
+        return devices_read._Shown((DeviceRow("shaft", "looks", float(len(looked))),))
 
     @contextmanager
     def source(*_: object) -> Iterator[Any]:
@@ -90,10 +90,10 @@ def test_gauges_are_pushed_on(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_pulses_are_watched_on(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = stopped(monkeypatch)
 
-    def watched(_rig: object, _count: int, _s: float, on_pulse: Any) -> Watched:
+    def watched(_rig: object, _count: int, _s: float, on_pulse: Any) -> PhotocellRecord:
         on_pulse(Pulse(7, 1.0))
         terminal.goes_on.set()
-        return Watched((Pulse(7, 1.0),), (), (), True)
+        return PhotocellRecord((Pulse(7, 1.0),), (), (), True)
 
     monkeypatch.setattr(devices_rig, "watch", watched)
     devices_rig.photocell(str(EXAMPLE), True, False, True, 2, 1.0, None)

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from hardware.serial_port import PluggedPort
 from pmm.cli import cli
 from pmm.doctor import machine as this
-from pmm.doctor.findings import Finding, Status
+from pmm.doctor.findings import MachineFinding, MachineStatus
 from pmm.doctor.host import check_host
 from pmm.doctor.installation import check_installation
 from pmm.doctor.machine import Machine
@@ -47,7 +47,7 @@ def sound(root: Path) -> Machine:
     )
 
 
-def look(machine: Machine) -> list[Finding]:
+def look(machine: Machine) -> list[MachineFinding]:
     checks = (check_installation, check_buses, check_ports)
     return [one for check in checks for one in check(machine)] + list(
         check_host(machine, Path("runs"))
@@ -55,7 +55,7 @@ def look(machine: Machine) -> list[Finding]:
 
 
 def test_a_sound_machine_has_no_fault(tmp_path: Path) -> None:
-    assert {one.status for one in look(sound(tmp_path))} == {Status.OK}
+    assert {one.status for one in look(sound(tmp_path))} == {MachineStatus.OK}
 
 
 PLANTED: dict[str, tuple[dict[str, Any], str, str]] = {
@@ -81,7 +81,7 @@ PLANTED: dict[str, tuple[dict[str, Any], str, str]] = {
 def test_each_fault_is_named_with_its_cure(tmp_path: Path, fault: str) -> None:
     changed, what, cure = PLANTED[fault]
     faults = [one for one in look(replace(sound(tmp_path), **changed))
-              if one.status is Status.FAULT]  # fmt: skip
+              if one.status is MachineStatus.FAULT]  # fmt: skip
     assert len(faults) == 1
     assert what in faults[0].what
     assert cure in faults[0].cure
@@ -90,8 +90,8 @@ def test_each_fault_is_named_with_its_cure(tmp_path: Path, fault: str) -> None:
 def test_a_bus_that_is_down_is_named_with_its_cure(tmp_path: Path) -> None:
     machine = sound(tmp_path)
     (tmp_path / "sys/class/net/can0/flags").write_text("0x40080\n")
-    (fault,) = (one for one in look(machine) if one.status is not Status.OK)
-    assert (fault.what, fault.status) == ("CAN can0", Status.FAULT)
+    (fault,) = (one for one in look(machine) if one.status is not MachineStatus.OK)
+    assert (fault.what, fault.status) == ("CAN can0", MachineStatus.FAULT)
     assert fault.cure == "sudo ip link set can0 up type can bitrate 1000000"
 
 
@@ -110,8 +110,8 @@ WARNED: dict[str, tuple[dict[str, Any], str]] = {
 def test_each_weakness_is_a_warning_with_its_cure(tmp_path: Path, weakness: str) -> None:
     changed, cure = WARNED[weakness]
     (found,) = (one for one in look(replace(sound(tmp_path), **changed))
-                if one.status is not Status.OK)  # fmt: skip
-    assert found.status is Status.WARNING
+                if one.status is not MachineStatus.OK)  # fmt: skip
+    assert found.status is MachineStatus.WARNING
     assert cure in found.cure
 
 

@@ -19,7 +19,7 @@ from pmm.campaign.calibration import Calibration, read_calibration, write_calibr
 from pmm.cli import cli
 from pmm.evaluation.run_results import read_results
 from pmm.plan.checks import check_plan
-from pmm.plan.findings import Verdict
+from pmm.plan.findings import PlanVerdict
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import read_rig_file
 from tests.pmm.plan.plans import GAUGES_TEXT, HEAVE, RIG_TEXT, write_plan
@@ -187,5 +187,5 @@ def test_a_plan_after_the_expiry_is_warned_of(tmp_path: Path) -> None:
     assert warned(date(2026, 3, 31)) == [30.0]
     said = CliRunner().invoke(cli, ["plan", "check", str(path), "--json"])
     findings = [one for one in json.loads(said.stdout)["findings"] if "calibr" in one["quantity"]]
-    assert [one["verdict"] for one in findings] == [Verdict.WARN]
+    assert [one["verdict"] for one in findings] == [PlanVerdict.WARN]
     assert "expired on 2026-03-01" in findings[0]["message"]

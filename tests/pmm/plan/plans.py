@@ -11,7 +11,7 @@ from hardware.description.oscillator import VERTICAL_1963, Oscillator
 from hardware.description.setpoint import SetPoint
 from hardware.rig_configuration import RigConfiguration, read_rig
 from pmm.plan.rig_file import RigFile
-from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, Tank
+from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, TankTable
 from pmm.plan.run_plan import RunPlan
 from tests.hardware.rigs import DRIVERS, ECCENTRICITY, PHASE, SHAFT
 
@@ -59,7 +59,7 @@ def rig_file(oscillator: Oscillator = VERTICAL_1963, **changes: Any) -> RigFile:
         hardware=devices(),
         model=Ship(70.0, 27.5, length_m=2.5),
         hull=HullEstimate(((75.0, 3.0), (3.0, 22.0)), ((190.0, 12.0), (12.0, 55.0))),
-        tank=Tank(100.0, 4.0, 0.5, 4.0),
+        tank=TankTable(100.0, 4.0, 0.5, 4.0),
         limits=Limits(stroke_m=0.12, velocity_m_s=0.8, acceleration_m_s2=10.0),
         gauges=(Gauge("force_aft", 500.0), Gauge("force_fore", 500.0)),
     )

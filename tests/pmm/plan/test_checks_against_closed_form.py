@@ -15,32 +15,27 @@ from hardware.description.known_loads import LoadStep
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from hardware.description.setpoint import Medium
 from hardware.rig_configuration import RigConfiguration, read_rig
-from pmm.plan.checks import (
-    Finding,
-    PlanRefusedError,
-    Verdict,
-    check_plan,
-    require_possible,
-)
+from pmm.plan.checks import check_plan, require_possible
 from pmm.plan.duration import duration_rows, run_s, tank_length_m
 from pmm.plan.field_checks import field_findings, tank_modes_hz
+from pmm.plan.findings import PlanFinding, PlanRefusedError, PlanVerdict
 from pmm.plan.limits import bus_finding, limit_findings
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
-from pmm.plan.rig_tables import Gauge, Limits, StructuralMode, Tank
+from pmm.plan.rig_tables import Gauge, Limits, StructuralMode, TankTable
 from pmm.plan.run_plan import RunPlan
 from tests.pmm.plan.plans import rig_file, run
 
 G = 9.80665
 
 
-def _only(found: list[Finding], quantity: str) -> Finding:
+def _only(found: list[PlanFinding], quantity: str) -> PlanFinding:
     (one,) = [finding for finding in found if finding.quantity == quantity]
     return one
 
 
-def _refused(one: RunPlan, rig: RigFile) -> list[Finding]:
+def _refused(one: RunPlan, rig: RigFile) -> list[PlanFinding]:
     return [finding for finding in limit_findings(one, rig) if finding.verdict == "refuse"]
 
 
@@ -99,7 +94,7 @@ def test_the_way_of_the_carriage() -> None:
     way = 2.0 * (14 / 0.5 + 0.5 / 1.0 + 2.0 / 0.5)
     assert tank_length_m(one, rig) == pytest.approx(way)
     assert not _refused(one, rig)
-    short = rig_file(tank=Tank(way - 0.1, 4.0, 0.5, 4.0))
+    short = rig_file(tank=TankTable(way - 0.1, 4.0, 0.5, 4.0))
     finding = _only(_refused(one, short), "tank length [m]")
     assert (finding.value, finding.limit) == (pytest.approx(way), way - 0.1)
     fast = _only(_refused(run(speed_m_s=4.5), rig), "speed [m/s]")
@@ -156,11 +151,11 @@ def test_no_instant_of_a_crank_is_faster_than_its_peaks(ratio: float, angle: flo
 
 
 def test_transverse_modes_have_the_wavelengths_of_the_tank() -> None:
-    deep = tank_modes_hz(Tank(100.0, 4.0, 0.5, 4.0))
+    deep = tank_modes_hz(TankTable(100.0, 4.0, 0.5, 4.0))
     # omega^2 = g k with the wavelength 2 W / n, so f^2 = g / (2 pi lambda).
     for n, mode in enumerate(deep, 1):
         assert mode**2 == pytest.approx(G / (2.0 * math.pi * (8.0 / n)))
-    shallow = tank_modes_hz(Tank(100.0, 4.0, 0.5, 4.0, depth_m=0.01))
+    shallow = tank_modes_hz(TankTable(100.0, 4.0, 0.5, 4.0, depth_m=0.01))
     assert shallow[0] == pytest.approx(math.sqrt(G * 0.01) / 8.0, rel=1e-4)
     at = [f for f in field_findings(run(1.01 * deep[1]), rig_file()) if "tank" in f.quantity]
     assert [(f.verdict, f.value) for f in at] == [("warn", pytest.approx(0.01))]
@@ -241,6 +236,6 @@ def test_what_cannot_be_checked_is_said() -> None:
     assert all(math.isnan(f.value) for f in found if f.quantity == "not checked")
     whole = check_plan(_plan(run(0.82)), rig_file(modes=(StructuralMode("a", 30.0),)))
     assert [f.quantity for f in whole] == ["bus load"]
-    ranks = [list(Verdict).index(f.verdict) for f in found]
+    ranks = [list(PlanVerdict).index(f.verdict) for f in found]
     assert ranks == sorted(ranks)
     assert np.isfinite([f.value for f in whole]).all()

@@ -15,9 +15,17 @@ from hardware.description.known_loads import KnownMass
 from hardware.rig_configuration import TABLES
 from pmm.cli import cli
 from pmm.plan.duration import duration_rows
-from pmm.plan.findings import Finding
+from pmm.plan.findings import PlanFinding
 from pmm.plan.plan import read_plan, read_plan_and_rig
-from pmm.plan.plan_tables import Control, Defaults, Entry, Order, PlanTables, Scheme, Zero
+from pmm.plan.plan_tables import (
+    ControlTable,
+    Defaults,
+    OrderTable,
+    PlanEntry,
+    PlanTables,
+    Scheme,
+    ZeroTable,
+)
 from pmm.plan.plan_units import EXTRA_KEYS
 from pmm.plan.rig_file import read_rig_file
 from pmm.plan.rig_tables import (
@@ -29,7 +37,7 @@ from pmm.plan.rig_tables import (
     RecorderSettings,
     RigTables,
     StructuralMode,
-    Tank,
+    TankTable,
 )
 from tests.pmm.plan.plans import EXAMPLES, HEAVE, HOUSE, write_plan
 
@@ -51,7 +59,7 @@ def test_the_rig_can_run_the_examples(name: str) -> None:
     assert "the rig can run it, with 0 warnings" in found.output
     document = json.loads(_pmm("plan", "check", _example(name), "--json").stdout)
     assert document["possible"] is True
-    assert {*document["findings"][0]} == {field.name for field in fields(Finding)}
+    assert {*document["findings"][0]} == {field.name for field in fields(PlanFinding)}
 
 
 def test_conditions_are_a_table_of_the_largest_numbers_and_their_limits() -> None:
@@ -169,11 +177,14 @@ def _in_code(page: str) -> set[str]:
 @pytest.mark.parametrize(
     ("page", "kinds"),
     [
-        ("plans.md", (PlanTables, Entry, Defaults, Order, Zero, Control, KnownMass)),
+        (
+            "plans.md",
+            (PlanTables, PlanEntry, Defaults, OrderTable, ZeroTable, ControlTable, KnownMass),
+        ),
         (
             "rig-file.md",
             (
-                RigTables, Ship, HullEstimate, Tank, Limits, Gauge, StructuralMode,
+                RigTables, Ship, HullEstimate, TankTable, Limits, Gauge, StructuralMode,
                 PhotocellOffset, RecorderSettings,
             ),
         ),

@@ -10,16 +10,16 @@ from hardware.description.body import Ship
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from pmm.plan.condition_checks import condition_findings
-from pmm.plan.findings import Finding, largest_stated
-from pmm.plan.rig_tables import Tank
+from pmm.plan.findings import PlanFinding, largest_stated
+from pmm.plan.rig_tables import TankTable
 from tests.pmm.plan.plans import rig_file, run
 
 G, L, HALF = 9.80665, 2.5, 0.5
 SHIP = Ship(70.0, 27.5, length_m=L)
-TANK = Tank(100.0, 4.0, 0.5, 4.0, depth_m=2.0)
+TANK = TankTable(100.0, 4.0, 0.5, 4.0, depth_m=2.0)
 
 
-def told(one, rig) -> dict[str, Finding]:  # type: ignore[no-untyped-def]
+def told(one, rig) -> dict[str, PlanFinding]:  # type: ignore[no-untyped-def]
     return {each.quantity: each for each in condition_findings(one, rig)}
 
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from hardware.description.flags import Severity
-from pmm.plan.checks import Verdict, check_plan
+from pmm.plan.checks import check_plan
+from pmm.plan.findings import PlanVerdict
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import read_rig_file
 from pmm.plan.simulated_rig import (
@@ -92,8 +93,8 @@ def test_a_check_of_a_plan_warns_and_a_recording_keeps_it(tmp_path: Path) -> Non
     differs = found(tmp_path, "[model]\nmass_kg = 35.0\n[carriage]\nspeed_error = 0.01\n")
     plan, rig = read_plan_and_rig(path)
     said = {one.verdict: one for one in check_plan(plan, rig) if one.quantity == "simulated rig"}
-    assert set(said) == {Verdict.WARN, Verdict.NOTE}
-    assert (said[Verdict.WARN].value, said[Verdict.WARN].limit) == (35.0, 70.0)
+    assert set(said) == {PlanVerdict.WARN, PlanVerdict.NOTE}
+    assert (said[PlanVerdict.WARN].value, said[PlanVerdict.WARN].limit) == (35.0, 70.0)
     (flag,) = departure_flag(differs)
     assert (flag.code, flag.severity) == ("simulated_differs", Severity.WARNING)
     assert "model.mass_kg" in provenance_of_departures(differs)["simulated_differs"]
@@ -103,5 +104,5 @@ def test_a_simulated_rig_that_cannot_be_made_refuses_the_plan(tmp_path: Path) ->
     path = write_plan(tmp_path, HEAVE)
     (tmp_path / "simulated.toml").write_text('rig = "rig.toml"\nsead = 3\n', encoding="utf-8")
     plan, rig = read_plan_and_rig(path)
-    (said,) = (one for one in check_plan(plan, rig) if one.verdict is Verdict.REFUSE)
+    (said,) = (one for one in check_plan(plan, rig) if one.verdict is PlanVerdict.REFUSE)
     assert "sead is not a known key; did you mean seed?" in said.message

@@ -16,7 +16,15 @@ from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Osci
 from hardware.description.setpoint import Medium
 from pmm.plan.expansion import all_of, expand, snake, strut_phase_of
 from pmm.plan.ordering import in_order, runs_of, with_control, with_zeros
-from pmm.plan.plan_tables import Control, Defaults, Entry, Order, PlanTables, Scheme, Zero
+from pmm.plan.plan_tables import (
+    ControlTable,
+    Defaults,
+    OrderTable,
+    PlanEntry,
+    PlanTables,
+    Scheme,
+    ZeroTable,
+)
 from pmm.plan.run_plan import RunPlan
 from tests.pmm.plan.plans import run
 
@@ -24,12 +32,12 @@ CHANNELS = ("force_aft", "force_fore")
 
 
 @st.composite
-def matrices(draw: st.DrawFn) -> Entry:
+def matrices(draw: st.DrawFn) -> PlanEntry:
     """Entries of heave or pitch with up to 4 x 4 x 4 combinations, up to 3 times."""
     frequencies = draw(st.lists(st.floats(0.1, 2.0), min_size=1, max_size=4, unique=True))
     amplitudes = draw(st.lists(st.floats(1e-3, 0.06), min_size=1, max_size=4, unique=True))
     speeds = draw(st.lists(st.floats(0.0, 3.0), max_size=4, unique=True))
-    return Entry(
+    return PlanEntry(
         motion=draw(st.sampled_from([Motion.HEAVE, Motion.PITCH])),
         frequencies_hz=tuple(frequencies),
         amplitudes_m=tuple(amplitudes),
@@ -38,12 +46,12 @@ def matrices(draw: st.DrawFn) -> Entry:
     )
 
 
-def _made(entry: Entry, oscillator: Oscillator = VERTICAL_1963, **more: Any) -> list[RunPlan]:
+def _made(entry: PlanEntry, oscillator: Oscillator = VERTICAL_1963, **more: Any) -> list[RunPlan]:
     return expand(entry, Defaults(**more), oscillator, CHANNELS, all_of)
 
 
 @given(matrices())
-def test_every_combination_is_there_once_for_each_repeat(entry: Entry) -> None:
+def test_every_combination_is_there_once_for_each_repeat(entry: PlanEntry) -> None:
     runs = _made(entry)
     speeds = entry.speeds_m_s or (0.0,)
     count = len(entry.frequencies_hz) * len(entry.amplitudes_m) * len(speeds)
@@ -67,10 +75,10 @@ def test_a_snake_is_all_combinations_and_moves_one_list_by_one_step(lists: list[
 
 @given(st.lists(matrices(), min_size=1, max_size=3), st.integers(0, 2**31), st.booleans())
 def test_a_random_order_is_a_permutation_and_the_same_for_a_seed(
-    entries: list[Entry], seed: int, across: bool
+    entries: list[PlanEntry], seed: int, across: bool
 ) -> None:
     made = [_made(one) for one in entries]
-    order = Order(Scheme.RANDOM, seed, across)
+    order = OrderTable(Scheme.RANDOM, seed, across)
     runs = in_order(made, order)
     assert runs == in_order(made, order)
     assert Counter(map(id, runs)) == Counter(id(one) for part in made for one in part)
@@ -82,10 +90,10 @@ def test_a_random_order_is_a_permutation_and_the_same_for_a_seed(
 def test_what_is_no_matrix_keeps_its_place_in_a_random_order() -> None:
     dry = [run(name=f"dry-{i}", kind=RunKind.DRY) for i in range(5)]
     wet = [run(name=f"wet-{i}") for i in range(5)]
-    runs = in_order([dry, wet], Order(Scheme.RANDOM, 4))
+    runs = in_order([dry, wet], OrderTable(Scheme.RANDOM, 4))
     assert runs[:5] == dry
     assert runs[5:] != wet
-    assert in_order([dry, wet], Order()) == [*dry, *wet]
+    assert in_order([dry, wet], OrderTable()) == [*dry, *wet]
 
 
 @given(st.integers(1, 30), st.integers(1, 12))
@@ -110,7 +118,7 @@ def test_each_run_lies_between_the_zero_runs_that_it_names(kinds: list[str], eve
         one = run(name=f"run-{i}", kind=what[kind], pause_before_s=60.0)
         medium = Medium.AIR if kind == "air" else Medium.WATER
         given_runs.append(_in(one, medium))
-    runs = with_zeros(given_runs, Zero(5.0, every))
+    runs = with_zeros(given_runs, ZeroTable(5.0, every))
     places = {one.name: number for number, one in enumerate(runs)}
     assert len(places) == len(runs)
     assert [one.name for one in runs if one.kind is not RunKind.ZERO] == [
@@ -131,7 +139,7 @@ def _in(one: RunPlan, medium: Medium) -> RunPlan:
 
 
 def test_a_zero_run_takes_over_pause_and_settings_of_its_run() -> None:
-    runs = with_zeros([run(pause_before_s=60.0, speed_m_s=1.2, phase_rad=1.0)], Zero(5.0))
+    runs = with_zeros([run(pause_before_s=60.0, speed_m_s=1.2, phase_rad=1.0)], ZeroTable(5.0))
     first, middle, last = runs
     assert (first.pause_before_s, middle.pause_before_s, last.pause_before_s) == (60.0, 0.0, 60.0)
     assert first.set_point.frequency_hz == first.set_point.carriage_speed_m_s == 0.0
@@ -142,7 +150,7 @@ def test_a_zero_run_takes_over_pause_and_settings_of_its_run() -> None:
 def test_an_added_mass_has_zero_runs_of_its_own() -> None:
     mass = KnownMass(5.0)
     dry, known = run(name="a", kind=RunKind.DRY), run(name="b", kind=RunKind.KNOWN_MASS)
-    runs = with_zeros([dry, _with(known, mass)], Zero(5.0, 9))
+    runs = with_zeros([dry, _with(known, mass)], ZeroTable(5.0, 9))
     assert [one.known_mass for one in runs] == [None, None, None, mass, mass, mass]
 
 
@@ -165,7 +173,7 @@ def test_pure_pitch_and_yaw_have_no_angle_of_attack(
 
 
 def test_check_weights_go_up_and_down_on_each_gauge() -> None:
-    entry = Entry(kind=RunKind.CHECK_WEIGHT, loads_n=(0.0, 50.0, 100.0), repeats=2)
+    entry = PlanEntry(kind=RunKind.CHECK_WEIGHT, loads_n=(0.0, 50.0, 100.0), repeats=2)
     runs = _made(entry)
     steps = [(one.load.channel, one.load.force_n, one.load.direction) for one in runs if one.load]
     up_down = [(0.0, "up"), (50.0, "up"), (100.0, "up"), (50.0, "down"), (0.0, "down")]
@@ -174,10 +182,10 @@ def test_check_weights_go_up_and_down_on_each_gauge() -> None:
 
 
 def test_in_air_the_speed_tells_the_phase_alone() -> None:
-    entry = Entry(
-        RunKind.DRY, Motion.PITCH, "", frequencies_hz=(0.8,), amplitudes_m=(0.02,),
-        speeds_m_s=(1.2,),
-    )  # fmt: skip
+    entry = PlanEntry(
+                      RunKind.DRY, Motion.PITCH, "", frequencies_hz=(0.8,), amplitudes_m=(0.02,),
+                      speeds_m_s=(1.2,),
+                  )  # fmt: skip
     (dry,) = _made(entry)
     assert dry.set_point.carriage_speed_m_s == 0.0
     assert dry.set_point.medium is Medium.AIR
@@ -187,24 +195,26 @@ def test_in_air_the_speed_tells_the_phase_alone() -> None:
 
 
 def test_restoring_turns_as_slowly_as_the_oscillator_can() -> None:
-    (one,) = _made(Entry(RunKind.RESTORING, Motion.SWAY, amplitudes_m=(0.1,)), HORIZONTAL_1963)
+    (one,) = _made(PlanEntry(RunKind.RESTORING, Motion.SWAY, amplitudes_m=(0.1,)), HORIZONTAL_1963)
     assert one.set_point.frequency_hz == HORIZONTAL_1963.frequency_hz.low
 
 
 def test_an_end_by_target_is_between_the_fewest_and_the_most_periods() -> None:
-    entry = Entry(motion=Motion.HEAVE, frequencies_hz=(1.0,), amplitudes_m=(0.02,), max_periods=40)
+    entry = PlanEntry(
+        motion=Motion.HEAVE, frequencies_hz=(1.0,), amplitudes_m=(0.02,), max_periods=40
+    )
     (one,) = _made(entry, target_relative=0.01, periods=5)
     assert (one.target_relative, one.periods, one.max_periods) == (0.01, 5, 40)
     assert (one.measured_s, one.moving_s) == (40.0, 44.0)
 
 
 def test_a_whole_plan_has_all_that_belongs_to_it() -> None:
-    heave = Entry(motion=Motion.HEAVE, frequencies_hz=(0.5, 1.0), amplitudes_m=(0.01, 0.02))
-    push = Entry(kind=RunKind.PUSH, loads_n=(20.0,))
+    heave = PlanEntry(motion=Motion.HEAVE, frequencies_hz=(0.5, 1.0), amplitudes_m=(0.01, 0.02))
+    push = PlanEntry(kind=RunKind.PUSH, loads_n=(20.0,))
     tables = PlanTables(
-        order=Order(Scheme.SNAKE),
-        zero=Zero(5.0, 2),
-        control=Control(Motion.HEAVE, 0.8, 0.02, 2),
+        order=OrderTable(Scheme.SNAKE),
+        zero=ZeroTable(5.0, 2),
+        control=ControlTable(Motion.HEAVE, 0.8, 0.02, 2),
         runs=(push, heave),
     )
     runs = runs_of(tables, VERTICAL_1963, CHANNELS)

@@ -13,7 +13,7 @@ from hardware.description.errors import DataError
 from hardware.errors import HardwareError
 from pmm.recorder.files import MARKER
 from pmm.recorder.recovery import RecoveredRun, recover
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.faulty_disk import Faults, FaultyDisk
 from tests.pmm.recorder.recorded import fed, header, truth
 
@@ -60,7 +60,7 @@ def record(seed: int, place: Path) -> Recorded:
                         pass
                     if not recorder._samples:
                         promised.append((len(disk.steps), first + BLOCK - 1))
-                recorder.close(Outcome.COMPLETE)
+                recorder.close(RunEnd.COMPLETE)
             promised.append((len(disk.steps), SYNCS))
             closed = True
         except (DataError, HardwareError, OSError):

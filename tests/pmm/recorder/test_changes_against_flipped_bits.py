@@ -15,7 +15,7 @@ from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.cli import cli
 from pmm.recorder.files import STREAMS
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.recorder.samples import JournalSamples, read_samples
 from tests.pmm.recorder.recorded import session
 
@@ -31,7 +31,7 @@ def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with session() as rig:
         recorder, _ = rig.record(folder, 600, LiveSettings(periods=2))
         with recorder:
-            recorder.close(Outcome.COMPLETE)
+            recorder.close(RunEnd.COMPLETE)
     return folder
 
 

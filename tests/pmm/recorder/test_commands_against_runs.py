@@ -8,7 +8,7 @@ from click.testing import CliRunner, Result
 
 from pmm.cli import cli
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import fed, header, session
 
 
@@ -19,7 +19,7 @@ def pmm(*words: str | Path) -> Result:
 def test_a_campaign_is_recovered_run_by_run(tmp_path: Path) -> None:
     with RunRecorder(tmp_path / "a closed", header()) as recorder:
         fed(recorder, range(1, 101))
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     with RunRecorder(tmp_path / "b killed", header()) as recorder:
         fed(recorder, range(1, 101))
     said = pmm("recover", tmp_path, "--json")
@@ -78,7 +78,7 @@ def test_replay_prints_both_and_their_difference(tmp_path: Path) -> None:
     with session() as rig:
         recorder, _ = rig.record(tmp_path / "run", 400, LiveSettings(periods=2))
         with recorder:
-            recorder.close(Outcome.COMPLETE)
+            recorder.close(RunEnd.COMPLETE)
     said = pmm("replay", tmp_path / "run")
     assert said.exit_code == 0, said.output
     assert "samples    400, 0 values differ" in said.stdout

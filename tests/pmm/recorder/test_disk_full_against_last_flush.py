@@ -16,7 +16,7 @@ from analysis.readers import read_recording
 from hardware.errors import Reaction
 from pmm.recorder.disk import DiskFullError, DiskWatch, bytes_per_s, free_bytes
 from pmm.recorder.recovery import recover
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import fed, header, truth, until_full
 from tests.sim.devices.benches import ROOT
 
@@ -49,7 +49,7 @@ def test_the_estimate_covers_what_a_run_takes(tmp_path: Path) -> None:
         for first in range(1, 10_001, 100):
             recorder.samples(first, values)
             recorder.tick(first / 1e4)
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     taken = sum(one.stat().st_size for one in tmp_path.iterdir())
     assert taken == pytest.approx(bytes_per_s(16, 1e4), rel=0.05)
 
@@ -62,7 +62,7 @@ def test_a_disk_that_fills_stops_the_run_while_the_recording_still_fits(tmp_path
         free = 249_000
         _, error = until_full(recorder, 101)
         assert re.search(r"0\.2 MB are free.*What was recorded is kept", str(error))
-        path = recorder.close(Outcome.FAULT)
+        path = recorder.close(RunEnd.FAULT)
     found = read_recording(path)
     assert found.sample_count >= 100
     assert np.array_equal(
@@ -101,7 +101,7 @@ def test_a_full_disk_keeps_what_was_flushed(small_disk: Path, tmp_path: Path) ->
     with RunRecorder(folder, header()) as recorder:
         first, _ = until_full(recorder)
         with pytest.raises(DiskFullError, match="what was written before is kept"):
-            recorder.close(Outcome.FAULT)
+            recorder.close(RunEnd.FAULT)
     assert not (folder / "run.nc").exists()
     with pytest.raises(DiskFullError, match=r"Make room, then: pmm recover"):
         recover(folder)

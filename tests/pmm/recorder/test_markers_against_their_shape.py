@@ -10,7 +10,7 @@ from pmm.recorder.files import HEADER, MARKER, RECORDING, RECOVERED
 from pmm.recorder.header import RunHeader
 from pmm.recorder.marker import read_marker, read_recovered
 from pmm.recorder.recovery import recover
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import fed, header
 
 SHAPES = [None, True, 1, -1, 1e400, "text", [], {}, [[]], {"a": []}, {"a": {"bytes": []}}]
@@ -23,7 +23,7 @@ def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("markers") / "run"
     with RunRecorder(folder, header()) as recorder:
         fed(recorder, range(1, MADE + 1))
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     return folder
 
 

@@ -13,7 +13,7 @@ from pmm.recorder.header import LiveSettings
 from pmm.recorder.recording import read_run
 from pmm.recorder.recovery import recover
 from pmm.recorder.replay import replay
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from sim.devices.bench_file import DRIVERS
 from tests.pmm.recorder.recorded import fed, header, session
 
@@ -29,7 +29,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             recorder, _ = rig.record(place / name, 600, TWO)
             with recorder:
                 if name == "closed":
-                    recorder.close(Outcome.COMPLETE)
+                    recorder.close(RunEnd.COMPLETE)
     return place
 
 
@@ -111,7 +111,7 @@ def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
             rig.rig.cycle()
         recorder, _ = rig.record(tmp_path / "run", 300, TWO)
         with recorder:
-            recorder.close(Outcome.COMPLETE)
+            recorder.close(RunEnd.COMPLETE)
     folder = lost(tmp_path / "run", tmp_path / "lost", "samples.arrows", "pulses.jsonl")
     recover(folder, DRIVERS)
     assert np.array_equal(whole(folder), whole(tmp_path / "run"))

@@ -14,11 +14,11 @@ from hardware.lines import TICK_MODULUS, Unwrapped
 from hardware.opening import carry_on, opening_of
 from hardware.raw_log import FramePacker, container, file_header
 from hardware.raw_log_reading import read_frames
-from hardware.roles import Block
+from hardware.roles import SampleBlock
 from pmm.recorder.header import LiveSettings
 from pmm.recorder.live_path import GateResolver, LivePath, Taken, as_record, joined
 from pmm.recorder.replay import replay
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from sim.devices.bench_file import DRIVERS
 from tests.pmm.recorder.recorded import fed, header, session
 
@@ -38,7 +38,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 one.tare()
             recorder, _ = rig.record(place / str(number), 600, TWO)
             with recorder:
-                recorder.close(Outcome.COMPLETE)
+                recorder.close(RunEnd.COMPLETE)
             for _ in range(37):
                 rig.rig.cycle()
     return place
@@ -67,7 +67,7 @@ def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
             rig.rig.cycle()
         recorder, _ = rig.record(tmp_path / "run", 600, TWO)
         with recorder:
-            recorder.close(Outcome.COMPLETE)
+            recorder.close(RunEnd.COMPLETE)
     again = replay(tmp_path / "run", DRIVERS)
     assert again.same
     assert [one.time_s for one in again.pulses] == again.recorded_pulses_s.tolist()
@@ -111,7 +111,7 @@ def test_gates_that_are_armed_anew_resolve_as_they_did(tmp_path: Path) -> None:
         recorder, taken = rig.record(tmp_path / "run", 900, LiveSettings(periods=3), readings=False)
         with recorder:
             told = _armed_by_hand(recorder, taken, at=recorder.header.first_sync + 250)
-            recorder.close(Outcome.COMPLETE)
+            recorder.close(RunEnd.COMPLETE)
     again = replay(tmp_path / "run", DRIVERS)
     assert len(told) >= 2
     assert again.same
@@ -161,8 +161,8 @@ class Halting:
 
 
 def test_samples_wait_four_cycles_for_a_late_device() -> None:
-    def one(first: int, *values: float) -> tuple[Block, ...]:
-        return (Block(first, np.array([values])),)
+    def one(first: int, *values: float) -> tuple[SampleBlock, ...]:
+        return (SampleBlock(first, np.array([values])),)
 
     quick = Halting("quick", (), *(one(n, float(n)) for n in range(1, 13)))
     late = Halting("late", (), one(1, 10.0), (), (), (), one(2, 20.0), (), (), (), one(8, 80.0))
@@ -181,8 +181,8 @@ def test_samples_wait_four_cycles_for_a_late_device() -> None:
 
 
 def test_a_device_that_counts_its_own_samples_is_put_where_they_came() -> None:
-    quick = Halting("quick", (), *((Block(n, np.array([[1.0]])),) for n in range(101, 105)))
-    own = Halting("own", (), *((Block(n, np.array([[float(n)]])),) for n in range(7, 11)))
+    quick = Halting("quick", (), *((SampleBlock(n, np.array([[1.0]])),) for n in range(101, 105)))
+    own = Halting("own", (), *((SampleBlock(n, np.array([[float(n)]])),) for n in range(7, 11)))
     rig = SimpleNamespace(number=100, shaft=None, forces=(quick, own), photocell=None)
     path = LivePath(rig)
     found = []

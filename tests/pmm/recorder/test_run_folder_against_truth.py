@@ -24,7 +24,7 @@ from pmm.recorder.files import (
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.lateness import Lateness
 from pmm.recorder.recovery import recover, runs_in
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import CHANNELS, fed, header, truth
 from tests.sim.devices.benches import ROOT
 
@@ -33,7 +33,7 @@ def test_a_closed_run_is_the_samples_handed_in(tmp_path: Path) -> None:
     with RunRecorder(tmp_path / "run", header()) as recorder:
         true = fed(recorder, range(1, 1001))
         note = Flag("hand", Severity.NOTE, "somebody leaned on the carriage")
-        path = recorder.close(Outcome.STOPPED, (note,))
+        path = recorder.close(RunEnd.STOPPED, (note,))
     found = read_recording(path)
     assert np.array_equal(found.samples[:, 0:1000], true)
     assert found.start_s == 0.01
@@ -57,7 +57,7 @@ def test_the_journal_carries_units_calibration_and_hashes(tmp_path: Path) -> Non
     calibration = {"force_aft": {"scale": 0.01, "tare": 1.5}}
     with RunRecorder(tmp_path, header(calibration=calibration)) as recorder:
         fed(recorder, range(1, 21))
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     with pa.ipc.open_stream(tmp_path / "samples.arrows") as stream:
         schema = stream.schema
         table = stream.read_all()
@@ -76,7 +76,7 @@ def test_the_marker_counts_and_hashes_what_is_there(tmp_path: Path) -> None:
         recorder.event(120, 1.2, "state", "gate open")
         reading = {"opened_s": 1.0, "closed_s": 2.0, "periods": 1, "channels": ["force_aft"]}
         recorder.harmonic({**reading, "coefficients": [[float("nan")]]})
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     marker = json.loads((tmp_path / "complete.json").read_text())
     assert [marker[key] for key in ("samples", "missing", "first_sync", "last_sync")] == [
         200, 0, 100, 299,
@@ -93,7 +93,7 @@ def test_a_gap_in_the_sync_counter_becomes_nan_and_a_flag(tmp_path: Path) -> Non
     with RunRecorder(tmp_path, header()) as recorder:
         fed(recorder, range(1, 101))
         fed(recorder, range(108, 151))
-        found = read_recording(recorder.close(Outcome.COMPLETE))
+        found = read_recording(recorder.close(RunEnd.COMPLETE))
     missing = np.isnan(found.samples[0:1, 0 : found.sample_count][0])
     assert np.flatnonzero(missing).tolist() == list(range(100, 107))
     (flag,) = found.flags
@@ -106,7 +106,7 @@ def test_a_gap_in_the_sync_counter_becomes_nan_and_a_flag(tmp_path: Path) -> Non
 def test_what_a_device_did_not_deliver_stays_nan(tmp_path: Path) -> None:
     with RunRecorder(tmp_path, header()) as recorder:
         recorder.samples(1, np.array([[1.0, 2.0], [np.nan, 4.0]]))
-        found = read_recording(recorder.close(Outcome.COMPLETE))
+        found = read_recording(recorder.close(RunEnd.COMPLETE))
     assert np.array_equal(found.samples[:, 0:2], [[1.0, 2.0], [np.nan, 4.0]], equal_nan=True)
 
 
@@ -124,7 +124,7 @@ def test_pulses_that_come_late_are_left_out_with_a_flag(tmp_path: Path) -> None:
         fed(recorder, range(1, 11))
         for number, time_s in enumerate((0.02, 0.05, 0.05, 0.04, 0.09)):
             recorder.pulse(Pulse(number, time_s))
-        found = read_recording(recorder.close(Outcome.COMPLETE))
+        found = read_recording(recorder.close(RunEnd.COMPLETE))
     assert found.photocell_edges_s.tolist() == [0.02, 0.05, 0.09]
     assert [one.code for one in found.flags] == ["pulse_order"]
 
@@ -132,7 +132,7 @@ def test_pulses_that_come_late_are_left_out_with_a_flag(tmp_path: Path) -> None:
 def test_without_a_photocell_there_are_no_edges(tmp_path: Path) -> None:
     with RunRecorder(tmp_path, header(photocell=False)) as recorder:
         fed(recorder, range(1, 11))
-        assert read_recording(recorder.close(Outcome.COMPLETE)).photocell_edges_s is None
+        assert read_recording(recorder.close(RunEnd.COMPLETE)).photocell_edges_s is None
 
 
 @pytest.mark.parametrize("leftover", ["header.json", "bus.blf", "samples.arrows", "run.nc"])
@@ -164,7 +164,7 @@ def test_a_run_without_samples_closes_with_a_clear_word(tmp_path: Path) -> None:
     with RunRecorder(tmp_path, header()) as recorder:
         recorder.event(1, 0.01, "fault", "heartbeat lost")
         with pytest.raises(DataError, match="holds no whole sample"):
-            recorder.close(Outcome.FAULT)
+            recorder.close(RunEnd.FAULT)
     assert json.loads((tmp_path / "complete.json").read_text())["events"] == 1
 
 

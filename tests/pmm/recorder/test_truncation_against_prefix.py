@@ -16,7 +16,7 @@ from hardware.description.errors import DataError
 from pmm.recorder.files import STREAMS
 from pmm.recorder.recording import read_run
 from pmm.recorder.recovery import recover
-from pmm.recorder.run_recorder import Outcome, RunRecorder
+from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import fed, header, truth
 
 
@@ -125,7 +125,7 @@ def test_a_killed_conversion_is_done_again(tmp_path: Path) -> None:
     folder = tmp_path / "run"
     with RunRecorder(folder, header()) as recorder:
         fed(recorder, range(1, 401))
-        path = recorder.close(Outcome.COMPLETE)
+        path = recorder.close(RunEnd.COMPLETE)
     path.rename(folder / ".run.nc.4711.part")
     with (folder / ".run.nc.4711.part").open("rb+") as file:
         file.truncate(1000)
@@ -139,7 +139,7 @@ def test_a_recording_that_cannot_be_read_is_set_aside(tmp_path: Path) -> None:
     folder = tmp_path / "run"
     with RunRecorder(folder, header()) as recorder:
         fed(recorder, range(1, 401))
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     (folder / "run.nc").write_bytes(b"half a page")
     assert recover(folder).samples == 400
     assert (folder / "run.nc.damaged-1").read_bytes() == b"half a page"
@@ -150,7 +150,7 @@ def test_a_closed_run_that_was_cut_later_says_so(tmp_path: Path) -> None:
     folder = tmp_path / "run"
     with RunRecorder(folder, header()) as recorder:
         fed(recorder, range(1, 401), tick_s=0.011)
-        recorder.close(Outcome.COMPLETE)
+        recorder.close(RunEnd.COMPLETE)
     (folder / "run.nc").unlink()
     size = (folder / "samples.arrows").stat().st_size
     with (folder / "samples.arrows").open("rb+") as file:

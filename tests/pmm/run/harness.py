@@ -19,7 +19,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.rig_file import Gauge, RecorderSettings, RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
-from pmm.run.recording import Recording
+from pmm.run.recording import RecorderFactory
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
@@ -174,7 +174,7 @@ def bench(
             observers=(taps.frame,),
             line_observers=(taps.line,),
         ) as rig,
-        Recording(rig, rig_file, plan, folder, utc, taps) as recording,
+        RecorderFactory(rig, rig_file, plan, folder, utc, taps) as recording,
     ):
         rig.prepare()
         folder.mkdir(parents=True, exist_ok=True)

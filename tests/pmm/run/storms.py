@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from hardware.cia402 import State as DriveState
+from hardware.cia402 import DriveState
 from hardware.description.errors import PmmError
 from hardware.description.flags import Flag
 from hardware.errors import NotAtRestError
@@ -24,7 +24,7 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.header import LiveSettings
 from pmm.recorder.lateness import CycleStatistics
-from pmm.recorder.run_recorder import Outcome
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.measurement import Measurement
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
@@ -110,7 +110,7 @@ class NoJournal:
     def tick(self, now_s: float) -> None:
         return
 
-    def close(self, outcome: Outcome, flags: Sequence[Flag]) -> Path:
+    def close(self, outcome: RunEnd, flags: Sequence[Flag]) -> Path:
         return Path("nowhere")
 
 

@@ -10,8 +10,8 @@ from pmm.run.states import (
     FAULTS,
     STATES,
     Command,
-    Machine,
     RunStateError,
+    RunStateMachine,
     State,
     is_allowed,
 )
@@ -30,7 +30,7 @@ def test_a_fault_is_left_by_a_reset_only_and_never_to_a_moving_state() -> None:
 
 @pytest.mark.parametrize("state", sorted(set(State) - {State.FAULT}))
 def test_every_state_can_fail(state: State) -> None:
-    machine = Machine()
+    machine = RunStateMachine()
     machine.state = state
     machine.go(State.FAULT)
     with pytest.raises(RunStateError, match="no step from fault to fault; there are idle"):
@@ -51,7 +51,7 @@ def test_what_stops_the_rig_is_a_fault_in_every_state() -> None:
 
 @given(st.lists(st.sampled_from(list(State)), max_size=30))
 def test_no_walk_leaves_the_table(wanted: list[State]) -> None:
-    machine = Machine()
+    machine = RunStateMachine()
     for state in wanted:
         before = machine.state
         fails = state is State.FAULT and before is not State.FAULT
@@ -65,7 +65,7 @@ def test_no_walk_leaves_the_table(wanted: list[State]) -> None:
 
 
 def test_a_refused_command_names_the_states_that_allow_it() -> None:
-    machine = Machine()
+    machine = RunStateMachine()
     machine.go(State.HOMING)
     with pytest.raises(RunStateError, match=r"start is refused in state homing; .*idle, stopped"):
         machine.check(Command.START)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hardware.cia402 import Walk, next_command
-from hardware.motion import Motion
+from hardware.cia402 import DriveStateMachine, next_command
+from hardware.motion import EncoderMotion
 from tests.pmm.run.storms import Storm
 
 EACH = 10
@@ -19,12 +19,14 @@ def test_nothing_moves_unwatched(first: int) -> None:
 def test_a_product_that_takes_power_off_a_moving_axis_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(Walk, "_command", lambda walk: next_command(walk.state, walk.goal))
+    monkeypatch.setattr(
+        DriveStateMachine, "_command", lambda walk: next_command(walk.state, walk.goal)
+    )
     assert any("lost its power" in wrong for wrong in Storm(6).run().wrong)
 
 
 def test_a_product_that_believes_its_commands_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Motion, "at_rest", property(lambda _motion: True))
+    monkeypatch.setattr(EncoderMotion, "at_rest", property(lambda _motion: True))
     assert any("taken for one at rest" in wrong for wrong in Storm(22).run().wrong)
 
 

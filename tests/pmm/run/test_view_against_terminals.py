@@ -12,7 +12,7 @@ from pmm.cli.terminal import Terminal
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
-from pmm.run.status import Alarms, HarmonicRow, RunOutcome, Status
+from pmm.run.status import Alarms, ChannelReading, RunOutcome, RunStatus
 
 ALARM = (
     "forces[0]: force_aft = -30 N (status 0x04); full scale 30 N; reduce amplitude or frequency, "
@@ -22,12 +22,14 @@ QUESTION = (
     "turn the whole oscillator on the carriage: 0.1000 rad (5.73 deg), bow to starboard; Enter"
 )
 ROWS = (
-    HarmonicRow("shaft_angle", "rad", 25.239, -1.9733, 0.21024, 1e-7, final=True),
-    HarmonicRow("force_aft", "N", 0.0032118, 34.0703, 11.1604, 0.024, final=True),
-    HarmonicRow("displacement_aft", "m", -1.4958e-07, 0.0200002, -1.1514e-07, 3.6e-06, final=True),
-    HarmonicRow("force_fore", "N", 0.0, 25.06712, 8.6596),
+    ChannelReading("shaft_angle", "rad", 25.239, -1.9733, 0.21024, 1e-7, final=True),
+    ChannelReading("force_aft", "N", 0.0032118, 34.0703, 11.1604, 0.024, final=True),
+    ChannelReading(
+        "displacement_aft", "m", -1.4958e-07, 0.0200002, -1.1514e-07, 3.6e-06, final=True
+    ),
+    ChannelReading("force_fore", "N", 0.0, 25.06712, 8.6596),
 )
-STATUS = Status(
+STATUS = RunStatus(
     state=State.GATE_OPEN,
     cycle=1420,
     time_s=14.2,
@@ -63,13 +65,13 @@ ENDED = RunOutcome(
 class Control:
     """What a view asks of run control."""
 
-    def __init__(self, status: Status, *outcomes: RunOutcome) -> None:
+    def __init__(self, status: RunStatus, *outcomes: RunOutcome) -> None:
         self.state, self.alarms = status.state, Alarms()
         self.alarms.count = len(status.alarms)
         self.outcomes = list(outcomes)
         self._status = status
 
-    def status(self) -> Status:
+    def status(self) -> RunStatus:
         return self._status
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hardware.cia402 import State
+from hardware.cia402 import DriveState
 from hardware.errors import BusOffError, DeadReceiveThreadError
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
@@ -16,7 +16,7 @@ from tests.hardware.rigs import nobody
 from tests.sim.devices.benches import WHOLE, by_word, in_process, ready, turning
 
 
-def states(world) -> set[State]:
+def states(world) -> set[DriveState]:
     return {one.state for one in world.nodes.values() if hasattr(one, "state")}
 
 
@@ -28,7 +28,7 @@ def test_a_turning_shaft_is_stopped_along_its_profile_and_all_power_taken_off() 
         # 1 Hz at 1 Hz/s is 100 cycles of the profile; then the power goes.
         assert 100 <= rig.number - before <= 130
         assert abs(world.plant.speed_rad_s) < 1e-6
-        assert states(world) == {State.SWITCH_ON_DISABLED}
+        assert states(world) == {DriveState.SWITCH_ON_DISABLED}
         rig.close()
         assert rig.number - before <= 130
 
@@ -41,7 +41,7 @@ def test_an_axis_is_stopped_on_its_way() -> None:
             rig.cycle()
         moving = world.plant.linkage[0]
         rig.close()
-        assert states(world) == {State.SWITCH_ON_DISABLED}
+        assert states(world) == {DriveState.SWITCH_ON_DISABLED}
         assert moving < world.plant.linkage[0] < moving + 0.001
 
 
@@ -59,7 +59,7 @@ def test_an_error_in_the_block_stops_the_shaft_too() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         fails()
-    assert states(seen[0]) == {State.SWITCH_ON_DISABLED}
+    assert states(seen[0]) == {DriveState.SWITCH_ON_DISABLED}
     assert abs(seen[0].plant.speed_rad_s) < 1e-6
 
 
@@ -72,7 +72,7 @@ def test_a_fault_on_the_way_makes_it_a_quick_stop() -> None:
         assert rig.number - before < 60  # the quick-stop ramp is five times as steep
         shaft = world.nodes["shaft"]
         assert isinstance(shaft, ShaftDrive)
-        assert shaft.state is State.SWITCH_ON_DISABLED
+        assert shaft.state is DriveState.SWITCH_ON_DISABLED
         assert abs(world.plant.speed_rad_s) < 1e-6
 
 
@@ -83,7 +83,7 @@ def test_a_fault_that_asks_for_a_profile_stop_leaves_it_at_that() -> None:
         before = rig.number
         rig.close()
         assert 100 <= rig.number - before <= 130
-        assert states(world) == {State.SWITCH_ON_DISABLED}
+        assert states(world) == {DriveState.SWITCH_ON_DISABLED}
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_a_node_that_says_nothing_any_more_bounds_the_closing() -> None:
         rig.close()
         # Four cycles until it is noticed, 5 s for a rest that nobody sees, five at the end.
         assert rig.number - before <= 4 + 500 + 5
-        assert states(world) == {State.SWITCH_ON_DISABLED}
+        assert states(world) == {DriveState.SWITCH_ON_DISABLED}
 
 
 def test_a_rig_that_was_never_prepared_closes_without_a_cycle() -> None:

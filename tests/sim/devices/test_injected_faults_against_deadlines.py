@@ -4,7 +4,7 @@ from contextlib import suppress
 
 import pytest
 
-from hardware.cia402 import State
+from hardware.cia402 import DriveState
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry
 from hardware.errors import (
@@ -141,14 +141,14 @@ def test_a_fault_stops_the_shaft_on_the_quick_stop_ramp(turned) -> None:
     rig, world = turned
     inject(world, "drive-fault shaft 2310")
     cycles_to(rig, DriveFaultError, 1)
-    assert world.nodes["shaft"].state is State.FAULT_REACTION_ACTIVE
+    assert world.nodes["shaft"].state is DriveState.FAULT_REACTION_ACTIVE
     count = 1
     while world.plant.speed_rad_s:
         rig.cycle()
         count += 1
     assert count == pytest.approx(20, abs=2)  # 1 Hz at 5 Hz/s
     rig.cycle()
-    assert world.nodes["shaft"].state is State.FAULT
+    assert world.nodes["shaft"].state is DriveState.FAULT
 
 
 def test_a_controller_that_falls_silent_is_stopped_for(turned) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from hardware.cia402 import State
+from hardware.cia402 import DriveState
 from hardware.errors import DriveFaultError, DriveStateError, HardwareError, NotAtRestError
 from sim.devices.faults import inject
 from sim.devices.plant import SHAFT_FRICTION
@@ -57,9 +57,9 @@ def test_a_turning_shaft_that_is_disabled_brakes_first_and_loses_its_power_at_re
     rig, world, watch = turned
     rig.shaft.disable()
     cycles(rig, 3)
-    assert world.nodes["shaft"].state is State.QUICK_STOP_ACTIVE
+    assert world.nodes["shaft"].state is DriveState.QUICK_STOP_ACTIVE
     cycles(rig, 40)  # 1 Hz at 5 Hz/s is 20
-    assert world.nodes["shaft"].state is State.SWITCH_ON_DISABLED
+    assert world.nodes["shaft"].state is DriveState.SWITCH_ON_DISABLED
     assert len(watch.seen) == 1
     assert not watch.while_moving
     assert not rig.faults

@@ -19,7 +19,7 @@ from hardware.errors import BusOpenError, PortOpenError, SdoAbortError
 from hardware.lines import decode
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
-from hardware.rig_configuration import Part, RigConfiguration, read_rig
+from hardware.rig_configuration import RigConfiguration, RigPart, read_rig
 from hardware.roles import Role
 from sim.devices.__main__ import main
 from sim.devices.bench_file import DRIVERS, read_bench
@@ -126,7 +126,7 @@ def test_process_objects_can_be_read_live_by_sdo() -> None:
 
 def test_a_driver_without_a_simulated_device_is_refused() -> None:
     own = Driver(Role.FORCES, object, lambda *_: None)  # type: ignore[arg-type]
-    rig = RigConfiguration(forces=(Part("forces[0]", own, object()),))
+    rig = RigConfiguration(forces=(RigPart("forces[0]", own, object()),))
     with pytest.raises(ConfigurationError, match=r"forces\[0\].*no simulated device"):
         World(rig, Scene(vertical_rig()))
 
