@@ -53,12 +53,13 @@ def run(quick: bool, report: Report) -> Outcome:
         told = ["simulate", str(folder / "campaign.toml"), "--output", str(folder / "rig")]
         with redirect_stdout(StringIO()):
             cli.main([*told, *effects], standalone_mode=False)
-        names = _names(4 if quick else _EFFECTS)
+        names = _names(2 if quick else _EFFECTS)
         known = {name: kind for name, kind in catalogue().items() if name in names}
-        with open_executor(_WORKERS) as executor:
-            report("once, so that what is compiled is there")
-            prepared = prepare(folder / "rig", known)
-            diagnose(prepared.there.rig, prepared.fitted, prepared.settings, executor)
+        with open_executor(1 if quick else _WORKERS) as executor:
+            if not quick:
+                report("once, so that what is compiled is there")
+                prepared = prepare(folder / "rig", known)
+                diagnose(prepared.there.rig, prepared.fitted, prepared.settings, executor)
             report("diagnosing")
             started, busy = time.perf_counter(), time.process_time()
             prepared = prepare(folder / "rig", known)

@@ -25,7 +25,7 @@ def run(quick: bool, report: Report) -> Outcome:
     ]
     interleave(contenders, 3 if quick else 10, report)
     report("poor starts")
-    rivals = compare_rivals(20 if quick else 1000, seed=0)
+    rivals = compare_rivals(5 if quick else 1000, seed=0)
     simulated, measured = run_simulated(quick, report)
     return Outcome(
         {

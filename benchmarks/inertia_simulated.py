@@ -22,7 +22,7 @@ _CAMPAIGNS, _TESTS, _RECORDS = 400, 40, 1000
 def run_simulated(quick: bool, report: Report) -> tuple[dict[str, list[Row]], dict[str, float]]:
     """Return the tables of the simulated tests, and what the thresholds judge."""
     rows: list[Row] = []
-    records = 50 if quick else _RECORDS
+    records = 5 if quick else _RECORDS
     measured = {
         "over_bound": bound_ratio(records, 1),
         "over_bound_two": bound_ratio_two(records, 1),
@@ -30,7 +30,7 @@ def run_simulated(quick: bool, report: Report) -> tuple[dict[str, list[Row]], di
     for name, campaign in (("bifilar", bifilar_campaign), ("swing", swing_campaign)):
         report(f"{name} campaigns")
         generator = np.random.default_rng(2014)
-        all_of = [campaign(generator) for _ in range(2 if quick else _CAMPAIGNS)]
+        all_of = [campaign(generator) for _ in range(1 if quick else _CAMPAIGNS)]
         off = np.array([one.found.value / one.truth - 1.0 for one in all_of])
         covered = float(np.mean([one.covered for one in all_of]))
         width = float(np.median([one.width for one in all_of]))
@@ -48,7 +48,7 @@ def run_simulated(quick: bool, report: Report) -> tuple[dict[str, list[Row]], di
             }
         )
     report("records")
-    measured |= worst_errors(2 if quick else _TESTS)
+    measured |= worst_errors(1 if quick else _TESTS)
     return {"Simulated campaigns, gyradius and its 95 % interval": rows}, measured
 
 

@@ -127,7 +127,7 @@ def run(quick: bool, report: Report) -> Outcome:
     with tempfile.TemporaryDirectory() as place:
         plan = Path(place) / "plan.toml"
         plan.write_text(_PLAN, encoding="utf-8")
-        for pace, record_s in _RECORD_S.items():
+        for pace, record_s in list(_RECORD_S.items())[-1 if quick else 0 :]:
             ways = {
                 "plain loop": (_LATEST_S, "run", (f"{record_s:g}",)),
                 "pmm run": (_LATEST_PLAN_S, f"campaign/{_RUN}", (str(plan), _RUN)),
