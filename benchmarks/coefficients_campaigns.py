@@ -122,7 +122,7 @@ def made_up(
 
 def taken(struts: StrutCycle, made: Made) -> BodyCycle:
     """Return the run in body axes, with :data:`BODY` and the restoring to be taken off."""
-    return struts.model(drift_rad=made.drift_rad).without(BODY, made.known)
+    return struts.model().without(BODY, made.known)
 
 
 def made_struts(point: SetPoint, made: Made, name: str) -> StrutCycle:
@@ -144,7 +144,7 @@ def made_struts(point: SetPoint, made: Made, name: str) -> StrutCycle:
     return StrutCycle(
         name,
         VERTICAL_1963 if made.plane is Plane.VERTICAL else HORIZONTAL_1963,
-        point,
+        replace(point, drift_rad=made.drift_rad),
         point.frequency_hz,
         phasors,
         made.orders,

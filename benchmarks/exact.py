@@ -107,10 +107,7 @@ def _spread(struts: StrutCycle, count: int) -> NDArray[np.float64]:
 
 
 def _fit(rigs: list[ExactRig], struts: list[StrutCycle], names: tuple[str, ...]) -> CycleFit:
-    cycles = [
-        one.model(drift_rad=rig.drift_rad).without(body_of(rig.body))
-        for rig, one in zip(rigs, struts, strict=True)
-    ]
+    cycles = [one.model().without(body_of(rig.body)) for rig, one in zip(rigs, struts, strict=True)]
     return fit_cycles(cycles, names, _FITTED)
 
 

@@ -76,13 +76,8 @@ class SimulatedRig:
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
-    def chain(self, set_point: SetPoint, *, drift_rad: float = 0.0) -> Chain:
+    def chain(self, set_point: SetPoint) -> Chain:
         """Return the stages of this rig, set for one run.
-
-        Parameters
-        ----------
-        drift_rad
-            Steady heading of the model against the carriage's way, bow to starboard or up.
 
         Raises
         ------
@@ -90,7 +85,7 @@ class SimulatedRig:
             If the oscillator cannot run the set-point, or has a turntable, or the struts would move
             further apart than the model's attachments can reach.
         """
-        self._check_joint(set_point, drift_rad)
+        self._check_joint(set_point)
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -100,7 +95,7 @@ class SimulatedRig:
             self.linkage_aft,
             self.linkage_fore,
         )
-        hull = self._hull(set_point.medium, carriage.mean_m_s, drift_rad)
+        hull = self._hull(set_point, carriage.mean_m_s)
         stages: tuple[Stage[Any], ...]
         if self.drive.motor is None and self.drive.gear is None:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
@@ -117,7 +112,7 @@ class SimulatedRig:
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
-    def _check_joint(self, set_point: SetPoint, drift_rad: float) -> None:
+    def _check_joint(self, set_point: SetPoint) -> None:
         if self.oscillator.joint is Joint.YAW_TABLE:
             raise ConfigurationError(
                 'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
@@ -126,15 +121,15 @@ class SimulatedRig:
         apart = abs(math.sin(set_point.strut_phase_rad / 2.0)) * set_point.eccentricity_m
         sine = apart / self.oscillator.half_spacing_m
         if self.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
-            sine += abs(math.sin(drift_rad))
+            sine += abs(math.sin(set_point.drift_rad))
         if self.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:
             raise ConfigurationError(
                 f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
                 "spacing (limit 1, where the model stands across); lower eccentricity_m"
             )
 
-    def _hull(self, medium: Medium, carriage_speed_m_s: float, drift_rad: float) -> Hull:
-        in_water = medium is Medium.WATER
+    def _hull(self, set_point: SetPoint, carriage_speed_m_s: float) -> Hull:
+        in_water = set_point.medium is Medium.WATER
         return Hull(
             self.oscillator.plane,
             self.oscillator.half_spacing_m,
@@ -146,7 +141,7 @@ class SimulatedRig:
             self.cross_flow if in_water else None,
             carriage_speed_m_s * self.flow_factor,
             self.flow_factor,
-            drift_rad,
+            set_point.drift_rad,
             self.oscillator.arrangement,
             self.surge if in_water else None,
             in_water,

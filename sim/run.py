@@ -34,7 +34,6 @@ def simulate(
     sample_rate_hz: float = 200.0,
     seed: int,
     name: str = "simulated",
-    drift_rad: float = 0.0,
 ) -> "xr.Dataset":
     """Simulate one run and return its record.
 
@@ -47,8 +46,6 @@ def simulate(
         Periods that pass before the record begins.
     seed
         Of all noise: the same seed gives the same record.
-    drift_rad
-        Steady heading of the model against the carriage's way, bow to starboard or up.
 
     Returns
     -------
@@ -67,7 +64,7 @@ def simulate(
     skipped = math.ceil(settling_periods * samples_per_period)
     count = math.ceil((periods + 1) * samples_per_period) + 1
     zeroed = _zeroed(rig, skipped / sample_rate_hz)
-    chain = zeroed.chain(set_point, drift_rad=drift_rad)
+    chain = zeroed.chain(set_point)
     _, run = chain.run(chain.start(sample_rate_hz, seed), skipped + count)
     _check_strut_forces(rig, run)
     flags = _overloads(rig, run) + _ramp_in_record(rig, skipped / sample_rate_hz)
@@ -106,7 +103,7 @@ def _check_arguments(
         )
     else:
         faults += _too_many(set_point.frequency_hz, settling_periods + periods + 1, sample_rate_hz)
-    for field in ("strut_phase_rad", "carriage_speed_m_s"):
+    for field in ("strut_phase_rad", "carriage_speed_m_s", "drift_rad"):
         value = getattr(set_point, field)
         if not math.isfinite(value):
             faults.append(f"{field} = {value} of the set-point must be a finite number")

@@ -99,7 +99,7 @@ def in_place(struts: StrutCycle, body: Body) -> InPlace:
 
 def _forces(struts: StrutCycle, body: Body, omega: float) -> ComplexArray:
     """What the body asks of both gauges at the fundamental, less what it asks of them at rest."""
-    geometry = struts.geometry()
+    geometry = struts.geometry
     moved = struts.phasors.select(labels(DISPLACEMENTS, struts.orders))
     state = turned(geometry, driven(interleaved(moved.values), omega))
     asked = inertia(body, state, geometry.plane)

@@ -87,11 +87,12 @@ class StrutCycle:
             whole[np.ix_(places, places)] = matrix(n)
         return replace(self, phasors=self.phasors.mapped(whole))
 
-    def geometry(self, drift_rad: float = 0.0) -> Geometry:
-        """Return how the run's rig stands."""
-        return Geometry.of(self.oscillator, self.set_point.carriage_speed_m_s, drift_rad)
+    @property
+    def geometry(self) -> Geometry:
+        """How the run's rig stands."""
+        return Geometry.of(self.oscillator, self.set_point)
 
-    def model(self, *, drift_rad: float = 0.0) -> BodyCycle:
+    def model(self) -> BodyCycle:
         """Return motion and loads of the model about the midpoint between the struts.
 
         Raises
@@ -100,7 +101,7 @@ class StrutCycle:
             As :func:`analysis.kinematics.body_frame.in_body_axes`.
         """
         point, oscillator = self.set_point, self.oscillator
-        geometry = self.geometry(drift_rad)
+        geometry = self.geometry
         surge = at_order(FORCE_X.name, 0) in self.phasors.names
         inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
         ordered = self.phasors.select(labels(inputs, self.orders))
@@ -115,7 +116,7 @@ class StrutCycle:
             found.phasors,
             self.orders,
             point.medium,
-            drift_rad=drift_rad,
+            drift_rad=point.drift_rad,
             mean_known=self.mean_known,
             flags=self.flags,
             sensitivity=found.sensitivity,
@@ -171,7 +172,7 @@ def static_cycle(
     name: str,
     reading: ZeroReading,
     oscillator: Oscillator,
-    speed_m_s: float,
+    set_point: SetPoint,
     zero: Phasors | None = None,
 ) -> StrutCycle:
     """Return a run that does not oscillate: its means, displacements at rest taken as none.
@@ -189,6 +190,5 @@ def static_cycle(
     )
     names = tuple(at_order(one, 0) for one in reading.offsets.names)
     forces = replace(reading.offsets, names=names)
-    point = SetPoint(0.0, 0.0, carriage_speed_m_s=speed_m_s)
-    run = StrutCycle(name, oscillator, point, 0.0, joined(still, forces), 0)
+    run = StrutCycle(name, oscillator, set_point, 0.0, joined(still, forces), 0)
     return run if zero is None else run.without_zero(zero)

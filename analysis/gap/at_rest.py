@@ -4,6 +4,8 @@ What acts on motion alone is not in it: a zero that is off stays, friction and w
 only while the model moves does not. What drifts goes on.
 """
 
+from dataclasses import replace
+
 from analysis.coefficients.corrections import ZERO_BLOCKS, zero_reading
 from analysis.gap.components import Component, GapRun, Observation, Part
 from analysis.gap.plateau import steps_of
@@ -11,22 +13,22 @@ from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import DataError
-from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.rest import standing, standing_state
 from sim.rig import SimulatedRig
 from sim.run import simulate
 
 
-def run_at_rest(
-    recording: Recording,
-    place: CampaignRun,
-    carriage_speed_m_s: float = 0.0,
-    medium: Medium = Medium.WATER,
-) -> GapRun:
+def run_at_rest(recording: Recording, place: CampaignRun, set_point: SetPoint) -> GapRun:
     """Return a record at rest as the diagnosis sees it.
 
     Where its struts stand is taken from the record; from the middle where nothing tells.
+
+    Parameters
+    ----------
+    set_point
+        Carriage speed, medium and drift count.
 
     Raises
     ------
@@ -34,7 +36,7 @@ def run_at_rest(
         If the recording has no force, too few samples, or some are missing.
     """
     duration_s = recording.sample_count / recording.sample_rate_hz
-    point = SetPoint(ZERO_BLOCKS / duration_s, 0.0, 0.0, carriage_speed_m_s, medium)
+    point = replace(set_point, frequency_hz=ZERO_BLOCKS / duration_s, eccentricity_m=0.0)
     aft_m, fore_m = (
         float(recording.values(one).mean()) if one in recording.channel_names else 0.0
         for one in DISPLACEMENTS

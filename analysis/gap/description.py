@@ -151,7 +151,8 @@ def _power(stack: Stack, sizes: FloatArray, *, frequency: bool) -> float:
         at = run.set_point
         pair = (at.frequency_hz, at.eccentricity_m)
         varied, other = pair if frequency else pair[::-1]
-        key = (other, at.strut_phase_rad, at.carriage_speed_m_s, float(at.medium is Medium.AIR))
+        air = float(at.medium is Medium.AIR)
+        key = (other, at.strut_phase_rad, at.carriage_speed_m_s, air, at.drift_rad)
         groups.setdefault(key, []).append((math.log(varied), math.log(max(size, 1e-12))))
     square = product = 0.0
     for pairs in groups.values():

@@ -63,6 +63,7 @@ class Choices:
     strut_phase_rad: tuple[float, ...] = (0.0, math.pi / 2.0, math.pi)
     carriage_speed_m_s: tuple[float, ...] = (0.0,)
     media: tuple[Medium, ...] = (Medium.WATER, Medium.AIR)
+    drift_rad: tuple[float, ...] = (0.0,)
     special: tuple[FurtherMeasurement, ...] = tuple(FurtherMeasurement)
     force_limit_n: float = math.inf
 
@@ -226,11 +227,12 @@ def set_points(choices: Choices) -> Iterator[SetPoint]:
     """Yield what a rig can do, in steps; in numbers of three digits, as people set them."""
     frequencies = _steps(choices.frequency_hz, _FREQUENCIES, 8.0)
     radii = _steps(choices.eccentricity_m, _RADII, 5.0)
-    for frequency, radius, phase, speed, medium in product(
-        frequencies, radii, choices.strut_phase_rad, choices.carriage_speed_m_s, choices.media
+    speeds, phases = choices.carriage_speed_m_s, choices.strut_phase_rad
+    for frequency, radius, phase, speed, medium, drift in product(
+        frequencies, radii, phases, speeds, choices.media, choices.drift_rad
     ):
-        if medium is Medium.WATER or not speed:
-            yield SetPoint(frequency, radius, phase, speed, medium)
+        if (medium is Medium.WATER or not speed) and (speed or not drift):
+            yield SetPoint(frequency, radius, phase, speed, medium, drift)
 
 
 def _steps(span: Range, count: int, ratio: float) -> tuple[float, ...]:

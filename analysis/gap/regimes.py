@@ -15,6 +15,7 @@ _ENOUGH: Final = 3  # runs that have to stay for the fit
 _MEASURES: Final[tuple[tuple[str, Callable[[SetPoint], float], str], ...]] = (
     ("phase", lambda one: math.degrees(one.strut_phase_rad) % 360.0, "deg"),
     ("speed", lambda one: one.carriage_speed_m_s, "m/s"),
+    ("drift", lambda one: math.degrees(one.drift_rad), "deg"),
     ("amplitude", lambda one: 1e3 * one.eccentricity_m, "mm"),
     ("frequency", lambda one: one.frequency_hz, "Hz"),
 )
@@ -27,8 +28,8 @@ class Regime:
     Attributes
     ----------
     what
-        ``"medium"``, ``"phase"``, ``"speed"``, ``"amplitude"``, ``"frequency"``, or ``"chosen"``;
-        records at rest are a medium of their own, and no frequency or amplitude.
+        ``"medium"``, ``"phase"``, ``"speed"``, ``"drift"``, ``"amplitude"``, ``"frequency"``, or
+        ``"chosen"``; records at rest are a medium of their own, and no frequency or amplitude.
     runs
         Numbers of the withheld runs.
     also
@@ -47,8 +48,8 @@ class Regime:
 def regimes(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
     """Return the regimes of a campaign that leave enough other runs to fit to.
 
-    By medium, phase, speed, amplitude and frequency, each from the smallest value up. Water is
-    none: nothing of it can be foretold from air.
+    By medium, phase, speed, drift, amplitude and frequency, each from the smallest value up. Water
+    is none: nothing of it can be foretold from air.
     """
     found = _leaving(runs, _ENOUGH)
     return _merged(one for one in found if (one.what, one.value) != ("medium", Medium.WATER))
@@ -102,7 +103,8 @@ def describe(one: SetPoint) -> str:
     """Return a set-point in words, with the units that people use."""
     phase = math.degrees(one.strut_phase_rad) % 360.0
     speed = f", {one.carriage_speed_m_s:g} m/s" if one.carriage_speed_m_s else ""
+    drift = f", {math.degrees(one.drift_rad):.4g} deg of drift" if one.drift_rad else ""
     return (
-        f"{one.frequency_hz:g} Hz, {1e3 * one.eccentricity_m:g} mm, {phase:g} deg{speed}, "
+        f"{one.frequency_hz:g} Hz, {1e3 * one.eccentricity_m:g} mm, {phase:g} deg{speed}{drift}, "
         f"in {one.medium.value}"
     )

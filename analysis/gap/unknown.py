@@ -1,9 +1,9 @@
 """The hypothesis that something is there which the catalogue does not have.
 
 It says that some cells (one harmonic of one channel over all runs) deviate, each by an amount that
-is alike for runs that are alike in frequency, amplitude, strut phase, speed and medium, and claims
-nothing else. Its size is found cell by cell. It pays for its freedom: whatever an effect explains
-with three parameters it explains worse, and so it wins only where no effect does well.
+is alike for runs that are alike in frequency, amplitude, strut phase, speed, medium and drift, and
+claims nothing else. Its size is found cell by cell. It pays for its freedom: whatever an effect
+explains with three parameters it explains worse, and so it wins only where no effect does well.
 """
 
 import math
@@ -21,6 +21,7 @@ from hardware.description.setpoint import Medium, SetPoint
 
 SIZES: Final = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of a cell's deviation, in sigma
 _OWN = 0.2  # share of a cell's variance that is every run's own
+_DRIFT_RAD = 0.1  # of drift, after which runs are hardly alike
 _SWEEPS = 2
 # What these show is known by its nature: the drive's speed, or the photocell.
 _TIMING: Final = (Part.FREQUENCY, Part.PULSES, Part.PERIOD_SCATTER)
@@ -162,4 +163,5 @@ def _place(one: SetPoint) -> tuple[float, ...]:
         math.sin(one.strut_phase_rad),
         one.carriage_speed_m_s,
         2.0 * (one.medium is Medium.AIR),
+        one.drift_rad / _DRIFT_RAD,
     )

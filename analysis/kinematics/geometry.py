@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.setpoint import SetPoint
 
 Waves = NDArray[Any]
 """Over instants, the last axis; complex only for :func:`analysis.kinematics.complex_step.slope`."""
@@ -34,14 +35,14 @@ class Geometry:
     drift_rad: Waves | float = 0.0
 
     @classmethod
-    def of(cls, oscillator: Oscillator, speed_m_s: float, drift_rad: float = 0.0) -> "Geometry":
-        """Return the geometry of an oscillator at a speed and a drift angle."""
+    def of(cls, oscillator: Oscillator, set_point: SetPoint) -> "Geometry":
+        """Return the geometry of an oscillator at a set-point's speed and drift angle."""
         return cls(
             oscillator.plane,
             oscillator.half_spacing_m,
             oscillator.arrangement,
-            speed_m_s,
-            drift_rad,
+            set_point.carriage_speed_m_s,
+            set_point.drift_rad,
         )
 
     @property

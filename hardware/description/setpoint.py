@@ -27,6 +27,9 @@ class SetPoint:
         pitch or yaw about the midpoint.
     carriage_speed_m_s
         Forward speed ``U``.
+    drift_rad
+        Steady heading of the model against the carriage's way, positive for the bow to starboard
+        (trim: bow up), set as the oscillator's ``drift_by`` says.
     """
 
     frequency_hz: float
@@ -34,6 +37,7 @@ class SetPoint:
     strut_phase_rad: float = 0.0
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
+    drift_rad: float = 0.0
 
 
 def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:

@@ -192,6 +192,7 @@ def _differences(
         ("eccentricity", "m", e.value, told.eccentricity_m, e.standard_uncertainty),
         ("strut phase", "rad", phase.value, told.strut_phase_rad, phase.standard_uncertainty),
         ("carriage speed", "m/s", own.carriage_speed_m_s, told.carriage_speed_m_s, 0.0),
+        ("drift", "rad", own.drift_rad, told.drift_rad, 0.0),
     )
     found = [
         f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"

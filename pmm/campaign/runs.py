@@ -42,6 +42,7 @@ class Asked:
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     periods: int = 10
+    drift_rad: float = 0.0
 
     @property
     def set_point(self) -> SetPoint:
@@ -52,6 +53,7 @@ class Asked:
             self.strut_phase_rad,
             self.carriage_speed_m_s,
             self.medium,
+            self.drift_rad,
         )
 
 
@@ -63,7 +65,7 @@ class Run(Asked):
     ----------
     name
         Unique within the campaign; its recording is called so.
-    frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium
+    frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.
@@ -72,8 +74,6 @@ class Run(Asked):
         ``None`` for ``<name>.nc``.
     kind, motion, repeat, known_mass
         What the run was for; see :class:`pmm.plan.run_plan.RunPlan`.
-    drift_rad
-        Steady drift angle, positive for the bow to starboard.
     u_eccentricity_m, u_strut_phase_rad
         Standard uncertainties of how eccentricity and phase were set or read.
     zero_before, zero_after
@@ -92,7 +92,6 @@ class Run(Asked):
     kind: RunKind = RunKind.OSCILLATION
     motion: Motion | None = None
     repeat: int = 1
-    drift_rad: float = 0.0
     u_eccentricity_m: float = 0.0
     u_strut_phase_rad: float = 0.0
     known_mass: KnownMass | None = None
@@ -137,6 +136,11 @@ class AtRest:
     outcome: str = "complete"
     differs: tuple[str, ...] = ()
     recorded_with: RecordedWith | None = None
+
+    @property
+    def set_point(self) -> SetPoint:
+        """What the rig was told to do: carriage speed, medium and drift, the shaft at rest."""
+        return SetPoint(0.0, 0.0, 0.0, self.carriage_speed_m_s, self.medium, self.drift_rad)
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the recording lies, as for a run."""

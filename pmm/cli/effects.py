@@ -21,6 +21,7 @@ import click
 )
 @click.option("--phase", "phase_deg", type=float, default=0.0, show_default=True, help="Degrees.")
 @click.option("--speed", "speed_m_s", type=float, default=0.0, show_default=True, help="m/s.")
+@click.option("--drift", "drift_deg", type=float, default=0.0, show_default=True, help="Degrees.")
 @click.option("--air", is_flag=True, help="The model is in air.")
 @click.option("--effects-file", metavar="FILE.py", help="A Python file with effects of your own.")
 @click.option(

@@ -20,7 +20,8 @@ def print_signature(console: "Console", shown: "Shown") -> None:
     at = shown.set_point
     console.print(
         f"\nchange of the harmonics at {at.frequency_hz:g} Hz, {1e3 * at.eccentricity_m:g} mm, "
-        f"{math.degrees(at.strut_phase_rad):g} deg, {at.carriage_speed_m_s:g} m/s, in {at.medium}"
+        f"{math.degrees(at.strut_phase_rad):g} deg, {at.carriage_speed_m_s:g} m/s, "
+        f"{math.degrees(at.drift_rad):g} deg of drift, in {at.medium}"
     )
     if not shown.theory:
         console.print("theory states none here")

@@ -41,6 +41,7 @@ class EffectsOptions:
     amplitude_mm: float
     phase_deg: float
     speed_m_s: float
+    drift_deg: float
     air: bool
     effects_file: str | None
     plot: str | None
@@ -55,6 +56,7 @@ class EffectsOptions:
             math.radians(self.phase_deg),
             self.speed_m_s,
             Medium.AIR if self.air else Medium.WATER,
+            math.radians(self.drift_deg),
         )
 
 

@@ -211,7 +211,6 @@ def simulate_recording(
             sample_rate_hz=campaign.simulation.sample_rate_hz,
             seed=run_seed,
             name=run.name,
-            drift_rad=run.drift_rad,
         )
     except ConfigurationError as error:
         raise ConfigurationError(f"run {run.name!r}: {error}") from None

@@ -8,7 +8,6 @@ from analysis.coefficients.corrections import ZERO_BLOCKS
 from analysis.readers import from_dataset
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
-from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.order import made_in_order, place_in
 from pmm.campaign.runs import AtRest
@@ -40,7 +39,7 @@ def simulate_zero(
     """
     # The gauges' mean is taken with the scatter between blocks: a block stands for a period.
     frequency_hz = ZERO_BLOCKS / zero.duration_s
-    point = SetPoint(frequency_hz, 0.0, 0.0, zero.carriage_speed_m_s, zero.medium)
+    point = replace(zero.set_point, frequency_hz=frequency_hz)
     try:
         changed, set_point = switch_on(effects, rig, point, place_in(campaign, zero))
         dataset = simulate(
@@ -51,7 +50,6 @@ def simulate_zero(
             sample_rate_hz=campaign.simulation.sample_rate_hz,
             seed=seed,
             name=zero.name,
-            drift_rad=zero.drift_rad,
         )
     except ConfigurationError as error:
         raise ConfigurationError(f"record at rest {zero.name!r}: {error}") from None

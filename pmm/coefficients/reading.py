@@ -140,8 +140,7 @@ def _turning(task: Task, recording: Recording) -> Done:
 
 def _towed(task: Task, recording: Recording) -> Done:
     reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
-    speed = task.set_point.carriage_speed_m_s
-    struts = static_cycle(task.name, reading, task.oscillator, speed)
+    struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = _zeroed(struts, task, recording)
     if not struts.mean_known:
         raise DataError(
@@ -162,7 +161,7 @@ def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     }
     if responses:
         struts = struts.without_response(responses)
-    return struts.model(drift_rad=task.drift_rad)
+    return struts.model()
 
 
 def response_of(one: Amplifier) -> Response:

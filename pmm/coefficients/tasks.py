@@ -84,7 +84,6 @@ class Task:
     set_point: SetPoint
     choice: ReferenceChoice
     settings: ResolverSettings
-    drift_rad: float = 0.0
     number: int | None = None
     chain: Chain = field(default_factory=Chain)
     zero_names: tuple[str | None, str | None] = (None, None)
@@ -199,7 +198,6 @@ def work_of(
             _set_point(one),
             own.reference,
             settings,
-            one.drift_rad,
             one.number,
             chain,
             (one.zero_before, one.zero_after),
@@ -234,6 +232,6 @@ def _is_dry(one: Run | AtRest) -> bool:
 
 def _set_point(one: Run | AtRest) -> SetPoint:
     if isinstance(one, AtRest):
-        return SetPoint(0.0, 0.0, 0.0, one.carriage_speed_m_s, one.medium)
+        return one.set_point
     medium = Medium.AIR if _is_dry(one) else one.medium
     return replace(one.set_point, medium=medium)

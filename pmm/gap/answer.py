@@ -115,6 +115,7 @@ def next_run(one: Proposal) -> dict[str, Any]:
         "strut_phase_rad": one.set_point.strut_phase_rad,
         "carriage_speed_m_s": one.set_point.carriage_speed_m_s,
         "medium": one.set_point.medium.value,
+        "drift_rad": one.set_point.drift_rad,
         "preload_n": one.force_n,
     }
 

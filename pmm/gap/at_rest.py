@@ -78,7 +78,7 @@ def _observed(
             f"no channel {' and '.join(DISPLACEMENTS)} tells where its struts stand, and the "
             "water pushes them back"
         )
-    return run_at_rest(recording, place_in(campaign, one), one.carriage_speed_m_s, one.medium)
+    return run_at_rest(recording, place_in(campaign, one), one.set_point)
 
 
 def _place_matters_not(campaign: Campaign, one: AtRest, recording: Recording) -> bool:

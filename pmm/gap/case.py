@@ -36,6 +36,7 @@ class RigChoices:
     strut_phase_rad: tuple[float, ...] = (0.0,)
     media: tuple[Medium, ...] = (Medium.WATER,)
     special: tuple[FurtherMeasurement, ...] = ()
+    drift_rad: tuple[float, ...] = (0.0,)
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Case:
         """Return what the rig can do next.
 
         Where nothing is said, what the oscillator can, without the carriage and at the highest
-        speed of the campaign.
+        speed of the campaign, straight and at its largest drift.
         """
         oscillator = campaign.oscillator
         if oscillator is None:
@@ -68,10 +69,12 @@ class Case:
         limit_n = oscillator.force_per_strut_n
         if self.rig is None:
             fastest_m_s = max((run.carriage_speed_m_s for run in campaign.runs), default=0.0)
+            widest_rad = max((run.drift_rad for run in campaign.runs), key=abs, default=0.0)
             return Choices(
                 oscillator.frequency_hz,
                 oscillator.eccentricity_m,
                 carriage_speed_m_s=tuple(sorted({0.0, fastest_m_s})),
+                drift_rad=tuple(sorted({0.0, widest_rad}, key=abs)),
                 force_limit_n=limit_n,
             )
         speeds = self.rig.carriage_speed_m_s
@@ -81,6 +84,7 @@ class Case:
             self.rig.strut_phase_rad,
             tuple(sorted({speeds.low, speeds.high})),
             self.rig.media,
+            self.rig.drift_rad,
             self.rig.special,
             limit_n,
         )

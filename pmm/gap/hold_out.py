@@ -16,6 +16,7 @@ KEYS: Final[Mapping[str, Callable[[Run], float]]] = {
     "amplitude": lambda run: 1e3 * run.eccentricity_m,
     "phase": lambda run: math.degrees(run.strut_phase_rad) % 360.0,
     "speed": lambda run: run.carriage_speed_m_s,
+    "drift": lambda run: math.degrees(run.drift_rad),
 }
 _REST: Final = "rest"  # as the regimes call the medium of zero runs
 
@@ -26,8 +27,8 @@ def held_out_runs(campaign: Campaign, said: Sequence[str]) -> tuple[str, ...]:
     Parameters
     ----------
     said
-        Names of runs, or ``KEY=VALUE`` with a frequency in Hz, an amplitude in mm, a phase in
-        degrees, a speed in m/s, or ``medium=air``; ``medium=rest`` are the zero runs.
+        Names of runs, or ``KEY=VALUE`` with a frequency in Hz, an amplitude in mm, a phase or
+        a drift in degrees, a speed in m/s, or ``medium=air``; ``medium=rest`` are the zero runs.
 
     Raises
     ------

@@ -50,6 +50,7 @@ def _entry(one: Proposal, name: str) -> dict[str, Any]:
         "amplitudes_m": point.eccentricity_m,
         "strut_phases_rad": point.strut_phase_rad,
         "speeds_m_s": point.carriage_speed_m_s or None,
+        "drifts_rad": point.drift_rad or None,
         "prompt": f"Put {dead_weight(one.force_n)}" if one.force_n else None,
     }
 

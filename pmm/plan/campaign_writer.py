@@ -128,7 +128,7 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "file": one.recording,
         "carriage_speed_m_s": point.carriage_speed_m_s,
         "medium": point.medium,
-        "drift_rad": run.drift_rad,
+        "drift_rad": point.drift_rad,
         "repeat": run.repeat,
         "known_mass": None if run.known_mass is None else asdict(run.known_mass),
         "zero_before": run.zero_before if run.zero_before in names else None,

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, MotionWaves, motion
 from hardware.description import kinds
 from hardware.description.oscillator import Plane
@@ -18,7 +19,6 @@ from pmm.plan import check_table as table
 from pmm.plan.check_table import Check
 from pmm.plan.echoes import echo_limit
 from pmm.plan.findings import PlanFinding, PlanVerdict
-from pmm.plan.geometry import geometry_of
 from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -74,7 +74,7 @@ def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
     struts = np.stack((angle, angle + point.strut_phase_rad))
     wave, slope = point.eccentricity_m * np.sin(struts), point.eccentricity_m * np.cos(struts)
     driven = Driven(wave, omega * slope, -(omega**2) * wave)
-    return motion(geometry_of(run, rig.oscillator), driven)
+    return motion(Geometry.of(rig.oscillator, run.set_point), driven)
 
 
 def _of_motion(run: RunPlan, made: MotionWaves) -> Iterator[_Condition]:

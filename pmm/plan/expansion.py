@@ -117,13 +117,13 @@ def _run(
         # In air the speed tells the strut phase of the run in water that it belongs to.
         0.0 if in_air else speed,
         Medium.AIR if in_air else entry.medium or Medium.WATER,
+        drift,
     )
     return RunPlan(
         name=_name(entry, one),
         kind=entry.kind,
         motion=motion,
         set_point=set_point,
-        drift_rad=drift,
         repeat=repeat,
         known_mass=entry.known_mass,
         prompts=(entry.prompt,) if entry.prompt else (),

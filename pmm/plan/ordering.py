@@ -8,7 +8,6 @@ from typing import Any
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator
-from hardware.description.setpoint import SetPoint
 from pmm.plan.expansion import all_of, expand, snake
 from pmm.plan.plan_tables import OrderTable, PlanEntry, PlanTables, Scheme, ZeroTable
 from pmm.plan.run_plan import RunPlan
@@ -116,8 +115,7 @@ def _zero_run(name: str, like: RunPlan, zero: ZeroTable, prompts: tuple[str, ...
         name=name,
         kind=RunKind.ZERO,
         motion=Motion.NONE,
-        set_point=SetPoint(0.0, point.eccentricity_m, point.strut_phase_rad, 0.0, point.medium),
-        drift_rad=like.drift_rad,
+        set_point=replace(point, frequency_hz=0.0, carriage_speed_m_s=0.0),
         duration_s=zero.duration_s,
         pause_before_s=like.pause_before_s,
         known_mass=like.known_mass,

@@ -3,6 +3,7 @@
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.kinds import Motion, RunKind
@@ -23,9 +24,7 @@ class RunPlan:
         What the run is for, and how the model moves.
     set_point
         Frequency (0 for a run at rest), eccentricity (**amplitude** of each strut, half its
-        stroke), strut phase, carriage speed and medium.
-    drift_rad
-        Steady drift angle of the model to the tow, positive for the bow to starboard.
+        stroke), strut phase, carriage speed, medium and drift angle.
     periods
         Periods of the gate; 0 for a run at rest. With a target, the fewest.
     settling_periods
@@ -56,7 +55,6 @@ class RunPlan:
     kind: RunKind
     motion: Motion
     set_point: SetPoint
-    drift_rad: float = 0.0
     periods: int = 0
     settling_periods: int = 0
     duration_s: float = 0.0
@@ -70,6 +68,8 @@ class RunPlan:
     zero_before: str = ""
     zero_after: str = ""
     entry: str = ""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     @property
     def oscillates(self) -> bool:

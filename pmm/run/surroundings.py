@@ -4,11 +4,12 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from analysis.kinematics.geometry import Geometry
 from hardware.demand import Demand
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.driver import Prompt
-from pmm.plan.geometry import drift_prompt, geometry_of
+from pmm.plan.drift_prompt import drift_prompt
 from pmm.plan.run_plan import RunPlan
 
 Answered = Callable[[Demand, str], None]
@@ -87,10 +88,11 @@ class Surroundings:
         yield Demand(f"mass: {what}; press Enter", "mass", mass_kg, at_m=at_m)
 
     def _change_drift(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
-        if run.drift_rad != self.drift_rad:
-            self.drift_rad = run.drift_rad
-            text = f"drift: {drift_prompt(geometry_of(run, oscillator))}; press Enter"
-            yield Demand(text, "drift", run.drift_rad)
+        drift_rad = run.set_point.drift_rad
+        if drift_rad != self.drift_rad:
+            self.drift_rad = drift_rad
+            text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
+            yield Demand(text, "drift", drift_rad)
 
 
 class Questions:

@@ -212,10 +212,8 @@ class Plant:
         rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
         around = self._around
         any_hz = self._rig.oscillator.frequency_hz.high
-        return rig.chain(
-            SetPoint(any_hz, eccentricity, phase, around.carriage_speed_m_s, around.medium),
-            drift_rad=around.drift_rad,
-        )
+        speed, drift = around.carriage_speed_m_s, around.drift_rad
+        return rig.chain(SetPoint(any_hz, eccentricity, phase, speed, around.medium, drift))
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:
         carried = self._due

@@ -72,10 +72,9 @@ def test_struts_further_apart_than_the_model_reaches_are_refused() -> None:
     rig = horizontal_rig()
     given = {"joint": Joint.SLIDES_ON_RIG, "drift_by": DriftBy.STRUTS_OFFSET, "half_spacing_m": 0.4}
     short = replace(rig, oscillator=replace(rig.oscillator, **given))
-    set_point = SetPoint(0.2, 0.3, math.pi)
-    short.chain(set_point, drift_rad=0.2)
+    short.chain(SetPoint(0.2, 0.3, math.pi, drift_rad=0.2))
     with pytest.raises(ConfigurationError, match=r"differ by 1\.05 of their spacing \(limit 1"):
-        short.chain(set_point, drift_rad=0.3)
+        short.chain(SetPoint(0.2, 0.3, math.pi, drift_rad=0.3))
 
 
 def test_two_writers_or_two_namesakes_are_refused() -> None:

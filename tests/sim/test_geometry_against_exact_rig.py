@@ -43,7 +43,7 @@ def test_steady_state_is_the_exact_cycle(
 ) -> None:
     for part, drift_rad in ((0.04, 0.0), (0.4, 0.15), (1.0, 0.0), (1.0, -0.1)):
         point = set_point(arrangement, part * LARGEST_RAD[plane], medium)
-        chain = simulated(plane, arrangement).chain(point, drift_rad=drift_rad)
+        chain = simulated(plane, arrangement).chain(replace(point, drift_rad=drift_rad))
         found = steady_state(chain, Period(point.frequency_hz)).spectra
         expected = cycle(exact(plane, arrangement, point, drift_rad), ORDERS, tared=True)
         phasors = np.where(np.arange(ORDERS + 1)[:, None] > 0, -1j, 1.0) * expected
@@ -57,7 +57,7 @@ def test_steady_state_is_the_exact_cycle(
 def test_samples_are_the_exact_readings(plane: Plane, arrangement: Arrangement) -> None:
     point = set_point(arrangement, LARGEST_RAD[plane], Medium.WATER)
     for drift_rad in (0.0, 0.15):
-        chain = simulated(plane, arrangement).chain(point, drift_rad=drift_rad)
+        chain = simulated(plane, arrangement).chain(replace(point, drift_rad=drift_rad))
         _, run = chain.run(chain.start(50.0, 1), 200)
         rig = exact(plane, arrangement, point, drift_rad)
         expected = readings(rig, run[signals.SHAFT_ANGLE.name], tared=True)
@@ -69,7 +69,7 @@ def test_samples_are_the_exact_readings(plane: Plane, arrangement: Arrangement) 
 def test_another_speed_of_the_carriage_is_that_of_its_exact_rig(plane: Plane) -> None:
     arrangement = Arrangement(Joint.SLIDES_ON_RIG, Pivot.FORE, Gauges.RIG)
     point = set_point(arrangement, LARGEST_RAD[plane], Medium.WATER)
-    chain = simulated(plane, arrangement).chain(point, drift_rad=0.1)
+    chain = simulated(plane, arrangement).chain(replace(point, drift_rad=0.1))
     faster = 1.3 * point.carriage_speed_m_s
     _, run = chain.run(chain.start(50.0, 1), 200, {"carriage_speed": np.full(200, faster)})
     rig = replace(exact(plane, arrangement, point, 0.1), speed_m_s=faster)
@@ -85,7 +85,7 @@ def test_what_gives_way_moves_the_exact_model(plane: Plane, arrangement: Arrange
     point = set_point(arrangement, 0.8 * LARGEST_RAD[plane], Medium.WATER)
     rig = replace(simulated(plane, arrangement), mounting=SPRINGS)
     orders, period = 24, Period(point.frequency_hz, 24, 256)
-    found = steady_state(rig.chain(point, drift_rad=0.1), period).spectra
+    found = steady_state(rig.chain(replace(point, drift_rad=0.1)), period).spectra
     s = period.s
     both = found["force_aft"] + found["force_fore"]
     frame = -both / (SPRINGS.frame_mass_kg * s**2 + 4000.0 * s + 1e6)
@@ -117,7 +117,7 @@ def test_samples_come_to_the_steady_state_on_springs_behind_a_motor(plane: Plane
     rig = replace(
         simulated(plane, arrangement), mounting=SPRINGS, drive=DriveSettings(motor=Servo())
     )
-    chain = rig.chain(point, drift_rad=0.1)
+    chain = rig.chain(replace(point, drift_rad=0.1))
     steady = steady_state(chain, Period(point.frequency_hz, 24, 256))
     rate = 512.0 * steady.period.frequency_hz
     _, run = chain.run(chain.start(rate, 1), 512 * 8)

@@ -73,7 +73,8 @@ def test_a_compiled_law_is_its_array_form(
     rig = replace(
         vertical_rig(), cross_flow=CROSS_FLOW, surge=SurgeForces(-3.0, -5.0, 4.0, 2.0, 1.0)
     )
-    system = rig.chain(SET_POINT, drift_rad=0.1).stage("hull").system  # type: ignore[attr-defined]
+    hull = rig.chain(replace(SET_POINT, drift_rad=0.1)).stage("hull")
+    system = hull.system  # type: ignore[attr-defined]
     row = np.array([[*motion, load, -0.4 * load]])
     instants = Instants(np.array([1.3]), 0.005, np.array([1.0]))
     at_struts = ModelMotion(*np.split(row, 4, 1))

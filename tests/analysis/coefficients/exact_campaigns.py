@@ -83,12 +83,12 @@ def struts_of(rig: ExactRig, name: str, orders: int) -> StrutCycle:
     phasors = Phasors(labels(channels, orders), units, whole.ravel())
     of_plane = VERTICAL_1963 if rig.plane is Plane.VERTICAL else HORIZONTAL_1963
     oscillator = replace(of_plane, half_spacing_m=rig.half_spacing_m, **vars(rig.arrangement))
-    point = SetPoint(rig.frequency_hz, 0.1, 0.0, rig.speed_m_s)
+    point = SetPoint(rig.frequency_hz, 0.1, 0.0, rig.speed_m_s, drift_rad=rig.drift_rad)
     hertz = rig.frequency_hz
     return StrutCycle(name, oscillator, point, hertz, phasors, orders, mean_known=True)
 
 
 def cycle_of(rig: ExactRig, name: str, orders: int) -> BodyCycle:
     """Return a rig's cycle with its body to be taken off."""
-    found = struts_of(rig, name, orders).model(drift_rad=rig.drift_rad)
+    found = struts_of(rig, name, orders).model()
     return found.without(body_of(rig.body))

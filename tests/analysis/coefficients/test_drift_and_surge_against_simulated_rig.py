@@ -33,27 +33,26 @@ def with_gauge(rig: SimulatedRig, **more: object) -> SimulatedRig:
     return replace(rig, acquisition=acquisition, surge=ALONG, **more)  # type: ignore[arg-type]
 
 
-def moving(rig: SimulatedRig, point: SetPoint, name: str, drift_rad: float = 0.0) -> BodyCycle:
-    record = simulate(
-        rig, point, periods=8, sample_rate_hz=100.0, seed=len(name), name=name, drift_rad=drift_rad
-    )
+def turned(strut_phase_rad: float, drift_deg: float) -> SetPoint:
+    return SetPoint(0.25, 0.15, strut_phase_rad, SPEED, drift_rad=math.radians(drift_deg))
+
+
+def moving(rig: SimulatedRig, point: SetPoint, name: str) -> BodyCycle:
+    record = simulate(rig, point, periods=8, sample_rate_hz=100.0, seed=len(name), name=name)
     analysis = analyse(
         from_dataset(record), settings=ResolverSettings(channels=CHANNELS, harmonics=3)
     )
-    cycle = measured_cycle(analysis, rig.oscillator).model(drift_rad=drift_rad)
+    cycle = measured_cycle(analysis, rig.oscillator).model()
     cycle = replace(cycle, mean_known=True)  # as after zero runs that found no offset
     return cycle.without(rig.body, np.array(rig.water.restoring))
 
 
 def still(rig: SimulatedRig, drift_rad: float, name: str, speed_m_s: float = SPEED) -> BodyCycle:
-    point = SetPoint(0.5, 0.0, 0.0, speed_m_s)
-    record = simulate(
-        rig, point, periods=10, sample_rate_hz=100.0, seed=len(name), name=name,
-        drift_rad=drift_rad,
-    )  # fmt: skip
+    point = SetPoint(0.5, 0.0, 0.0, speed_m_s, drift_rad=drift_rad)
+    record = simulate(rig, point, periods=10, sample_rate_hz=100.0, seed=len(name), name=name)
     reading = zero_reading(from_dataset(record), 0.0, REST)
-    struts = static_cycle(name, reading, rig.oscillator, speed_m_s)
-    cycle = replace(struts, mean_known=True).model(drift_rad=drift_rad)
+    struts = static_cycle(name, reading, rig.oscillator, point)
+    cycle = replace(struts, mean_known=True).model()
     return cycle.without(rig.body, np.array(rig.water.restoring))
 
 
@@ -90,8 +89,8 @@ def test_yaw_with_drift_and_pure_motions_give_surge_terms_less_the_models_own() 
     runs = [
         moving(rig, SetPoint(0.25, 0.15, 0.0, SPEED), "sway"),
         moving(rig, SetPoint(0.25, 0.15, yaw, SPEED), "yaw"),
-        moving(rig, SetPoint(0.25, 0.15, yaw, SPEED), "yaw, drift", math.radians(4.0)),
-        moving(rig, SetPoint(0.25, 0.15, yaw, SPEED), "yaw, other drift", math.radians(-8.0)),
+        moving(rig, turned(yaw, 4.0), "yaw, drift"),
+        moving(rig, turned(yaw, -8.0), "yaw, other drift"),
         moving(rig, SetPoint(0.25, 0.10, 1.2, SPEED), "mixed"),
     ]
     found = campaign_coefficients(runs, Request())

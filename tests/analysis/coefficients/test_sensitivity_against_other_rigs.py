@@ -86,9 +86,7 @@ def fitted(
 ) -> CycleFit:
     plane = said[0].plane
     cycles = [
-        chain(read(one, taken, f"run {k}"))
-        .model(drift_rad=taken.drift_rad)
-        .without(body_of(taken.body), RESTORING[plane])
+        chain(read(one, taken, f"run {k}")).model().without(body_of(taken.body), RESTORING[plane])
         for k, (one, taken) in enumerate(zip(rigs, said, strict=True))
     ]
     return fit_cycles(cycles, tuple(HULLS[plane]), (0, 1, 2, 3), stated=stated)

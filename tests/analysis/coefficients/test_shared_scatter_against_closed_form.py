@@ -43,8 +43,9 @@ def drift_runs(zero: ZeroReading) -> list[BodyCycle]:
     for k, angle in enumerate(np.radians(ANGLES_DEG)):
         force = 120.0 * SPEED_M_S * math.sin(angle)
         reading = at_rest(f"drift {k}", (force / 2.0, force / 2.0), 1e-6)
-        struts = static_cycle(f"drift {k}", reading, HORIZONTAL_1963, SPEED_M_S)
-        runs.append(struts.without_zero(zero.offsets).model(drift_rad=float(angle)).without())
+        point = SetPoint(0.0, 0.0, 0.0, SPEED_M_S, drift_rad=float(angle))
+        struts = static_cycle(f"drift {k}", reading, HORIZONTAL_1963, point)
+        runs.append(struts.without_zero(zero.offsets).model().without())
     return runs
 
 

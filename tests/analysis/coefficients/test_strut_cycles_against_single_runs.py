@@ -173,7 +173,8 @@ def test_set_points_stand_in_for_displacements() -> None:
 def test_a_run_that_stands_still() -> None:
     reading = zero_reading(still(6.0, "drift"), 10.0)
     zero = zero_reading(still(1.0, "zero"), 0.0).offsets
-    cycle = static_cycle("drift", reading, HORIZONTAL_1963, 1.2, zero).model(drift_rad=0.1)
+    point = SetPoint(0.0, 0.0, 0.0, 1.2, drift_rad=0.1)
+    cycle = static_cycle("drift", reading, HORIZONTAL_1963, point, zero).model()
     assert cycle.frequency_hz == 0.0
     assert cycle.mean_known
     assert cycle.phasors["force 0"].real == pytest.approx(15.0, abs=0.01)

@@ -92,7 +92,7 @@ def analysed(
 ) -> CampaignCoefficients:
     cycles = [
         replace(one, oscillator=replace(one.oscillator, **vars(given)))
-        .model(drift_rad=rig.drift_rad)
+        .model()
         .without(body_of(rig.body))
         for one, rig in zip(struts, rigs, strict=True)
     ]

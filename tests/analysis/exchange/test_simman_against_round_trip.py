@@ -48,7 +48,7 @@ def turned(drift_rad: float) -> BodyCycle:
     """A turntable that sways across the tank, exact to rounding."""
     table = Arrangement(Joint.YAW_TABLE, drift_by=DriftBy.STRUTS_OFFSET)
     rig = exact_rig(Plane.HORIZONTAL, table, rotation_rad=0.3, drift_rad=drift_rad, speed_m_s=SPEED)
-    return struts_of(rig, "yaw-1", 25).model(drift_rad=drift_rad)
+    return struts_of(rig, "yaw-1", 25).model()
 
 
 @pytest.mark.parametrize("plane", list(Plane))

@@ -38,6 +38,7 @@ from tests.analysis.gap.small import problem_of, record
 
 E = TypeVar("E", bound=Effect)
 
+STANDS = SetPoint(1.0, 0.0)
 LENGTH_S = 30.0
 RATE_HZ = 64.0
 BETWEEN_S = 800.0  # from one record at rest to the next
@@ -94,7 +95,7 @@ def at_rest(
             seed=7000 * seed + number,
             name=f"zero-{number}",
         )
-        found.append(run_at_rest(from_dataset(dataset), place))
+        found.append(run_at_rest(from_dataset(dataset), place, really))
     return tuple(found)
 
 
@@ -232,21 +233,21 @@ def test_what_is_proposed_has_the_noise_of_a_run(
 def test_records_that_are_too_short_or_have_gaps_are_refused(
     rig: SimulatedRig, samples: int, missing: int, said: str
 ) -> None:
-    dataset = simulate(standing(rig), SetPoint(1.0, 0.0), periods=2, seed=1, settling_periods=0)
+    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
     short = dataset.isel(time=slice(samples)).load()
     short["force_aft"].values[:missing] = np.nan
     with pytest.raises(DataError, match=said):
-        run_at_rest(from_dataset(short), CampaignRun())
+        run_at_rest(from_dataset(short), CampaignRun(), STANDS)
 
 
 def test_a_record_without_force_is_refused(rig: SimulatedRig) -> None:
-    dataset = simulate(standing(rig), SetPoint(1.0, 0.0), periods=2, seed=1, settling_periods=0)
+    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
     with pytest.raises(DataError, match="no channel force_aft or force_fore"):
-        run_at_rest(from_dataset(dataset).select(["displacement_aft"]), CampaignRun())
+        run_at_rest(from_dataset(dataset).select(["displacement_aft"]), CampaignRun(), STANDS)
 
 
 def test_one_in_air_has_no_restoring_force(rig: SimulatedRig) -> None:
-    dataset = simulate(standing(rig), SetPoint(1.0, 0.0), periods=2, seed=1, settling_periods=0)
-    run = run_at_rest(from_dataset(dataset), CampaignRun(), medium=Medium.AIR)
+    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
+    run = run_at_rest(from_dataset(dataset), CampaignRun(), replace(STANDS, medium=Medium.AIR))
     moved = replace(run, stands_at_m=(1e-3, 1e-3))
     assert Simulator(rig, Stack.of((moved,))).nominal == pytest.approx(np.zeros(2), abs=1e-9)

@@ -39,12 +39,12 @@ def resolved(rig: ExactRig, seed: int) -> Phasors:
         np.stack(list(run.channels.values())),
         run.sample_rate_hz,
         photocell_edges_s=run.photocell_edges_s,
-        set_point=SetPoint(rig.frequency_hz, 0.1, carriage_speed_m_s=rig.speed_m_s),
+        set_point=SetPoint(rig.frequency_hz, 0.1, 0.0, rig.speed_m_s, drift_rad=rig.drift_rad),
     )
     settings = ResolverSettings(channels=(*DISPLACEMENTS, *READINGS), harmonics=ORDERS)
     oscillator = replace(HORIZONTAL_1963, **vars(rig.arrangement))
     struts = measured_cycle(analyse(recording, settings=settings), oscillator)
-    return struts.model(drift_rad=rig.drift_rad).phasors
+    return struts.model().phasors
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def resolved(rig: ExactRig, seed: int) -> Phasors:
 )
 def test_intervals_in_body_axes_cover_95_percent(arrangement: Arrangement) -> None:
     rig = exact_rig(Plane.HORIZONTAL, arrangement, rotation_rad=0.35, drift_rad=0.1)
-    exact = struts_of(rig, "exact", ORDERS).model(drift_rad=rig.drift_rad)
+    exact = struts_of(rig, "exact", ORDERS).model()
     true = interleaved(exact.phasors.values)
     inside = []
     for seed in range(DRAWS):

@@ -62,7 +62,7 @@ frequency_hz = {point.frequency_hz}
 eccentricity_m = {point.eccentricity_m}
 strut_phase_rad = {point.strut_phase_rad}
 carriage_speed_m_s = {point.carriage_speed_m_s}
-drift_rad = {drift_rad}
+drift_rad = {point.drift_rad}
 """
 TOW = """
 [[at_rest]]
@@ -71,7 +71,7 @@ kind = "static-drift"
 file = "{name}.nc"
 duration_s = 100.0
 carriage_speed_m_s = {point.carriage_speed_m_s}
-drift_rad = {drift_rad}
+drift_rad = {point.drift_rad}
 """
 SETTINGS = f"""system = "mmg"
 [ship]
@@ -98,30 +98,30 @@ def struts_rig() -> SimulatedRig:
     )
 
 
-def set_points() -> Iterator[tuple[str, str, SetPoint, float]]:
-    """Name, table, set-point and drift angle of each run."""
+def set_points() -> Iterator[tuple[str, str, SetPoint]]:
+    """Name, table and set-point of each run."""
     speed = kvlcc2.SPEED_M_S
     for drift in (-kvlcc2.DRIFTS_RAD[2], -kvlcc2.DRIFTS_RAD[4], *kvlcc2.DRIFTS_RAD):
-        yield f"drift{drift:+.2f}", TOW, SetPoint(kvlcc2.YAW_HZ, 0.0, 0.0, speed), drift
+        point = SetPoint(kvlcc2.YAW_HZ, 0.0, 0.0, speed, drift_rad=drift)
+        yield f"drift{drift:+.2f}", TOW, point
     for amplitude in kvlcc2.SWAY_M:
-        yield f"sway-{amplitude}", RUN, SetPoint(kvlcc2.SWAY_HZ, amplitude, 0.0, speed), 0.0
+        yield f"sway-{amplitude}", RUN, SetPoint(kvlcc2.SWAY_HZ, amplitude, 0.0, speed)
     turning = 2.0 * math.pi * kvlcc2.YAW_HZ * OSCILLATOR.half_spacing_m / speed
     phase = 2.0 * math.atan(turning)  # v = 0
     for amplitude in kvlcc2.YAW_M:
         point = SetPoint(kvlcc2.YAW_HZ, amplitude / math.cos(phase / 2.0), phase, speed)
         for drift in kvlcc2.DRIFTS_RAD:
-            yield f"yaw-{amplitude}{drift:+.2f}", RUN, point, drift
+            yield f"yaw-{amplitude}{drift:+.2f}", RUN, replace(point, drift_rad=drift)
 
 
 def test_through_simulator_and_command(tmp_path: Path) -> None:
     rig, text = struts_rig(), HEAD
-    for name, table, point, drift_rad in set_points():
+    for name, table, point in set_points():
         made = simulate(
-            rig, point, periods=3, settling_periods=1, sample_rate_hz=10.0, seed=1, name=name,
-            drift_rad=drift_rad,
-        )  # fmt: skip
+            rig, point, periods=3, settling_periods=1, sample_rate_hz=10.0, seed=1, name=name
+        )
         write_recording(from_dataset(made), tmp_path / f"{name}.nc")
-        text += table.format(name=name, point=point, drift_rad=drift_rad)
+        text += table.format(name=name, point=point)
     (tmp_path / "campaign.toml").write_text(text)
     (tmp_path / "coefficients.toml").write_text(SETTINGS)
     found = done(tmp_path)["coefficients"]

@@ -71,7 +71,7 @@ def test_a_whole_example_is_a_campaign(name: str, tmp_path: Path) -> None:
             run.zero_before,
             run.zero_after,
         )
-        assert (written.drift_rad, written.known_mass) == (run.drift_rad, run.known_mass)
+        assert (written.drift_rad, written.known_mass) == (run.set_point.drift_rad, run.known_mass)
     loads = [one.load for one in campaign.at_rest if one.kind is RunKind.CHECK_WEIGHT]
     assert loads == [one.load for one in plan.runs if one.kind is RunKind.CHECK_WEIGHT]
     assert not list(tmp_path.glob(".*"))

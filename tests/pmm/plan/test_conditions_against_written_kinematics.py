@@ -9,6 +9,7 @@ import pytest
 from hardware.description.body import Ship
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
+from hardware.description.setpoint import SetPoint
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.findings import PlanFinding, largest_stated
 from pmm.plan.rig_tables import TankTable
@@ -65,7 +66,8 @@ def test_a_shallow_tank_warns_from_the_critical_speed_on() -> None:
 
 
 def test_static_drift_is_its_own_angle_to_the_flow() -> None:
-    still = replace(run(0.0, 0.0, 0.0, 1.2), kind=RunKind.STATIC_DRIFT, drift_rad=0.1)
+    point = SetPoint(0.0, 0.0, 0.0, 1.2, drift_rad=0.1)
+    still = run(kind=RunKind.STATIC_DRIFT, set_point=point)
     found = told(still, rig_file(HORIZONTAL_1963, tank=TANK))
     assert found["largest angle to the flow [deg]"].value == pytest.approx(math.degrees(0.1))
     assert "largest yaw [deg]" not in found

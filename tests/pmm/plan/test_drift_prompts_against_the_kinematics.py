@@ -10,8 +10,8 @@ from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, motion
 from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
-from pmm.plan.geometry import drift_prompt, geometry_of
-from tests.pmm.plan.plans import run
+from hardware.description.setpoint import SetPoint
+from pmm.plan.drift_prompt import drift_prompt
 
 HALF = 0.5
 
@@ -61,5 +61,5 @@ def test_each_arrangement_turns_what_its_word_says() -> None:
 
 def test_a_rig_that_says_nothing_is_turned_as_a_whole() -> None:
     for oscillator in (VERTICAL_1963, HORIZONTAL_1963):
-        text = drift_prompt(geometry_of(run(drift_rad=0.1), oscillator))
+        text = drift_prompt(Geometry.of(oscillator, SetPoint(0.8, 0.02, drift_rad=0.1)))
         assert text.startswith("turn the whole oscillator")

@@ -69,7 +69,8 @@ def oscillation(name: str = "heave", frequency_hz: float = 1.0, **more: Any) -> 
 
 def at_rest(name: str, kind: RunKind, duration_s: float = 1.0, **more: Any) -> RunPlan:
     """A run without motion."""
-    point = SetPoint(0.0, 0.0, 0.0, more.pop("speed_m_s", 0.0), more.pop("medium", "water"))
+    told = {key: more.pop(key) for key in ("medium", "drift_rad") if key in more}
+    point = SetPoint(0.0, 0.0, 0.0, more.pop("speed_m_s", 0.0), **told)
     return RunPlan(
         name=name, kind=kind, motion=Motion.NONE, set_point=point, duration_s=duration_s, **more
     )

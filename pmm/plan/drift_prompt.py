@@ -1,16 +1,10 @@
-"""How a run's rig stands: its exact geometry, and what the operator is asked for to set a drift."""
+"""What the operator is asked for to set a drift (trim) angle."""
 
 import math
 
 from analysis.kinematics.geometry import Geometry
 from hardware.description.arrangement import DriftBy
-from hardware.description.oscillator import Oscillator, Plane
-from pmm.plan.run_plan import RunPlan
-
-
-def geometry_of(run: RunPlan, oscillator: Oscillator) -> Geometry:
-    """Return the geometry that plan check and operator's prompt go by."""
-    return Geometry.of(oscillator, run.set_point.carriage_speed_m_s, run.drift_rad)
+from hardware.description.oscillator import Plane
 
 
 def drift_prompt(geometry: Geometry) -> str:
