@@ -22,6 +22,7 @@ points = st.builds(
     strut_phase_rad=st.sampled_from([0.0, math.pi]),
     carriage_speed_m_s=st.sampled_from([0.0, 1.2]),
     medium=st.sampled_from(list(Medium)),
+    drift_rad=st.sampled_from([0.0, 0.1]),
 )
 
 
@@ -39,6 +40,7 @@ def test_a_regime_holds_all_runs_of_its_value_and_leaves_enough(given_: list[Set
         "phase": "strut_phase_rad",
         "speed": "carriage_speed_m_s",
         "medium": "medium",
+        "drift": "drift_rad",
     }
     found = regimes(runs)
     assert len({one.runs for one in found}) == len(found)
