@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Literal
 
-from hardware.cia402 import ControlWord, Goal, Mode, StatusWord
+from hardware.cia402 import ControlWord, Mode, StatusWord
 from hardware.commanded import check_position
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -19,6 +19,7 @@ from hardware.drive import (
     Drive,
     motor_speed,
 )
+from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import HomingError, NotReadyError
 from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN, check_quick_stop

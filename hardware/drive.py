@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from typing import Final
 
-from hardware.cia402 import ControlWord, DriveState, DriveStateMachine, Goal, Mode, StatusWord
+from hardware.cia402 import ControlWord, DriveState, Mode, StatusWord
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry
+from hardware.drive_state_machine import DriveStateMachine, Goal
 from hardware.errors import (
     DriveFaultError,
     FollowingError,

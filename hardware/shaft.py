@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hardware.cia402 import Goal, Mode, StatusWord
+from hardware.cia402 import Mode, StatusWord
 from hardware.commanded import check_speed
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError
@@ -22,6 +22,7 @@ from hardware.drive import (
     Drive,
     motor_speed,
 )
+from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import NotReadyError
 from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop

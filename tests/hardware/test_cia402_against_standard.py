@@ -4,15 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.cia402 import (
-    TRANSITIONS,
-    DriveCommand,
-    DriveState,
-    DriveStateMachine,
-    Goal,
-    next_command,
-    state_of,
-)
+from hardware.cia402 import TRANSITIONS, DriveCommand, DriveState, state_of
+from hardware.drive_state_machine import DriveStateMachine, Goal, next_command
 from hardware.errors import DriveFaultError, DriveStateError, TransitionTimeoutError
 
 # The standard's table of the status word: bits 6 5 3 2 1 0, x where a bit does not matter.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hardware.cia402 import DriveStateMachine, next_command
+from hardware.drive_state_machine import DriveStateMachine, next_command
 from hardware.motion import EncoderMotion
 from tests.pmm.run.storms import Storm
 
