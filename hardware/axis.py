@@ -1,12 +1,10 @@
 """Eccentricity and strut phase on a CiA 402 drive: profile position and homing."""
 
-from dataclasses import dataclass
 from enum import Enum
-from typing import Literal
 
+from hardware.axis_settings import PositionAxisSettings
 from hardware.cia402 import ControlWord, Mode, StatusWord
 from hardware.commanded import check_position
-from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.dictionary import Entry
 from hardware.drive import (
@@ -22,69 +20,11 @@ from hardware.drive import (
 from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
 from hardware.errors import HomingError, NotReadyError
-from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN, check_quick_stop
+from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN
 from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Reading, Role
 
 _STALE_CYCLES = 10  # a homing that was over before is believed after so many
-
-
-@dataclass(frozen=True)
-class PositionAxisSettings:
-    """Settings of an eccentricity (``unit = "m"``) or phase axis (``unit = "rad"``).
-
-    Attributes
-    ----------
-    counts_per_unit
-        Increments of 6064 per metre or radian; negative if the drive counts the other way.
-    low, high
-        Limits of the position, also written to the drive (607D).
-    speed, acceleration, quick_stop
-        In units per second and per second squared.
-    tolerance, standard_uncertainty
-        How near a move has to come, and what is believed of the position afterwards.
-    homing_method
-        Of 6098; 35 takes the present position for ``home_position``.
-    velocity_per_count
-        Units of 6081, 6083 and so on for one count per second.
-    max_motor_speed_rpm
-        The motor's own limit, before any gear (6080); not written where it is not given.
-    """
-
-    node: int
-    counts_per_unit: float
-    low: float
-    high: float
-    speed: float
-    acceleration: float
-    quick_stop: float
-    tolerance: float
-    standard_uncertainty: float
-    unit: Literal["m", "rad"] = "m"
-    following_error: float = 1e-3
-    following_error_ms: int = 20
-    homing_method: int = 17
-    homing_speed: float = 1e-3
-    homing_timeout_s: float = 120.0
-    home_position: float = 0.0
-    velocity_per_count: float = 1.0
-    max_motor_speed_rpm: float | None = None
-    eds: str = "cia402-drive.eds"
-
-    def __post_init__(self) -> None:
-        keys = ("speed", "acceleration", "quick_stop", "tolerance", "homing_speed")
-        for key in keys:
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
-        check_quick_stop(self.speed, self.quick_stop, f"{self.unit}/s", "quick_stop")
-        if not self.low < self.high:
-            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
-        furthest = max(abs(self.low), abs(self.high)) * abs(self.counts_per_unit)
-        if not 0.0 < furthest < 2**31:
-            raise ConfigurationError(
-                f"counts_per_unit = {self.counts_per_unit:g} makes {furthest:g} counts of the "
-                "furthest limit; it has to be between 0 and 2147483648"
-            )
 
 
 class _Step(Enum):

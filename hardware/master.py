@@ -14,6 +14,7 @@ from hardware.dictionary import PdoLayout
 from hardware.errors import HardwareError, as_fault
 from hardware.node import Node, PdoStream
 from hardware.other_master import Company
+from hardware.sdo import GuardedNetwork
 from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
 
 Clock = Callable[[], float]
@@ -23,17 +24,6 @@ _NMT, _SYNC, _EMCY, _HEARTBEAT = 0x000, 0x080, 0x080, 0x700
 _START, _PRE_OPERATIONAL = 0x01, 0x80
 _REPEAT_CYCLES: Final = 10  # RPDOs go out when they change, and again so often
 _FRAMES_A_CYCLE: Final = 4096  # a babbling node must not keep the loop for ever
-
-
-class _Network(canopen.Network):
-    """canopen's network without its thread: it sends through the guarded sender."""
-
-    def __init__(self, send: Callable[[int, bytes], None]) -> None:
-        super().__init__()
-        self._send = send
-
-    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        self._send(can_id, bytes(data))
 
 
 class Master:
@@ -71,7 +61,7 @@ class Master:
         self._sender = Sender(self._bus)
         receiver = Threaded if configuration.receive_thread else Pumped
         self._receiver: Receiver = receiver(self._bus)
-        self.network = _Network(self._send)
+        self.network = GuardedNetwork(self._send)
         self._streams: dict[int, PdoStream] = {}
         self._supervisor = Supervisor(configuration, ())
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}

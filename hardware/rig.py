@@ -6,10 +6,8 @@ in real time a pacer keeps it to the clock. Nothing else differs.
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
-from typing import cast
 
-from hardware.description.errors import ConfigurationError, PmmError
+from hardware.description.errors import PmmError
 from hardware.driver import Prompt, Services
 from hardware.errors import (
     HardwareError,
@@ -19,25 +17,15 @@ from hardware.errors import (
     as_fault,
     worst,
 )
-from hardware.interlock import guard_axis, guard_shaft
 from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
 from hardware.rest import come_to_rest
-from hardware.rig_configuration import RigConfiguration, RigPart, check
-from hardware.roles import (
-    PROTOCOLS,
-    Cycle,
-    Device,
-    ForceChannels,
-    Inclinometer,
-    Photocell,
-    PositionAxis,
-    Powered,
-    Shaft,
-)
+from hardware.rig_configuration import RigConfiguration, check
+from hardware.rig_devices import RigDevices
+from hardware.roles import Cycle, Device, Powered
 from hardware.serial_port import Port, Ports, PortSettings, SerialPort
-from hardware.watch import Watch, WatchLimits
+from hardware.watch import WatchLimits
 
 
 class Rig:
@@ -93,7 +81,7 @@ class Rig:
         self._pacer = pacer
         self._line_observers = tuple(line_observers)
         self._ports = ports
-        self._devices: list[Device] = []
+        self._devices = RigDevices(lambda: self.faults)
         self._period_s = 1.0 / configuration.sample_rate_hz
         self.master: Master | None = None
         try:
@@ -102,11 +90,17 @@ class Rig:
             operator = self.master.operator if self.master is not None else None
             prompt = operator(prompt) if operator is not None else prompt
             self.prompt = prompt
-            self._open(Services(clock, prompt, configuration.sample_rate_hz, self.master,
-                                port=self._port))  # fmt: skip
+            rate_hz = configuration.sample_rate_hz
+            self._devices.open(
+                configuration, Services(clock, prompt, rate_hz, self.master, port=self._port)
+            )
         except BaseException:
             self.close()
             raise
+        opened = self._devices
+        self.shaft, self.eccentricity, self.phase = opened.shaft, opened.eccentricity, opened.phase
+        self.photocell, self.inclinometer = opened.photocell, opened.inclinometer
+        self._watch, self.forces = opened.watch, opened.watch.forces
 
     def __enter__(self) -> "Rig":
         return self
@@ -126,7 +120,7 @@ class Rig:
         """
         if self.master is not None:
             self.master.prepare()
-        for device in self._devices:
+        for device in self._devices.opened:
             try:
                 device.prepare()
             except PmmError:
@@ -152,7 +146,7 @@ class Rig:
         self.number += 1
         cycle = Cycle(self.number, self.number * self._period_s, late)
         found = self.master.exchange(self.number) if self.master else []
-        for device in self._devices:
+        for device in self._devices.opened:
             try:
                 device.tick(cycle)
             except Exception as error:  # a driver of a lab's own may raise anything
@@ -212,7 +206,7 @@ class Rig:
                 f"cannot reset while {' and '.join(moving)} moves or is not heard; wait until it "
                 "stands (the emergency stop holds it), or start anew if it is not heard",
             )
-        for device in self._devices:
+        for device in self._devices.opened:
             device.reset_fault()
         if self.master is not None:
             self.master.reset()
@@ -221,12 +215,12 @@ class Rig:
     @property
     def notes(self) -> tuple[str, ...]:
         """What devices lack and are used without, a sentence each; known once prepared."""
-        return tuple(one for device in self._devices for one in getattr(device, "notes", ()))
+        return tuple(one for device in self._devices.opened for one in getattr(device, "notes", ()))
 
     @property
     def devices(self) -> tuple[Device, ...]:
         """All devices, in the order in which they tick."""
-        return tuple(self._devices)
+        return tuple(self._devices.opened)
 
     def latch(self, error: HardwareError) -> None:
         """Latch a fault that was found above the devices, and do what it asks for.
@@ -261,32 +255,13 @@ class Rig:
             self._let_go()
 
     def _let_go(self) -> None:
-        devices, self._devices = self._devices, []
+        devices, self._devices.opened = self._devices.opened, []
         with ExitStack() as stack:  # one that does not let go does not keep the others from it
             if self.master is not None:
                 stack.callback(setattr, self, "master", None)
                 stack.callback(self.master.close)
             for device in reversed(devices):
                 stack.callback(device.close)
-
-    def _open(self, services: Services) -> None:
-        one = self.configuration
-        shaft = cast("Shaft | None", self._device(one.shaft, services))
-        services = replace(services, shaft=shaft)
-        axes = [
-            cast("PositionAxis | None", self._device(part, services))
-            for part in (one.eccentricity, one.phase)
-        ]
-        forces = [cast("ForceChannels", self._device(part, services)) for part in one.forces]
-        self._watch = Watch(shaft, forces)
-        self.forces = self._watch.forces
-        self.photocell = cast("Photocell | None", self._device(one.photocell, services))
-        self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
-        present = [axis for axis in axes if axis is not None]
-        self.shaft = guard_shaft(shaft, present, lambda: self.faults) if shaft else None
-        self.eccentricity, self.phase = (
-            guard_axis(axis, shaft, lambda: self.faults) if axis else None for axis in axes
-        )
 
     def _port(self, name: str, settings: PortSettings) -> Port:
         port = self._ports(name, settings)
@@ -295,18 +270,6 @@ class Rig:
     def _hear(self, device: str, line: bytes) -> None:
         for observe in self._line_observers:
             observe(self.number, device, line)
-
-    def _device(self, part: RigPart | None, services: Services) -> Device | None:
-        if part is None:
-            return None
-        device = part.driver.open(part.name, part.settings, services)
-        self._devices.append(device)
-        if not isinstance(device, PROTOCOLS[part.driver.role]):
-            raise ConfigurationError(
-                f"{part.name}: {type(device).__name__} is no {part.driver.role}; "
-                "see docs/adding-a-driver.md for what the role needs"
-            )
-        return device
 
     def _latch(self, error: HardwareError) -> bool:
         """Keep a fault that stops the rig; tell whether it is to be raised."""

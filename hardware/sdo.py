@@ -136,3 +136,15 @@ class Sdo:
                     self._name,
                     f"could not {what} {at} within {self._client.RESPONSE_TIMEOUT:g} s: {error}",
                 ) from error
+
+
+class GuardedNetwork(canopen.Network):
+    """canopen's network without its thread: it sends through the guarded sender."""
+
+    def __init__(self, send: Callable[[int, bytes], None]) -> None:
+        super().__init__()
+        self._send = send
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
+        """Send a frame; canopen asks for no remote ones here."""
+        self._send(can_id, bytes(data))

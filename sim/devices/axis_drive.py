@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from hardware.axis import PositionAxisSettings
+from hardware.axis_settings import PositionAxisSettings
 from hardware.cia402 import ControlWord, DriveState, Mode, StatusWord
 from hardware.dictionary import Entry
 from hardware.drive import MODE_DISPLAY, POSITION, TARGET_POSITION, VELOCITY

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 import can
 
 from hardware.amplifier import AmplifierSettings
-from hardware.axis import PositionAxisSettings
+from hardware.axis_settings import PositionAxisSettings
 from hardware.description.errors import ConfigurationError
 from hardware.inclinometer import InclinometerSettings
 from hardware.manual_axis import ManualAxisSettings

@@ -1,0 +1,86 @@
+"""The devices of a rig by their roles: opened by their drivers, watched, behind the interlock."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import cast
+
+from hardware.description.errors import ConfigurationError
+from hardware.driver import Services
+from hardware.errors import HardwareError
+from hardware.interlock import guard_axis, guard_shaft
+from hardware.rig_configuration import RigConfiguration, RigPart
+from hardware.roles import (
+    PROTOCOLS,
+    Device,
+    ForceChannels,
+    Inclinometer,
+    Photocell,
+    PositionAxis,
+    Shaft,
+)
+from hardware.watch import Watch
+
+
+class RigDevices:
+    """What a rig is made of; absent devices are ``None``.
+
+    Parameters
+    ----------
+    faults
+        Says what is latched: nothing behind the interlock moves then.
+
+    Attributes
+    ----------
+    opened
+        All devices that are open, in the order in which they tick.
+    watch
+        Compares the shaft's speed and the loads with their limits.
+    """
+
+    def __init__(self, faults: Callable[[], Sequence[HardwareError]]) -> None:
+        self._faults = faults
+        self.opened: list[Device] = []
+        self.shaft: Shaft | None = None
+        self.eccentricity: PositionAxis | None = None
+        self.phase: PositionAxis | None = None
+        self.photocell: Photocell | None = None
+        self.inclinometer: Inclinometer | None = None
+        self.watch = Watch(None, ())
+
+    def open(self, one: RigConfiguration, services: Services) -> None:
+        """Open all devices of a configuration.
+
+        Raises
+        ------
+        ConfigurationError
+            If a driver's device is not what its role needs; what was open stays in :attr:`opened`.
+        BusOpenError, PortOpenError
+            If a port cannot be opened.
+        """
+        shaft = cast("Shaft | None", self._device(one.shaft, services))
+        services = replace(services, shaft=shaft)
+        axes = [
+            cast("PositionAxis | None", self._device(part, services))
+            for part in (one.eccentricity, one.phase)
+        ]
+        forces = [cast("ForceChannels", self._device(part, services)) for part in one.forces]
+        self.watch = Watch(shaft, forces)
+        self.photocell = cast("Photocell | None", self._device(one.photocell, services))
+        self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
+        present = [axis for axis in axes if axis is not None]
+        self.shaft = guard_shaft(shaft, present, self._faults) if shaft else None
+        self.eccentricity, self.phase = (
+            guard_axis(axis, shaft, self._faults) if axis else None for axis in axes
+        )
+
+    def _device(self, part: RigPart | None, services: Services) -> Device | None:
+        if part is None:
+            return None
+        device = part.driver.open(part.name, part.settings, services)
+        self.opened.append(device)
+        if not isinstance(device, PROTOCOLS[part.driver.role]):
+            raise ConfigurationError(
+                f"{part.name}: {type(device).__name__} is no {part.driver.role}; "
+                "see docs/adding-a-driver.md for what the role needs"
+            )
+        return device
