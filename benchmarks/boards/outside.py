@@ -17,12 +17,14 @@ from tests.sealed.generator.case import Case, make
 from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.design import design
 from tests.sealed.generator.features import StalledError, recorded
-from tests.sealed.generator.files import campaign_text, table
+from tests.sealed.generator.files import campaign_text
 from tests.sealed.generator.kinds import Content, NothingFitsError
 from tests.sealed.generator.priors import STATED, drawn, priors
 from tests.sealed.generator.rig import CHANNELS, Record
 from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import Sized, nuisances, sized
+from tests.sealed.generator.toml import table
+from tests.sealed.generator.worlds import world
 
 SEED: Final = 22  # of the generator; below 100, where seeds are for development
 FRICTION: Final = "coulomb-friction"
@@ -76,7 +78,7 @@ def with_friction(seed: int) -> tuple[Case, Sized]:
 
 
 def _drawn(seed: int, rng: np.random.Generator) -> tuple[Case, Sized]:
-    campaign = design(rng)
+    campaign = design(rng, world("A"))
     known = priors(campaign.believed)
     true = drawn(campaign.believed, known, rng)
     situation = Situation(campaign.rig, campaign.runs, true)

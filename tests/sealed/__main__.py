@@ -23,6 +23,14 @@ _OPTIONS = (
     click.option("--commit", help="The hash of the commit whose diagnosis is to be scored."),
     click.option("--cases", default=300, show_default=True, type=click.IntRange(0)),
     click.option("--nulls", default=300, show_default=True, type=click.IntRange(0)),
+    click.option(
+        "--world",
+        "where",
+        default="A",
+        show_default=True,
+        type=click.Choice(("A", "B", "C", "D")),
+        help="Set of assumptions.",
+    ),
 )
 
 
@@ -56,15 +64,22 @@ def _number(seed: int | None, commit: str | None) -> int:
 @_OPTIONS[1]
 @_OPTIONS[2]
 @_OPTIONS[3]
+@_OPTIONS[4]
 @click.option("--output", required=True, type=click.Path(path_type=Path))
 @WORKERS
 def generate_command(
-    seed: int | None, commit: str | None, cases: int, nulls: int, output: Path, workers: int
+    seed: int | None,
+    commit: str | None,
+    cases: int,
+    nulls: int,
+    where: str,
+    output: Path,
+    workers: int,
 ) -> None:
     """Make a board of sealed cases; cases that are there already are kept."""
     from tests.sealed.steps import generated
 
-    generated(output, _number(seed, commit), cases, nulls, workers)
+    generated(output, _number(seed, commit), cases, nulls, workers, where)
 
 
 @main.command("run")
@@ -155,6 +170,7 @@ def score_command(
 @_OPTIONS[1]
 @_OPTIONS[2]
 @_OPTIONS[3]
+@_OPTIONS[4]
 @click.option("--output", required=True, type=click.Path(path_type=Path), help="The board.")
 @click.option("--docs", default="docs", show_default=True,
               type=click.Path(exists=True, file_okay=False, path_type=Path),
@@ -168,6 +184,7 @@ def whole_command(
     commit: str | None,
     cases: int,
     nulls: int,
+    where: str,
     output: Path,
     docs: Path,
     most: int | None,
@@ -185,7 +202,7 @@ def whole_command(
     number = _number(seed, commit)
     if commit is not None:
         steps.refuse(number, cases, nulls, docs)
-    steps.generated(output, number, cases, nulls, workers)
+    steps.generated(output, number, cases, nulls, workers, where)
     steps.answered(output, workers, limit_s, scheduler)
     steps.others(output, workers, limit_s, (), scheduler)
     steps.left_out_answered(output, workers, limit_s, most, scheduler)

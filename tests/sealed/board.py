@@ -11,8 +11,8 @@ from tests.sealed.pool import each
 SCHEMA = "sealed-board-1"
 _MAKING = ".making"
 
-Job = tuple[int, int, bool, Path]
-"""Seed, index, whether it is a null, and the board's folder."""
+Job = tuple[int, int, bool, Path, str]
+"""Seed, index, whether it is a null, the board's folder, and the world."""
 
 
 def nulls_of(seed: int, cases: int, nulls: int) -> list[bool]:
@@ -30,8 +30,8 @@ def make_one(job: Job) -> str:
     from tests.sealed.generator.case import make
     from tests.sealed.generator.files import write
 
-    seed, index, null, board = job
-    case = make(seed, index, null=null)
+    seed, index, null, board, where = job
+    case = make(seed, index, null=null, where=where)
     made = board / _MAKING / case.name
     for stale in (made, board / "keys" / case.name):
         shutil.rmtree(stale, ignore_errors=True)
@@ -43,7 +43,7 @@ def make_one(job: Job) -> str:
     return case.name
 
 
-def jobs_of(seed: int, cases: int, nulls: int, board: Path) -> list[Job]:
+def jobs_of(seed: int, cases: int, nulls: int, board: Path, where: str = "A") -> list[Job]:
     """Return what is still to be made of a board; its list of cases is written first.
 
     Raises
@@ -54,7 +54,8 @@ def jobs_of(seed: int, cases: int, nulls: int, board: Path) -> list[Job]:
     flags = nulls_of(seed, cases, nulls)
     names = [f"case-{index:04d}" for index in range(1, len(flags) + 1)]
     listed = ", ".join(f'"{name}"' for name in names)
-    text = f'schema = "{SCHEMA}"\nseed = "{seed:x}"\ncases = [{listed}]\n'
+    told = "" if where == "A" else f'world = "{where}"\n'
+    text = f'schema = "{SCHEMA}"\nseed = "{seed:x}"\n{told}cases = [{listed}]\n'
     file = board / "board.toml"
     if board.exists() and any(board.iterdir()) and not _same(file, text):
         raise FileExistsError(
@@ -63,7 +64,7 @@ def jobs_of(seed: int, cases: int, nulls: int, board: Path) -> list[Job]:
     board.mkdir(parents=True, exist_ok=True)
     file.write_text(text)
     return [
-        (seed, index, null, board)
+        (seed, index, null, board, where)
         for index, (name, null) in enumerate(zip(names, flags, strict=True), start=1)
         if not (board / "cases" / name).is_dir()
     ]

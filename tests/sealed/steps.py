@@ -44,8 +44,10 @@ def refuse(seed: int, cases: int, nulls: int, docs: Path) -> None:
         )
 
 
-def generated(board: Path, seed: int, cases: int, nulls: int, workers: int) -> None:
-    """Make a board.
+def generated(
+    board: Path, seed: int, cases: int, nulls: int, workers: int, where: str = "A"
+) -> None:
+    """Make a board of a world.
 
     Raises
     ------
@@ -57,7 +59,7 @@ def generated(board: Path, seed: int, cases: int, nulls: int, workers: int) -> N
     from tests.sealed.board import generate, jobs_of
 
     try:
-        jobs = jobs_of(seed, cases, nulls, board)
+        jobs = jobs_of(seed, cases, nulls, board, where)
     except FileExistsError as error:
         raise click.UsageError(str(error)) from None
     for _name in told("cases made", len(jobs), generate(jobs, workers)):

@@ -55,14 +55,15 @@ class Background:
             Parameters without the nuisances.
         """
         for _ in range(_TRIES):
-            total = self.of(_with(still, always))
+            total = self.of(with_all(still, always))
             if total < QUIET:
                 return always, total
             always = tuple(smaller(sized, 0.8 * QUIET / total) for sized in always)
         return (), self.of(still)
 
 
-def _with(p: FloatArray, always: Sequence[Sized]) -> FloatArray:
+def with_all(p: FloatArray, always: Sequence[Sized]) -> FloatArray:
+    """Return the parameters with all of these in them."""
     for sized in always:
         p = sized.put(p)
     return np.asarray(p)

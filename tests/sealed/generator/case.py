@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.sealed.generator.background import Background
+from tests.sealed.generator.background import Background, with_all
 from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.ceiling import SAME, Library, ceiling, harmonic_blocks
 from tests.sealed.generator.design import Campaign, design
@@ -17,12 +17,14 @@ from tests.sealed.generator.features import (
     StalledError,
     reference,
 )
+from tests.sealed.generator.imperfect import Tolerance, imperfections
 from tests.sealed.generator.kinds import (
     DETERMINABLE,
     Content,
     Drawing,
     NothingFitsError,
     drawn_kind,
+    least_snr,
 )
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.priors import drawn, priors
@@ -30,8 +32,11 @@ from tests.sealed.generator.rig import Record, Run
 from tests.sealed.generator.sensing import record
 from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import Sized, nuisances
+from tests.sealed.generator.water import of_speed, remembering, table_of
+from tests.sealed.generator.wider import working
+from tests.sealed.generator.worlds import World, world
 
-TRIES = 5
+TRIES, MORE_TRIES = 5, 20
 
 
 @dataclass(frozen=True)
@@ -145,35 +150,53 @@ class Case:
         return not self.content.effects or self.snr >= DETERMINABLE
 
 
-def make(seed: int, index: int, *, null: bool) -> Case:
-    """Return case ``index`` of a seed; the same two numbers give the same case.
+def make(seed: int, index: int, *, null: bool, where: str = "A") -> Case:
+    """Return case ``index`` of a seed in a world; the same of these give the same case.
 
-    Where what is drawn stalls a shaft, or no effect fits the rig, all of it is drawn again.
+    Where what is drawn stalls a shaft, no effect fits the rig, or the gap is below what the world
+    has, all of it is drawn again.
     """
-    for again in range(TRIES):
+    for again in range(TRIES if where == "A" else MORE_TRIES):
         rng = np.random.default_rng([seed, index, 0, *([again] if again else [])])
         try:
-            case = _drawn(seed, index, null, rng)
+            case = _drawn(seed, index, null, world(where), rng)
             case.signature, case.withheld  # noqa: B018 (what has to turn, turns)
         except (StalledError, NothingFitsError):
             continue
-        return case
-    raise NothingFitsError(f"seed {seed}, case {index}: nothing fits in {TRIES} tries")
+        if null or case.snr >= least_snr(case.campaign.world):
+            return case
+    raise NothingFitsError(f"seed {seed}, case {index}: nothing fits in all tries")
 
 
-def _drawn(seed: int, index: int, null: bool, rng: np.random.Generator) -> Case:
-    campaign = design(rng)
-    known = priors(campaign.believed)
-    true = drawn(campaign.believed, known, rng)
-    situation = Situation(campaign.rig, campaign.runs, true)
-    projection = Projection.of(situation, known)
-    kind = drawn_kind(rng, null=null)
+def _drawn(seed: int, index: int, null: bool, where: World, rng: np.random.Generator) -> Case:
+    campaign = design(rng, where)
+    campaign, true = _truth(campaign, rng)
+    situation = Situation(working(campaign.rig), campaign.runs, true)
+    projection = Projection.of(situation, campaign.known)
+    kind = drawn_kind(rng, where, null=null)
     background = Background(situation, projection)
     content = Drawing(campaign, situation, projection, background, rng).draw(kind)
-    always, total = background.quieted(
-        content.without_size(true), nuisances(situation, projection, rng)
-    )
-    p = true
-    for sized in (*always, *content.effects):
-        p = sized.put(p)
+    if "imperfections" in where:
+        alone = Projection.of(situation, priors(campaign.believed))
+        own = tuple(one for one in campaign.tolerances if isinstance(one, Tolerance))
+        always = imperfections(where, own, situation, alone, rng)
+        total = background.of(with_all(content.without_size(true), always))
+    else:
+        always, total = background.quieted(
+            content.without_size(true), nuisances(situation, projection, rng)
+        )
+    p = with_all(true, (*always, *content.effects))
     return Case(seed, index, null, campaign, situation, projection, content, always, total, p)
+
+
+def _truth(campaign: Campaign, rng: np.random.Generator) -> tuple[Campaign, FloatArray]:
+    """Return what is true of the model and its water, and the campaign with what it believes."""
+    where = campaign.world
+    true = drawn(campaign.believed, priors(campaign.believed), rng)
+    if "memory_per_octave" not in where:
+        return campaign, true
+    true = drawn(true, of_speed(where), rng, where.share("speed_sigmas"))
+    true = remembering(true, campaign.runs, where, rng)
+    if where.happens("table_share", rng):
+        campaign = replace(campaign, table=table_of(true, where, rng))
+    return campaign, true

@@ -11,7 +11,7 @@ from tests.sealed.generator.catalogue import CATALOGUE
 from tests.sealed.generator.design import Campaign
 from tests.sealed.generator.effect import Effect
 from tests.sealed.generator.features import ORDERS, recorded
-from tests.sealed.generator.parameters import FloatArray
+from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Rig, Run
 from tests.sealed.generator.signatures import Projection, Situation
 
@@ -25,7 +25,14 @@ def applicable(effect: Effect, campaign: Campaign) -> bool:
     """Tell whether a campaign can have an effect."""
     rod = campaign.rig.rod_length_m is not None
     wet = all(run.medium == "water" for run in campaign.runs)
+    if campaign.rig.arrangement is not None and bends(effect):
+        return False
     return {"yoke": not rod, "rod": rod, "wet": wet}.get(effect.needs or "", True)
+
+
+def bends(effect: Effect) -> bool:
+    """Tell whether an effect needs a model that moves on its own, which small angles alone have."""
+    return P.GAUGE_STIFFNESS in effect.sets or effect.name in ("gauge-compliance", "foreshortening")
 
 
 @dataclass(frozen=True)
@@ -39,7 +46,7 @@ class Library:
     @classmethod
     def of(cls, situation: Situation, projection: Projection, campaign: Campaign) -> Self:
         """Return the library of all effects that this rig can have and these runs can show."""
-        known = [effect for effect in CATALOGUE if applicable(effect, campaign)]
+        known = [effect for effect in campaign.effects if applicable(effect, campaign)]
         return cls.out_of(known, [situation.tamed(e, e.typical)[1] for e in known], projection)
 
     @classmethod
@@ -88,7 +95,8 @@ class Library:
 
 def harmonic_blocks(runs: Sequence[Run], rig: Rig) -> list[NDArray[np.int_]]:
     """Return where the harmonics of each run's force channels lie among all features."""
-    rows, forces = recorded(rig.sensors), 2
+    rows = recorded(rig.sensors)
+    forces = sum(row in (3, 4) for row in rows)
     blocks, start = [], 0
     for run in runs:
         size = 2 * ORDERS * run.periods + 1

@@ -5,9 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.sealed.generator.effect import heavier
+from tests.sealed.generator.arranged import arranged
+from tests.sealed.generator.catalogue import CATALOGUE
+from tests.sealed.generator.effect import Effect, heavier
+from tests.sealed.generator.forms import formed
+from tests.sealed.generator.imperfect import Tolerance, tolerated
 from tests.sealed.generator.parameters import FloatArray, P, neutral
+from tests.sealed.generator.priors import Prior, priors
 from tests.sealed.generator.rig import CHANNELS, Medium, Noise, Rig, Run
+from tests.sealed.generator.water import Believed
+from tests.sealed.generator.water import tolerated as tolerated_water
+from tests.sealed.generator.wider import believed_along, wider_rig, wider_runs
+from tests.sealed.generator.worlds import World
+
+Known = Prior | Tolerance
 
 ALL = (*CHANNELS, "photocell")
 _SENSORS = (
@@ -32,12 +43,29 @@ class Campaign:
         Parameters as the campaign's file states them.
     held_out
         Withheld runs, one for each of ``REGIMES``.
+    world
+        Whose assumptions hold.
+    effects
+        The catalogue, each effect in the form that it has here.
+    tolerances
+        What is known within limits beside the rig's and model's own numbers.
+    table
+        What is believed of the water over frequency; ``None`` where constants are.
     """
 
     rig: Rig
     believed: FloatArray
     runs: tuple[Run, ...]
     held_out: tuple[Run, ...]
+    world: World
+    effects: tuple[Effect, ...] = CATALOGUE
+    tolerances: tuple[Known, ...] = ()
+    table: Believed | None = None
+
+    @property
+    def known(self) -> tuple[Known, ...]:
+        """Everything that is known within limits."""
+        return (*priors(self.believed), *self.tolerances)
 
 
 def _rig(rng: np.random.Generator) -> Rig:
@@ -132,14 +160,27 @@ def _withheld(rig: Rig, runs: list[Run]) -> tuple[Run, ...]:
     )  # fmt: skip
 
 
-def design(rng: np.random.Generator) -> Campaign:
-    """Return a campaign: rig, beliefs, 8 to 12 runs in random order and 4 withheld ones."""
-    rig = _rig(rng)
+def design(rng: np.random.Generator, where: World) -> Campaign:
+    """Return a campaign: rig, beliefs, runs in random order and 4 withheld ones."""
+    rig = wider_rig(_rig(rng), where, rng)
     settings = _settings(rig, rng)
     withheld = _withheld(rig, settings)
+    settings = wider_runs(settings, rig, where, rng)
+    if rig.arrangement is not None:
+        # What is foretold is a run among those that were made: its angles are theirs.
+        withheld = tuple(replace(run, drift_by=rig.drift_by) for run in withheld)
     hour, runs = 0.0, []
     for number, i in enumerate(rng.permutation(len(settings)), start=1):
         waited = float(rng.uniform(120.0, 600.0))
         hour += (waited + settings[i].duration_s) / 3600.0
         runs.append(replace(settings[i], name=f"run-{number:02d}", hour=hour, waited_s=waited))
-    return Campaign(rig, believed(rig, rng), tuple(runs), withheld)
+    p = believed(rig, rng)
+    fast = [run.frequency_hz for run in runs]
+    p[P.MIDDLE_HZ] = math.sqrt(min(fast) * max(fast))
+    p[P.MIDDLE_SPEED] = max(run.carriage_speed_m_s for run in settings) or 1.0
+    if rig.arrangement is not None:
+        p = arranged(p, *rig.arrangement)
+        believed_along(p, rig, rng)
+    known = (*tolerated_water(where), *tolerated(where, rng))
+    effects = formed(rng) if "forms" in where else CATALOGUE
+    return Campaign(rig, p, tuple(runs), withheld, where, effects, known)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tests.sealed.generator.gauges import between
 from tests.sealed.generator.parameters import FloatArray
@@ -49,8 +50,17 @@ def upward_crossings(values: FloatArray, times: FloatArray) -> FloatArray:
     return np.asarray(times[at] + part * (times[1] - times[0]))
 
 
+def whole_turns(angle: FloatArray, times: FloatArray) -> FloatArray:
+    """Return where a noise-free angle passes whole turns."""
+    turns = angle / (2.0 * np.pi)
+    if not np.isfinite(turns).all():
+        return np.empty(0)
+    wanted = np.arange(np.ceil(turns[0]), np.floor(turns[-1]) + 1.0)
+    return np.asarray(np.interp(wanted, turns, times))
+
+
 def reference(record: Record, run: Run, sensors: tuple[str, ...]) -> Reference:
-    """Return the straight line through the pulses, or through the aft strut's crossings.
+    """Return the straight line through pulses, the encoder's turns or the aft strut's crossings.
 
     Raises
     ------
@@ -58,7 +68,9 @@ def reference(record: Record, run: Run, sensors: tuple[str, ...]) -> Reference:
         Where half of the revolutions are missing.
     """
     edges = record.edges_s
-    if "photocell" not in sensors:
+    if "photocell" not in sensors and "shaft_angle" in sensors:
+        edges = whole_turns(record.channels[0], record.times_s)
+    elif "photocell" not in sensors:
         edges = upward_crossings(record.channels[1], record.times_s)
     if len(edges) < max(2, (run.periods + 1) // 2):
         raise StalledError(f"{run.name}: {len(edges)} revolutions of {run.periods}")
@@ -94,23 +106,31 @@ def harmonics(values: FloatArray, periods: int) -> tuple[FloatArray, FloatArray,
     return spectrum[..., 0], spectrum[..., own], spectrum[..., half + own]
 
 
-def density(rig: Rig, channel: int, frequency_hz: FloatArray) -> FloatArray:
+def density(rig: Rig, channel: int, frequency_hz: FloatArray, loud: float = 1.0) -> FloatArray:
     """Return the spectral density of a channel's noise, a sample's variance for white noise."""
     noise = rig.noise
     flat = (
         noise.step_rad**2 * (1.0 / 12.0 + DITHER**2),
-        noise.displacement_m**2,
-        noise.displacement_m**2,
+        noise.displacement_m**2 + noise.step_m**2 / 12.0,
+        noise.displacement_m**2 + noise.step_m**2 / 12.0,
         noise.white_n**2 + noise.step_n**2 / 12.0,
         noise.white_n**2 + noise.step_n**2 / 12.0,
         noise.carriage_m_s**2,
     )[channel]
     out = np.full(frequency_hz.shape, flat)
     if channel in (3, 4):
-        keep = np.exp(-1.0 / (noise.colour_s * rig.sample_rate_hz))
         turn = np.exp(-2j * np.pi * frequency_hz / rig.sample_rate_hz)
-        out += noise.coloured_n**2 * (1.0 - keep**2) / np.abs(1.0 - keep * turn) ** 2
+        out += correlated(noise.coloured_n, noise.colour_s * rig.sample_rate_hz, turn)
+        out *= loud**2
+        if noise.wander_n > 0.0:
+            out += correlated(noise.wander_n, noise.wander_s * rig.sample_rate_hz, turn)
     return out
+
+
+def correlated(rms: float, samples: float, turn: NDArray[np.complex128]) -> FloatArray:
+    """Return the spectral density of what is exponentially correlated over so many samples."""
+    keep = np.exp(-1.0 / samples)
+    return np.asarray(rms**2 * (1.0 - keep**2) / np.abs(1.0 - keep * turn) ** 2)
 
 
 @lru_cache(maxsize=512)
@@ -118,7 +138,7 @@ def line_sigma(rig: Rig, run: Run, channel: int) -> FloatArray:
     """Return the standard deviation of each number of :func:`line_spectrum`."""
     count = run.periods / run.frequency_hz * rig.sample_rate_hz
     lines = np.arange(ORDERS * run.periods + 1) / run.periods * run.frequency_hz
-    sigma = np.sqrt(2.0 * density(rig, channel, lines) / count)
+    sigma = np.sqrt(2.0 * density(rig, channel, lines, run.loud) / count)
     if channel == 0:  # the encoder and the pulses share no zero: its mean tells nothing
         sigma[0] = 1e3
     else:
@@ -144,7 +164,8 @@ def _of_still(record: Record, run: Run, rig: Rig, rows: list[int]) -> FloatArray
     frequency = run.frequency_hz or 1.0
     turn = np.exp(-2j * np.pi * frequency * record.times_s)
     line = 2.0 / count * record.channels[rows] @ turn
-    sigma = np.sqrt([density(rig, row, np.array([0.0, frequency])) / count for row in rows])
+    lines = np.array([0.0, frequency])
+    sigma = np.sqrt([density(rig, row, lines, run.loud) / count for row in rows])
     return np.column_stack(
         [
             record.channels[rows].mean(axis=1) / sigma[:, 0],
@@ -169,7 +190,8 @@ def features(
     spectrum = line_spectrum(resampled(record, ref, run.periods)[rows], run.periods)
     sigma = np.array([line_sigma(rig, run, row) for row in rows])
     count = run.periods / run.frequency_hz * rig.sample_rate_hz
-    hum_sigma = [np.sqrt(3.0 * density(rig, r, np.array([HUM_HZ]))[0] / count) for r in forces]
+    mains_hz = np.array([HUM_HZ])
+    hum_sigma = [np.sqrt(3.0 * density(rig, r, mains_hz, run.loud)[0] / count) for r in forces]
     mains = _mains(record, forces) / np.repeat(hum_sigma, 2)
     turn = PULSE_RAD / (2.0 * np.pi) * np.sqrt(12.0 / (run.periods + 1) ** 3)
     frequency = np.log(ref.period_s * run.frequency_hz) / turn

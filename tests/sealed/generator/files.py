@@ -1,7 +1,7 @@
 """The folders of a case: what whoever answers may see, and the key."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,26 +21,11 @@ from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.priors import STATED
 from tests.sealed.generator.recordings import FOREIGN, set_point, write_csv, write_netcdf
 from tests.sealed.generator.rig import CHANNELS, DITHER, Record, Rig, Run
+from tests.sealed.generator.told import further_truth
+from tests.sealed.generator.toml import table
+from tests.sealed.generator.water import table_text
 
 FOREIGN_SHARE = 0.2
-
-
-def _toml(value: Any) -> str:
-    """Return a value as TOML; mappings inline."""
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return json.dumps(value)
-    return str(value) if isinstance(value, int) else repr(float(value))
-
-
-def table(head: str, rows: Mapping[str, Any]) -> str:
-    """Return a table of TOML under its header line."""
-    return "\n".join([head, *(f"{key} = {_toml(value)}" for key, value in rows.items()), ""])
 
 
 def _matrix(p: FloatArray, first: P) -> list[list[float]]:
@@ -58,21 +43,30 @@ def _oscillator(rig: Rig) -> dict[str, Any]:
     }
     if rig.rod_length_m is not None:
         rows["rod_length_m"] = rig.rod_length_m
+    if rig.arrangement is not None:
+        rows |= dict(zip(("joint", "pivot", "gauges"), rig.arrangement, strict=True))
+        rows["drift_by"] = rig.drift_by
     return rows
 
 
 def _acquisition(rig: Rig) -> dict[str, Any]:
     noise = rig.noise
     force = {"noise_rms": round(noise.white_n, 3), "resolution": noise.step_n}
+    if not rig.noise_stated:
+        del force["noise_rms"]
+    strut = {"noise_rms": noise.displacement_m}
+    if noise.step_m > 0.0:
+        strut["resolution"] = noise.step_m
     all_rows = {
         "shaft_angle": {"noise_rms": DITHER * noise.step_rad, "resolution": noise.step_rad},
-        "displacement_aft": {"noise_rms": noise.displacement_m},
-        "displacement_fore": {"noise_rms": noise.displacement_m},
+        "displacement_aft": strut,
+        "displacement_fore": strut,
         "force_aft": force,
         "force_fore": force,
         "carriage_speed": {"noise_rms": noise.carriage_m_s},
     }
-    return {name: row for name, row in all_rows.items() if name in rig.sensors}
+    there: dict[str, Any] = {n: row for n, row in all_rows.items() if n in rig.sensors}
+    return there if "force_fore" in rig.sensors else {**there, "force_fore": False}
 
 
 def _run(run: Run, **more: Any) -> dict[str, Any]:
@@ -88,6 +82,27 @@ def _columns(rig: Rig) -> str:
     return text
 
 
+def _hull(case: Case) -> dict[str, Any]:
+    p = case.campaign.believed
+    hull = {
+        "added_mass": _matrix(p, P.ADDED_00),
+        "damping": _matrix(p, P.DAMPING_00),
+        "restoring": _matrix(p, P.RESTORING_00),
+    }
+    if case.campaign.table is not None:  # it has the diagonals, but for the damping that lasts
+        hull["added_mass"] = _crossed(hull["added_mass"])
+        lasting = case.situation.parameters
+        hull["damping"] = _crossed(hull["damping"], lasting[P.DAMPING_00], lasting[P.DAMPING_11])
+    return hull
+
+
+def _more_water(case: Case) -> Iterator[str]:
+    if case.campaign.table is not None:
+        yield table("[radiation]", {"file": "radiation.csv"})
+    if case.campaign.believed[P.SURGE_UU]:
+        yield table("[surge]", {"x_uu": case.campaign.believed[P.SURGE_UU]})
+
+
 def campaign_text(case: Case, *, foreign: bool) -> str:
     """Return campaign.toml: what is believed, and the runs."""
     rig, p = case.campaign.rig, case.campaign.believed
@@ -97,11 +112,6 @@ def campaign_text(case: Case, *, foreign: bool) -> str:
         "cg_x_m": p[P.CG_X],
         "cg_z_m": p[P.CG_Z],
     }
-    hull = {
-        "added_mass": _matrix(p, P.ADDED_00),
-        "damping": _matrix(p, P.DAMPING_00),
-        "restoring": _matrix(p, P.RESTORING_00),
-    }
     scale = {"full_scale_n": rig.full_scale_n}
     head = table(f'name = "{case.name}"', {})
     if "photocell" not in rig.sensors:
@@ -110,12 +120,13 @@ def campaign_text(case: Case, *, foreign: bool) -> str:
         head,
         table("[oscillator]", _oscillator(rig)),
         table("[model]", model),
-        table("[hull]", hull),
+        table("[hull]", _hull(case)),
+        *_more_water(case),
         table("[dynamometers]", {"aft": scale, "fore": scale}),
         table("[acquisition]", _acquisition(rig)),
         table("[simulation]", {"sample_rate_hz": rig.sample_rate_hz}),
     ]
-    if "photocell" not in rig.sensors:
+    if not tells_turns(rig.sensors):
         parts.append(table("[reference]", {"channel": "displacement_aft"}))
     if foreign:
         parts.append(_columns(rig))
@@ -155,7 +166,7 @@ def _held_out(case: Case, run: Run, record: Record, ref: Reference) -> dict[str,
     """Return the harmonics of a withheld run without noise, with sigma as if it had some."""
     rig = case.campaign.rig
     means, in_phase, quadrature = harmonics(resampled(record, ref, run.periods), run.periods)
-    if "photocell" not in rig.sensors:
+    if not tells_turns(rig.sensors):
         in_phase, quadrature = from_fundamental(in_phase, quadrature)
     own = np.arange(1, ORDERS + 1) * run.periods
     channels = {}
@@ -167,6 +178,17 @@ def _held_out(case: Case, run: Run, record: Record, ref: Reference) -> dict[str,
             "sigma": line_sigma(rig, run, row)[own].tolist(),
         }
     return {"frequency_hz": 1.0 / ref.period_s, "channels": channels}
+
+
+def _crossed(matrix: list[list[float]], *diagonal: float) -> list[list[float]]:
+    """Return a matrix with another diagonal, of nothing if none is given."""
+    first, last = diagonal or (0.0, 0.0)
+    return [[float(first), matrix[0][1]], [matrix[1][0], float(last)]]
+
+
+def tells_turns(sensors: tuple[str, ...]) -> bool:
+    """Tell whether a sensor counts the shaft's own turns: photocell or encoder."""
+    return "photocell" in sensors or "shaft_angle" in sensors
 
 
 def from_fundamental(in_phase: FloatArray, quadrature: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -228,6 +250,8 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
         "held_out": dict(held_out),
         "ceiling": None,
     }
+    if case.campaign.world.name != "A":
+        out |= further_truth(case)
     if content.effects and content.verdict != "none":
         absent = {name for answer in case.right for name in answer}
         near = case.templates.imitators(case.signature, sorted(absent))
@@ -252,6 +276,8 @@ def write(case: Case, cases: Path, keys: Path) -> None:
         else:
             write_netcdf(folder / f"{run.name}.nc", made, run, rig)
     (folder / "campaign.toml").write_text(campaign_text(case, foreign=foreign))
+    if case.campaign.table is not None:
+        (folder / "radiation.csv").write_text(table_text(case.campaign.table, rig.plane))
     (folder / "case.toml").write_text(case_text(case))
     held_out = {}
     for run, (clean, ref) in zip(case.campaign.held_out, case.withheld, strict=True):

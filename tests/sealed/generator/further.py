@@ -27,7 +27,8 @@ _KEYS = {
 def case_of(key: Path) -> Case:
     """Return the case that a key's folder belongs to, made again."""
     truth = json.loads((key / "truth.json").read_text())
-    return make(int(truth["seed"]), int(truth["index"]), null=bool(truth["null"]))
+    return make(int(truth["seed"]), int(truth["index"]), null=bool(truth["null"]),
+                where=str(truth.get("world", "A")))  # fmt: skip
 
 
 def parsed(wanted: Mapping[str, Any], last: Run) -> Run:

@@ -27,6 +27,19 @@ def loop_of(force: FloatArray, strength: float) -> FloatArray:
 
 
 @compiled
+def bouc_wen_of(force: FloatArray, strength: float) -> FloatArray:
+    """Return what a Bouc-Wen loop adds to a reading, as wide as the sum of plays at its middle."""
+    top = np.max(np.abs(force)) + 1e-12
+    added, z = np.zeros(len(force)), 0.0
+    for n in range(1, len(force)):
+        step = (force[n] - force[n - 1]) / (0.3 * top)
+        z += step if z * step < 0.0 else step * (1.0 - z * z)
+        z = min(max(z, -1.0), 1.0)
+        added[n] = -0.5 * strength * top * top * z
+    return added
+
+
+@compiled
 def recursive(signal: FloatArray, decay: float, late: float, early: float) -> FloatArray:
     """Return y of ``y_n = decay y_(n-1) + late u_n + early u_(n-1)``, settled at the first u."""
     out = np.empty(len(signal))

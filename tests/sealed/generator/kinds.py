@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from tests.sealed.generator.background import QUIET_PARTS, Background
-from tests.sealed.generator.catalogue import BY_NAME, CATALOGUE
+from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.ceiling import applicable
 from tests.sealed.generator.design import Campaign
 from tests.sealed.generator.effect import Effect
@@ -14,6 +14,7 @@ from tests.sealed.generator.outside import ABOVE, ALSO_RIGHT, OUTSIDE, TWINS
 from tests.sealed.generator.parameters import FloatArray
 from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import INVISIBLE, Sized, sized
+from tests.sealed.generator.worlds import World
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,6 +31,8 @@ CASE_KINDS: dict[Kind, float] = {
     "outside": 0.15,
     "twin": 0.05,
 }
+GAP_KINDS: dict[Kind, float] = {"single": 0.46, "pair": 0.15, "outside": 0.34, "twin": 0.05}
+"""Of the worlds whose cases all have a gap."""
 NULL_KINDS: dict[Kind, float] = {"none": 0.8, "friction-above": 0.2}
 COEFFICIENTS = ("added-mass-error", "damping-error")
 DETERMINABLE = 3.0
@@ -71,16 +74,24 @@ class Content:
         return p
 
 
-def drawn_kind(rng: np.random.Generator, *, null: bool) -> Kind:
+def drawn_kind(rng: np.random.Generator, where: World, *, null: bool) -> Kind:
     """Return a kind with its share as probability."""
-    shares = NULL_KINDS if null else CASE_KINDS
+    gaps = GAP_KINDS if "clear_snr" in where else CASE_KINDS
+    shares = NULL_KINDS if null else gaps
     kinds = list(shares)
     return kinds[int(rng.choice(len(kinds), p=list(shares.values())))]
 
 
-def wanted_snr(rng: np.random.Generator) -> float:
-    """Return an SNR: evenly on a logarithmic scale from 2 to 200."""
-    return float(np.exp(rng.uniform(np.log(2.0), np.log(200.0))))
+def wanted_snr(rng: np.random.Generator, where: World) -> float:
+    """Return an SNR: evenly on a logarithmic scale from 2 to 200, or as the world has it."""
+    if "clear_snr" not in where:
+        return float(np.exp(rng.uniform(np.log(2.0), np.log(200.0))))
+    return where.value("weak_snr" if where.happens("weak_share", rng) else "clear_snr", rng)
+
+
+def least_snr(where: World) -> float:
+    """Return the SNR below which a world has no gap."""
+    return float(where.draws["weak_snr"][0]) if "weak_snr" in where else 0.0
 
 
 @dataclass(frozen=True)
@@ -106,6 +117,9 @@ class Drawing:
         if kept is None:
             raise NothingFitsError(f"no effect in {tries} tries whose own parts stay unseen")
         return kept
+
+    def _wanted(self) -> float:
+        return wanted_snr(self.rng, self.campaign.world)
 
     def _pool(self, effects: tuple[Effect, ...]) -> list[Effect]:
         return [
@@ -146,12 +160,12 @@ class Drawing:
         )
 
     def _single(self) -> Content:
-        found = self._one(self._pool(CATALOGUE), wanted_snr(self.rng))
+        found = self._one(self._pool(self.campaign.effects), self._wanted())
         return Content("single", "gap", (found,), ((found.effect.name,),), (found.effect.stage,))
 
     def _pair(self) -> Content:
-        pool = self._pool(CATALOGUE)
-        wanted = max(wanted_snr(self.rng), 8.0)
+        pool = self._pool(self.campaign.effects)
+        wanted = max(self._wanted(), 8.0)
         first = self._one(pool, wanted)
         others = [e for e in pool if e.name != first.effect.name and not e.rebased]
         second = self._one(others, wanted * float(self.rng.uniform(0.6, 1.6)))
@@ -172,7 +186,7 @@ class Drawing:
         return replace(second, size=-second.size) if float(one @ two) > 0.0 else second
 
     def _outside(self) -> Content:
-        found = self._one(self._pool(OUTSIDE), max(wanted_snr(self.rng), 5.0))
+        found = self._one(self._pool(OUTSIDE), max(self._wanted(), 5.0))
         also = tuple((name,) for name in ALSO_RIGHT.get(found.effect.name, ()))
         return Content("outside", "unknown", (found,), also, (found.effect.stage,))
 
@@ -180,7 +194,7 @@ class Drawing:
         there = [twin for twin in TWINS if applicable(twin.effect, self.campaign)]
         twin = there[int(self.rng.integers(len(there)))]
         found = sized(
-            self.situation, self.projection, twin.effect, max(wanted_snr(self.rng), 5.0), self.rng
+            self.situation, self.projection, twin.effect, max(self._wanted(), 5.0), self.rng
         )
         right = tuple((name,) for name in twin.right)
         return Content("twin", twin.verdict, (found,), right, twin.stages, twin.separated_by)

@@ -8,8 +8,9 @@ import numpy as np
 from tests.sealed.generator.arranged import drifted
 from tests.sealed.generator.compiled import wide
 from tests.sealed.generator.integrate import integrate
-from tests.sealed.generator.parameters import FloatArray, P, neutral
+from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Rig, Run
+from tests.sealed.generator.water import varied
 
 # Longest step on rigid gauges, and on gauges, frames or clearances that give way.
 RIGID_STEP_S, LOOSE_STEP_S = 5.1e-3, 0.7e-3
@@ -19,6 +20,8 @@ SETTLING_PERIODS = 3.0
 # What the gauges' stiffness becomes where a clearance needs one, N/m.
 CONTACT_N_M = 2e7
 KERNEL_S = 5.0
+# The water has forgotten the start after so many times of its memory.
+FORGOTTEN = 6.0
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,9 @@ def set_run(p: FloatArray, run: Run) -> FloatArray:
     q[P.STRUT_PHASE], q[P.SPEED] = run.strut_phase_rad, run.carriage_speed_m_s
     q[P.WATER] = float(run.medium == "water")
     q[P.HOUR], q[P.WAITED], q[P.PRELOAD] = run.hour, run.waited_s, run.preload_n
+    if q[P.KELVIN_SHAPE] > 0.0:
+        q[P.HOUR] = 0.5 * (1.0 - math.exp(-2.0 * run.hour))
+    varied(q, run)
     if q[P.EXACT]:
         drifted(q, run.drift_rad, run.drift_by)
     if run.kind == "check-weight":
@@ -53,20 +59,32 @@ def set_run(p: FloatArray, run: Run) -> FloatArray:
 def retardation(p: FloatArray, interval_s: float) -> FloatArray:
     """Return both retardation functions at the sample interval, ``(2, taps)``; one tap if none.
 
-    The memory's is exponential or Gaussian; echoes from the walls come back as widening bumps.
+    The memory's is exponential or Gaussian, a damped cosine or one with a slow tail; echoes from
+    the walls come back as widening bumps, or as a standing wave.
     """
-    if p[P.MEMORY_0] == p[P.MEMORY_1] == p[P.ECHO] == 0.0:
+    own = p[[P.KERNEL_0, P.KERNEL_1]]
+    if p[P.MEMORY_0] == p[P.MEMORY_1] == p[P.ECHO] == 0.0 and not own.any():
         return np.zeros((2, 1))
     tau = np.arange(0.0, KERNEL_S, interval_s)
     scaled = p[P.MEMORY_RATE] * tau
     shape = np.exp(-scaled) if p[P.MEMORY_SHAPE] == 0.0 else np.exp(-np.pi / 4.0 * scaled**2)
+    if p[P.MEMORY_SHAPE] == 2.0:
+        shape = 1.0 / (1.0 + scaled) ** 2
+    elif p[P.MEMORY_SHAPE] == 3.0:
+        shape = np.exp(-0.5 * scaled) * np.cos(scaled)
     echo = np.zeros_like(tau)
     for bounce in range(1, 5):
         width = 0.06 * p[P.ECHO_DELAY] * (1.0 + 0.3 * bounce)
         bump = np.exp(-(((tau - bounce * p[P.ECHO_DELAY]) / width) ** 2))
         echo += p[P.ECHO_DECAY] ** (bounce - 1) * bump / (width * math.sqrt(math.pi))
+    if p[P.ECHO_SHAPE] > 0.0:
+        turn = 2.0 * math.pi / p[P.ECHO_DELAY]
+        echo = turn * np.exp(-0.05 * turn * tau) * np.cos(turn * tau) / math.pi
     first = p[P.MEMORY_0] * shape + p[P.ECHO] * p[P.ADDED_00] * echo
-    return np.vstack([first, p[P.MEMORY_1] * shape + p[P.ECHO] * p[P.ADDED_11] * echo])
+    both = np.vstack([first, p[P.MEMORY_1] * shape + p[P.ECHO] * p[P.ADDED_11] * echo])
+    if own.any():
+        both += own[:, None] * np.exp(-p[P.KERNEL_RATE] * tau) * np.cos(p[P.KERNEL_OMEGA] * tau)
+    return both
 
 
 def _is_loose(p: FloatArray) -> bool:
@@ -76,8 +94,8 @@ def _is_loose(p: FloatArray) -> bool:
 
 def needs_more(p: FloatArray) -> bool:
     """Tell whether a reality has what only the wide program knows."""
-    ours = slice(P.EXACT, None)
-    return bool(np.any(p[ours] != neutral()[ours]) or p[P.ARC] > 1.5)
+    angles_and_ripple, forms = p[P.EXACT : P.KERNEL_0], p[P.TEETH_SHAPE : P.ECHO_SHAPE]
+    return bool(angles_and_ripple.any() or forms.any() or p[P.ARC] > 1.5)
 
 
 def _gear_step_s(p: FloatArray) -> float:
@@ -92,7 +110,10 @@ def happen(p: FloatArray, run: Run, rig: Rig, *, settling: float = SETTLING_PERI
         q[P.GAUGE_STIFFNESS] = CONTACT_N_M
         q[P.GAUGE_DAMPING] = 2e4
     period = 1.0 / run.frequency_hz if run.turns else 1.0
-    before, samples = (round(x * rig.sample_rate_hz) for x in (settling * period, run.duration_s))
+    settled_s = settling * period
+    if q[P.KERNEL_0] or q[P.KERNEL_1]:
+        settled_s = max(settled_s, FORGOTTEN / float(q[P.KERNEL_RATE]))
+    before, samples = (round(x * rig.sample_rate_hz) for x in (settled_s, run.duration_s))
     step = min(LOOSE_STEP_S if loose else RIGID_STEP_S, _gear_step_s(q))
     substeps = math.ceil(1.0 / (rig.sample_rate_hz * step))
     interval = 1.0 / rig.sample_rate_hz

@@ -31,6 +31,7 @@ def set_point(run: Run) -> dict[str, Any]:
         "strut_phase_rad": run.strut_phase_rad,
         "carriage_speed_m_s": run.carriage_speed_m_s,
         "medium": run.medium,
+        **({"drift_rad": run.drift_rad} if run.drift_rad else {}),
     }
 
 

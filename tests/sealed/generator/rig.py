@@ -29,8 +29,9 @@ DITHER = 0.5
 class Noise:
     """Noise of the sensors: root mean squares, SI units.
 
-    ``coloured_n`` is exponentially correlated over ``colour_s``; the converter's step of the force
-    channels is ``step_n``, that of the encoder ``step_rad``.
+    ``coloured_n`` is exponentially correlated over ``colour_s``, as the zero's ``wander_n`` is over
+    ``wander_s``; the converter's step of the force channels is ``step_n``, that of the encoder
+    ``step_rad``, that of the strut sensors ``step_m`` (0: none).
     """
 
     white_n: float
@@ -40,11 +41,24 @@ class Noise:
     displacement_m: float
     step_rad: float = 9.587379924285257e-5
     carriage_m_s: float = 1e-3
+    wander_n: float = 0.0
+    wander_s: float = 100.0
+    step_m: float = 0.0
 
 
 @dataclass(frozen=True)
 class Rig:
-    """What does not change from run to run."""
+    """What does not change from run to run.
+
+    Attributes
+    ----------
+    arrangement
+        Joint, pivot and gauges of a rig with angles of any size; ``None`` for small ones.
+    still_reads_zero
+        Whether the carriage's channel is exactly 0 where it stands.
+    noise_stated
+        Whether the campaign's file tells the noise of the forces.
+    """
 
     plane: Literal["vertical", "horizontal"]
     half_spacing_m: float
@@ -53,6 +67,10 @@ class Rig:
     sensors: tuple[str, ...]
     noise: Noise
     full_scale_n: float = 500.0
+    arrangement: tuple[str, str, str] | None = None
+    drift_by: str = "rig_turned"
+    still_reads_zero: bool = False
+    noise_stated: bool = True
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ linear matcher that knows the priors.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -22,6 +22,14 @@ from tests.sealed.generator.rig import Rig, Run
 from tests.sealed.generator.sensing import sense
 
 Drawn = Mapping[P, float]
+
+
+class Shown(Protocol):
+    """A nuisance that says itself what it changes."""
+
+    def shown(self, situation: "Situation") -> FloatArray:
+        """Return what one standard deviation changes, in sigma."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -97,8 +105,10 @@ class Situation:
         """Return by how much other parameters change the features, whole records throughout."""
         return self.features_of(p, None) - self.base(None)
 
-    def of_prior(self, prior: Prior) -> FloatArray:
+    def of_prior(self, prior: "Prior | Shown") -> FloatArray:
         """Return what one standard deviation of a nuisance changes, in sigma."""
+        if not isinstance(prior, Prior):
+            return prior.shown(self)
         p = prior.put(self.parameters, 1.0)
         return self.features_of(p, 0.25) - self.base(0.25)
 
@@ -136,7 +146,7 @@ class Projection:
     basis: FloatArray  # (features + nuisances, nuisances), orthonormal
 
     @classmethod
-    def of(cls, situation: Situation, priors: tuple[Prior, ...]) -> Self:
+    def of(cls, situation: Situation, priors: "tuple[Prior | Shown, ...]") -> Self:
         """Return the projection of a situation with these priors."""
         given = [situation.of_prior(prior) for prior in priors]
         return cls.out_of(np.column_stack([*given, situation.of_pulses()]))

@@ -8,13 +8,11 @@ from typing import Any, Self
 import numpy as np
 
 from tests.sealed.generator.case import Case
-from tests.sealed.generator.catalogue import CATALOGUE
 from tests.sealed.generator.ceiling import Library, applicable
 from tests.sealed.generator.effect import Effect
 from tests.sealed.generator.features import StalledError
 from tests.sealed.generator.further import case_of, parsed
 from tests.sealed.generator.parameters import FloatArray
-from tests.sealed.generator.priors import priors
 from tests.sealed.generator.signatures import Projection, Situation
 
 DRAWS = 300
@@ -55,7 +53,7 @@ class Told:
         p = situation.parameters
         for effect in case.content.effects:
             p = effect.put(p)
-        known = priors(case.campaign.believed)
+        known = case.campaign.known
         return cls(
             np.column_stack([situation.of_prior(prior) for prior in known]),
             situation.of_pulses(),
@@ -108,7 +106,7 @@ def values(key: Path, wanted: Sequence[Mapping[str, Any]]) -> list[float]:
     right = {name for answer in case.right for name in answer}
     if not right:
         raise ValueError(f"{key.name}: nothing of the catalogue is right, so no run has a worth")
-    effects = [effect for effect in CATALOGUE if applicable(effect, case.campaign)]
+    effects = [effect for effect in case.campaign.effects if applicable(effect, case.campaign)]
     sizes = [(e, case.situation.tamed(e, e.typical)[0]) for e in effects]
     told = Told.by(case, case.situation, sizes)
     seed = (case.seed, case.index, 4)
