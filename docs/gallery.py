@@ -175,7 +175,7 @@ def _small(figure: "Figure") -> bytes:
     """Return a figure as a small PNG of few colours."""
     from PIL import Image
 
-    from pmm.report.style import drawing
+    from pmm.document.style import drawing
 
     drawn, small = BytesIO(), BytesIO()
     with drawing():

@@ -10,7 +10,7 @@ import numpy as np
 from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
 from pmm.classic_rows import ClassicRow, classic_rows
-from pmm.labels import units_loads_first
+from pmm.document.labels import units_loads_first
 
 if TYPE_CHECKING:
     from analysis.resolver.analysis import Analysis
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 # Of a channel's largest value: what is as small is left by the arithmetic.
 _ROUNDING = 1e-12
-_OPEN_DEG = 90.0  # half-width of a phase that is not known
 # An amplitude this many times its half-width is no play of the noise.
 _SIGNIFICANT = 2.0
 
@@ -46,11 +45,6 @@ def floored(value: float, half_width: float, size: float) -> tuple[float, float]
     """
     floor = _ROUNDING * size
     return 0.0 if abs(value) < floor else value, max(half_width, floor)
-
-
-def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
-    """Whether a phase is not known: its interval takes in half the circle, or nothing turns."""
-    return phase_half_width_deg >= _OPEN_DEG or amplitude == 0.0
 
 
 @dataclass(frozen=True)

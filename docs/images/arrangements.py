@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hardware.description.arrangement import DriftBy, Joint
-from pmm.report.style import PALETTE, TRACE, drawing, write_figure
+from pmm.document.style import PALETTE, TRACE, drawing, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,8 +14,8 @@ from analysis.readers import read_recording
 from analysis.readers.columns_toml import read_column_map
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
+from pmm.document.style import drawing
 from pmm.report.plots import FIGURES
-from pmm.report.style import drawing
 
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parents[1] / "examples"

@@ -3,10 +3,10 @@
 from typing import TYPE_CHECKING
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from pmm.cli.printing import counted
 from pmm.cli.screen import print_flags
 from pmm.coefficients.workflow import Outcome
-from pmm.flag_lines import joined
+from pmm.document.flag_lines import joined
+from pmm.document.notation import counted
 from pmm.report.campaign_tables import Grid, beside_tables, recommended_table, value_tables
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pmm.cli.screen import error_line, messages
-from pmm.flag_lines import joined
+from pmm.document.flag_lines import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

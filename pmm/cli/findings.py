@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
-from pmm.cli.printing import counted
+from pmm.document.notation import counted
 from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
 
 if TYPE_CHECKING:

@@ -1,6 +1,5 @@
 """What ``pmm gap CAMPAIGN`` does: examine the campaign, then print, write the page, keep it."""
 
-import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -17,12 +16,13 @@ from pmm.cli.folders import check_files
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.cli.sections import print_sections
+from pmm.document.data import as_json
+from pmm.document.terminal import print_document
 from pmm.gap.case import CASE_FILE
+from pmm.gap.document import document
 from pmm.gap.examine import Examined, examine
 from pmm.gap.prepare import campaign_file
-from pmm.gap.report import PROPOSED, GapReport, gap_report
-from pmm.gap.sections import sections
+from pmm.gap.report import PROPOSED, gap_report
 from pmm.parallel import open_executor
 from pmm.whole_file import write_whole
 
@@ -55,18 +55,19 @@ def run(request: GapDiagnoseOptions) -> None:
     _check_files(request)
     found = examined(request)
     report = gap_report(found)
+    told = document(report)
     if request.as_json:
-        click.echo(json.dumps(report.as_dict(), indent=1, allow_nan=False))
+        click.echo(as_json(told))
     else:
-        print_report(output(), report)
+        print_document(output(), told)
         if report.conclusion.adds:
             added = pasted("gap", "add", request.campaign, *request.words())
             output().print(added, soft_wrap=True)
     if request.page is not None:
-        from pmm.report.gap_page import write_gap_page
+        from pmm.document.page import write_page
 
         command = pasted("gap", request.campaign, *request.words(), "--page", request.page)
-        write_gap_page(report, Path(request.page), command=command)
+        write_page(told, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
     if request.plan is not None:
         _write_plan(found, Path(request.plan))
@@ -130,20 +131,3 @@ def progress() -> Iterator[Callable[[str], None]]:
         return
     with console.status("reading") as status:
         yield lambda said: status.update(said)
-
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-
-def print_report(console: "Console", report: GapReport) -> None:
-    """Print a diagnosis for people."""
-    wrong, *others = report.said
-    for line in (f"{report.campaign}: {wrong}", *others):
-        console.print(line, style="bold", soft_wrap=True)
-    console.print(f"\n{report.used}", soft_wrap=True)
-    for name, reason in report.left_out.items():
-        console.print(f"LEFT OUT {name}: {reason}", soft_wrap=True)
-    for note in report.notes:
-        console.print(f"NOTE     {note}", soft_wrap=True)
-    print_sections(console, sections(report))

@@ -1,28 +1,22 @@
 """What ``pmm gap pendulum`` does: read, diagnose, print."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from analysis.gap.pendulum.diagnose import Diagnosis
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.gap_diagnose_work import progress
 from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output
-from pmm.cli.sections import print_sections
+from pmm.document.content import Document
+from pmm.document.data import as_json
+from pmm.document.terminal import print_document
 from pmm.gap.pendulum_conclusion import conclusion_of
-from pmm.gap.pendulum_document import document
-from pmm.gap.pendulum_examine import Examined, Options, examine_pendulum
-from pmm.gap.pendulum_sections import sections
-from pmm.gap.pendulum_words import sentences
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from pmm.gap.pendulum_document import RECORD, document
+from pmm.gap.pendulum_examine import Options, examine_pendulum
 
 
 @dataclass(frozen=True)
@@ -54,39 +48,29 @@ def run(request: GapPendulumOptions) -> None:
         check_folder(Path(request.plot), "--plot")
     with progress() as shown:
         examined = examine_pendulum(path, request.options, shown)
-    found = examined.diagnosis
+    told = document(path.stem, examined)
     if request.as_json:
-        told = document(path.stem, examined, sentences(found))
-        click.echo(json.dumps(told, indent=1, allow_nan=False))
+        click.echo(as_json(told))
     else:
-        _print(output(), examined)
-        if conclusion_of(found).adds:
+        print_document(output(), told)
+        if conclusion_of(examined.diagnosis).adds:
             added = pasted("gap", "add-pendulum", request.file, *request.words())
             output().print(f"\n{added}", soft_wrap=True)
     if request.plot is not None:
-        _draw(found, Path(request.plot))
+        _draw(told, Path(request.plot))
     if request.page is not None:
-        from pmm.report.pendulum_page import write_pendulum_page
+        from pmm.document.page import write_page
 
         words = (*request.words(), "--page", request.page)
         command = pasted("gap", "pendulum", request.file, *words)
-        write_pendulum_page(examined, path.stem, Path(request.page), command=command)
+        write_page(told, Path(request.page), command=command)
         messages().print(f"page: {request.page}")
 
 
-def _draw(found: Diagnosis, folder: Path) -> None:
-    from pmm.report.pendulum_figures import swings_figure
-    from pmm.report.style import write_figure
+def _draw(told: Document, folder: Path) -> None:
+    from pmm.document.style import write_figure
 
-    for at in range(len(found.problem.trials)):
-        for path in write_figure(swings_figure(found, at), folder, f"gap-{at + 1}", ("svg",)):
+    records = (one for one in told.figures if one.name.startswith(RECORD))
+    for at, one in enumerate(records, 1):
+        for path in write_figure(one.draw(), folder, f"gap-{at}", ("svg",)):
             messages().print(str(path), soft_wrap=True)
-
-
-def _print(console: "Console", examined: Examined) -> None:
-    found = examined.diagnosis
-    for line in sentences(found):
-        console.print(line, style="bold", soft_wrap=True)
-    for note in examined.notes:
-        console.print(f"NOTE  {note}", soft_wrap=True)
-    print_sections(console, sections(found))

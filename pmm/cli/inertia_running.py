@@ -1,6 +1,5 @@
 """What ``pmm inertia`` does: run a job, then print, plot and write the model's section."""
 
-import json
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -8,16 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pmm.cli.inertia_printing import print_outcome
 from pmm.cli.screen import busy, messages, output
-from pmm.inertia.document import document
+from pmm.document.data import as_json
+from pmm.document.style import write_figures
+from pmm.document.terminal import print_document
 from pmm.inertia.fits import form_fits
 from pmm.inertia.model_file import check_output, model_section
-from pmm.inertia.outcome import Outcome
+from pmm.report.inertia_document import document
 from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from pmm.inertia.outcome import Outcome
 
 # Job -> module and function.
 _RUNS = {
@@ -61,21 +63,16 @@ def run(request: InertiaOptions) -> None:
     with busy(f"{request.job}: {request.file}"):
         outcome = job(request.file)
         fits = form_fits(outcome) if request.fits else ()
+    told = document(outcome, fits)
     if request.as_json:
-        click.echo(json.dumps(document(outcome, fits), indent=1, allow_nan=False))
+        click.echo(as_json(told))
     else:
-        print_outcome(output(), outcome, fits)
+        print_document(output(), told)
     if request.plot is not None:
-        _plot(outcome, Path(request.plot), Path(request.file).stem)
+        written = write_figures(told.figures, Path(request.plot), Path(request.file).stem)
+        messages().print(f"written: {len(written)} figures in {request.plot}")
     if target is not None:
         write_whole(target, model_section(outcome))
         messages().print(f"written: {target}")
     if outcome.said_no:
         click.get_current_context().exit(1)
-
-
-def _plot(outcome: Outcome, folder: Path, stem: str) -> None:
-    from pmm.report.inertia_plots import save_figures
-
-    written = save_figures(outcome, folder, stem)
-    messages().print(f"written: {len(written)} figures in {folder}")

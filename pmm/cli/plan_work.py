@@ -15,8 +15,8 @@ from pmm.cli.documents import without_nan
 from pmm.cli.findings import condition_table, finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
-from pmm.cli.printing import counted
 from pmm.cli.screen import output
+from pmm.document.notation import counted
 from pmm.plan.checks import check_plan
 from pmm.plan.duration import duration_rows, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
@@ -84,8 +84,8 @@ def show(file: str, *, plot: str | None, as_json: bool) -> None:
 
 
 def _draw(plan: Plan, rig: RigFile, folder: Path) -> list[Path]:
+    from pmm.document.style import write_figure
     from pmm.report.matrix_figure import matrix_figure
-    from pmm.report.style import write_figure
 
     return write_figure(matrix_figure(plan, rig), folder, f"{plan.name}-matrix")
 

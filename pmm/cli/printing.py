@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pmm.cli.screen import print_flags
-from pmm.labels import display
-from pmm.tables import floored, format_value, is_open
+from pmm.document.labels import display
+from pmm.document.notation import counted, is_open
+from pmm.tables import floored, format_value
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -44,11 +45,6 @@ def print_run(console: "Console", rows: "RunRows", level: float) -> None:
     _print_classic(console, rows)
     print_flags(console, rows.flags)
     console.print()
-
-
-def counted(number: int, what: str) -> str:
-    """Return ``1 run``, ``2 runs``."""
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _print_let_through(console: "Console", rows: "RunRows") -> None:

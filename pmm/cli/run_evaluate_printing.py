@@ -116,7 +116,7 @@ def _filled(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> 
 
 def _with_width(value: float, half_width: float) -> str:
     """Return a value with its half-width; empty where there is none."""
-    from pmm.report.rounding import rounded
+    from pmm.document.notation import rounded
 
     return "" if math.isnan(value) else rounded(value, half_width)
 

@@ -163,9 +163,9 @@ def _write(found: Evaluation, folder: Path) -> list[Path]:
 def _draw(found: Evaluation, plot: str | None) -> list[Path]:
     if plot is None:
         return []
+    from pmm.document.style import drawing, write_figure
     from pmm.report.control_chart import chart_figure
     from pmm.report.slow_tests import drift_figure, resistance_figure, restoring_figure
-    from pmm.report.style import drawing, write_figure
 
     water = found.water
     wanted = {

@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 from hardware.description.channels import SHAFT_ANGLE
-from pmm.cli.printing import counted
 from pmm.cli.terminal import Terminal
+from pmm.document.notation import counted
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
 from pmm.run.status import ChannelReading, RunOutcome, RunStatus

@@ -7,7 +7,7 @@ from typing import IO, TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hardware.description.flags import Flag, Severity
+    from hardware.description.flags import Flag
 
 T = TypeVar("T")
 
@@ -65,11 +65,6 @@ def busy(what: str) -> Iterator[Callable[[float], None]]:
         yield lambda part: status.update(f"{what}: {100.0 * part:.0f} % read")
 
 
-def flag_style(severity: "Severity") -> str:
-    """Return the colour of a severity; the word itself is always printed too."""
-    return {"note": "cyan", "warning": "yellow", "void": "bold red"}[severity]
-
-
 def print_flags(console: "Console", flags: "Iterable[Flag]", *, hints: bool = True) -> None:
     """Print flags, equal ones in one line: severity, where, message, options for it, and code.
 
@@ -78,16 +73,9 @@ def print_flags(console: "Console", flags: "Iterable[Flag]", *, hints: bool = Tr
     hints
         Whether the options of ``pmm analyse`` are the reader's to use.
     """
-    from rich.text import Text
-
     from pmm.cli.hints import FLAG_OPTIONS
-    from pmm.flag_lines import flag_lines
+    from pmm.document.content import Notes
+    from pmm.document.flag_lines import flag_notes
+    from pmm.document.terminal import print_content
 
-    for one in flag_lines(flags):
-        line = Text.assemble(
-            (f"{one.severity.upper():8s}", flag_style(one.severity)),
-            one.text,
-            f" ({FLAG_OPTIONS[one.code]})" if hints and one.code in FLAG_OPTIONS else "",
-            (f" [{one.code}]", "dim"),
-        )
-        console.print(line, soft_wrap=True)
+    print_content(Notes(flag_notes(flags, FLAG_OPTIONS if hints else {})), console)

@@ -20,9 +20,9 @@ from pmm.campaign.order import place_in
 from pmm.campaign.runs import AtRest, Run
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
-from pmm.cli.printing import counted
 from pmm.cli.screen import output, print_flags, show_progress
 from pmm.cli.simulating_zeros import simulate_zero, zero_runs
+from pmm.document.notation import counted
 from pmm.recorder.campaign_owner import own_new_campaign
 from pmm.whole_file import write_whole
 from sim.effects.catalogue import build, user_effects

@@ -1,7 +1,7 @@
 """What an effect does to the coefficients that a user reports."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -95,26 +95,6 @@ class CoefficientRow:
         pairs = ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
         told = [f"{value:g} {unit}" for value, unit in pairs if not math.isnan(value)]
         return f"{self.name} at {', '.join(told)}" if told else self.name
-
-    @property
-    def said(self) -> tuple[str, ...]:
-        """What stands below :func:`headings`."""
-        found = (
-            self.where,
-            self.unit,
-            f"{self.stated:.6g}",
-            f"{self.without:.6g} ± {2.0 * self.u_without:.2g}",
-        )
-        if not self.compared:
-            return found
-        return *found, f"{self.with_effect:.6g} ± {2.0 * self.u_with:.2g}", f"{self.bias_u:+z.1f}"
-
-
-def headings(rows: Sequence[CoefficientRow]) -> tuple[str, ...]:
-    """Return what stands above the rows of a table: name and unit first, then numbers."""
-    if any(one.compared for one in rows):
-        return "coefficient", "unit", "stated", "fitted without effect", "with it", "bias [u]"
-    return "coefficient", "unit", "stated", "fitted"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,16 +1,20 @@
 """What a pendulum's diagnosis comes to: the one value from which every word about it is made."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.verdict import NONE, UNKNOWN
+from analysis.gap.pendulum.hypothesis import Hypothesis
+from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict
 from analysis.inertia.spread import SURE
 from pmm.gap.conclusion import TAKES_IT
 
 CAUSE: Final = "cause"
 UNTOLD: Final = "untold"
+_SHOWN: Final = 8  # answers
+_LEAST: Final = 1e-4  # probability that is worth a row
 
 
 @dataclass(frozen=True)
@@ -70,3 +74,31 @@ def conclude(
     else:
         verdict = CAUSE if foretells >= SURE else UNTOLD
     return Conclusion(verdict, names, foretells)
+
+
+def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:
+    """Yield the answers that are not out of the question, the most probable first."""
+    for at, (names, share) in enumerate(verdict.by_set.items()):
+        if at < _SHOWN and (share > _LEAST or not at):
+            yield " and ".join(names) or "no gap", share
+
+
+def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
+    """Yield classes and single causes that are not out of the question, and both verdicts."""
+    for name, share in {**verdict.by_class, **verdict.by_cause}.items():
+        if share > _LEAST or name in (NONE, UNKNOWN):
+            yield name, share
+
+
+def parameters(best: Hypothesis) -> dict[str, dict[str, dict[str, float]]]:
+    """Return each cause's parameters: value and standard uncertainty (before inflation)."""
+    spread = best.posterior.covariance.diagonal() ** 0.5
+    found: dict[str, dict[str, dict[str, float]]] = {}
+    at = 0
+    for one in best.causes:
+        rows = found.setdefault(one.name, {})
+        for axis in one.axes:
+            value = axis.value(float(best.units[at]))
+            rows[axis.name] = {"value": value, "uncertainty": axis.deviation * float(spread[at])}
+            at += 1
+    return found

@@ -1,88 +1,230 @@
-"""A pendulum's diagnosis as a document for programs."""
+"""What ``pmm gap pendulum`` shows: said once, for the terminal, the page and programs."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator
+from functools import partial
 from typing import Any, Final
 
+from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.hypothesis import Hypothesis
-from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict, told_apart
-from pmm.gap.pendulum_conclusion import conclusion_of
+from analysis.gap.pendulum.verdict import Law, told_apart
+from analysis.gap.pendulum.withheld import Foretold
+from pmm.document.content import (
+    Column,
+    Content,
+    Data,
+    Document,
+    Figure,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    data_only,
+    number,
+    word,
+)
+from pmm.document.notation import percent, written
+from pmm.gap import pendulum_figures as figures
+from pmm.gap.pendulum_conclusion import classes, conclusion_of, parameters, ranking
 from pmm.gap.pendulum_examine import Examined
-from pmm.gap.plain import plain_values
+from pmm.gap.pendulum_words import sentences
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
-_SHOWN = 8  # answers
-_LEAST = 1e-4  # probability that is worth a row
+RECORD: Final = "record"
+"""How the names of the records' figures begin."""
+_PROPOSED: Final = 6
+_SHARE: Final = percent("z.1f")
+_ONE: Final = written(".1f")
+_TWO: Final = written(".2f")
+
+_U: Final = "Below, u is the standard uncertainty of a number: a difference of 1 u is noise."
+_E: Final = (
+    "E is measured minus simulated, u its standard uncertainty, in windows of whole swings: "
+    "amplitude (decay), phase (period), mean, third harmonic. E/u is their ratio, root mean "
+    "square: 1 is noise alone. As stated, the releases alone are fitted; what is known within "
+    "tolerances is fitted too after that."
+)
+_HEAT: Final = (
+    "E/u of each record and kind of observable, window by window: as stated, and with the best "
+    "answer. Light is noise."
+)
+_RANKING: Final = "Answers by probability: sets of causes, something unknown, no gap."
+_LAWS: Final = (
+    "Each law beside what else the answer holds. One is told from the best only if the whole "
+    "record prefers the best by a factor of 20, and the other foretells no withheld swings better "
+    "by more than 0.2 u. ln evidence ratio: the natural logarithm of by how much the record "
+    "prefers the best; 3 is a factor of 20."
+)
+_REGIMES: Final = (
+    "Swings that were not fitted to: the gap in u, and by how much an answer shrinks it."
+)
+_WITHHELD: Final = "The gap of swings that the fit has not seen, with the answer and a wrong cause."
+_SWINGS: Final = "Amplitude and phase, measured and simulated; both simulations are fitted freely."
+
+WHERE: Final = (
+    word("where", "kind"),
+    number("as stated", "stated", _TWO, "u"),
+    number("tolerances fitted", "before", _TWO, "u"),
+    number("with the answer", "after", _TWO, "u"),
+    *data_only("count"),
+)
+ALTERNATIVES: Final = (
+    word("in place of", "instead_of"),
+    word("could be", "name"),
+    number("ln evidence ratio", "log_ratio", _ONE),
+)
+NEXT: Final[tuple[Column[Any], ...]] = (
+    Column("next run", lambda one: one.what, "what"),
+    Column("expected ln evidence", lambda one: one.gain, "gain_ln_evidence", _ONE, number=True),
+)
 
 
-def document(name: str, examined: Examined, said: Sequence[str]) -> dict[str, Any]:
-    """Return everything that was found, as plain numbers and texts; what is not known is null.
+def document(name: str, examined: Examined) -> Document:
+    """Return what is shown of a diagnosis.
 
     Parameters
     ----------
-    said
-        The same for people.
+    name
+        What the records are of.
     """
+    return Document(name, "measured and simulated", tuple(_sections(name, examined)), SCHEMA)
+
+
+def _sections(name: str, examined: Examined) -> Iterator[Section]:
+    """Yield what there is to show, in the order in which it is read."""
     found = examined.diagnosis
+    yield Section(
+        "",
+        (
+            Text(sentences(found), "said", strong=True),
+            Text((_U,)),
+            Notes([Note("note", one) for one in examined.notes], "notes"),
+            Data("name", name),
+            *_numbers(found),
+        ),
+    )
+    heat = Figure("heat", _HEAT, partial(figures.heat_map, found))
+    yield Section("Where", (Text((_E,)), heat, Table("Where", WHERE, found.where, "where")))
+    yield Section("Which", tuple(_which(found)))
+    laws = Table("Laws of damping", _law_columns(found), found.laws, "laws")
+    yield Section("Laws of damping", (Text((_LAWS,) if found.laws else ()), laws))
+    yield Section("How far", tuple(_how_far(found)))
+    yield Section("Records", tuple(_records(found)))
+    yield _remains(found)
+    yield _next(found)
+
+
+def _numbers(found: Diagnosis) -> Iterator[Data]:
+    """Yield what programs alone get."""
     verdict = found.verdict
-    told = {
-        "schema": SCHEMA,
-        "name": name,
-        "verdict": conclusion_of(found).verdict,
-        "said": list(said),
-        "notes": list(examined.notes),
-        "best": list(verdict.best),
-        "inflation": verdict.inflation,
-        "probabilities": {
-            "+".join(names) or "none": share
-            for names, share in verdict.by_set.items()
-            if share > 1e-9
-        },
-        "classes": verdict.by_class,
-        "causes": verdict.by_cause,
-        "parameters": parameters(found.settled.best),
-        "where": [asdict(one) for one in found.where],
-        "laws": [
-            {
-                "name": law.name,
-                "log_ratio": law.log_ratio,
-                "withheld_u": list(law.withheld),
-                "told_apart": told_apart(found.laws[0], law),
-            }
-            for law in found.laws
-        ],
-        "alternatives": [asdict(one) for one in found.alternatives],
-        "withheld": [asdict(one) for one in found.regimes],
-        "rivals": [list(one.names) for one in found.rivals or ()],
-        "next": [{"what": one.what, "gain_ln_evidence": one.gain} for one in found.proposals],
-    }
-    plain: dict[str, Any] = plain_values(told)
-    return plain
+    shares = {"+".join(names) or "none": share for names, share in verdict.by_set.items()}
+    yield Data("verdict", conclusion_of(found).verdict)
+    yield Data("best", verdict.best)
+    yield Data("inflation", verdict.inflation)
+    yield Data("probabilities", {key: share for key, share in shares.items() if share > 1e-9})
+    yield Data("classes", verdict.by_class)
+    yield Data("causes", verdict.by_cause)
+    yield Data("parameters", parameters(found.settled.best))
+    yield Data("withheld", found.regimes)
+    yield Data("rivals", [one.names for one in found.rivals or ()])
 
 
-def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:
-    """Yield the answers that are not out of the question, the most probable first."""
-    for at, (names, share) in enumerate(verdict.by_set.items()):
-        if at < _SHOWN and (share > _LEAST or not at):
-            yield " and ".join(names) or "no gap", share
+def _which(found: Diagnosis) -> Iterator[Content]:
+    sets = {" and ".join(names): one for names, one in found.searched.sets.items() if names}
+    sets[" and ".join(found.best.names)] = found.settled.best
+    answers: tuple[Column[tuple[str, float]], ...] = (
+        Column("answer", lambda one: one[0]),
+        Column("parameters (u)", lambda one: fitted(sets[one[0]]) if sets.get(one[0]) else ""),
+        Column("probability", lambda one: one[1], written=_SHARE, number=True),
+    )
+    shares: tuple[Column[tuple[str, float]], ...] = (
+        Column("class, or cause in any set", lambda one: one[0]),
+        answers[-1],
+    )
+    yield Text(("Answers by their probability.",))
+    yield Figure("ranking", _RANKING, partial(figures.ranking_figure, found))
+    yield Table("Answers", answers, tuple(ranking(found.verdict)))
+    yield Table("Classes and causes", shares, tuple(classes(found.verdict)))
+    yield Table("Alternatives", ALTERNATIVES, found.alternatives, "alternatives")
 
 
-def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
-    """Yield classes and single causes that are not out of the question, and both verdicts."""
-    for name, share in {**verdict.by_class, **verdict.by_cause}.items():
-        if share > _LEAST or name in (NONE, UNKNOWN):
-            yield name, share
+def fitted(one: Hypothesis) -> str:
+    """Return a set's parameters with their standard uncertainties."""
+    return "; ".join(
+        f"{name}: {key} = {value['value']:.4g} ± {value['uncertainty']:.2g}"
+        for name, rows in parameters(one).items()
+        for key, value in rows.items()
+    )
 
 
-def parameters(best: Hypothesis) -> dict[str, dict[str, dict[str, float]]]:
-    """Return each cause's parameters: value and standard uncertainty (before inflation)."""
-    spread = best.posterior.covariance.diagonal() ** 0.5
-    found: dict[str, dict[str, dict[str, float]]] = {}
-    at = 0
-    for one in best.causes:
-        rows = found.setdefault(one.name, {})
-        for axis in one.axes:
-            value = axis.value(float(best.units[at]))
-            rows[axis.name] = {"value": value, "uncertainty": axis.deviation * float(spread[at])}
-            at += 1
-    return found
+def _law_columns(found: Diagnosis) -> tuple[Column[Law], ...]:
+    def apart(law: Law) -> bool:
+        return told_apart(found.laws[0], law)
+
+    def said(law: Law) -> str:
+        return "" if law is found.laws[0] else "yes" if apart(law) else "no"
+
+    def gaps(withheld: list[float]) -> str:
+        return ", ".join(map(_ONE, withheld))
+
+    return (
+        word("law of damping", "name"),
+        number("ln evidence ratio", "log_ratio", _ONE),
+        Column("withheld gap", lambda law: law.withheld, "withheld_u", gaps, "u", number=True),
+        Column("told apart", said, number=True),
+        Column(None, apart, "told_apart"),
+    )
+
+
+def _how_far(found: Diagnosis) -> Iterator[Content]:
+    """Yield, for each withheld regime, what each set of causes leaves of its gap."""
+    if found.regimes:
+        yield Text((_REGIMES,))
+        yield Figure("withheld", _WITHHELD, partial(figures.withheld_figure, found))
+    for regime in found.regimes:
+        title = f"withheld: {regime.name}"
+        columns: tuple[Column[Foretold], ...] = (
+            Column(title, lambda one: _asked(one, found)),
+            Column("gap", lambda one: one.gap, written=_ONE, unit="u", number=True),
+            Column("shrinks by", lambda one: one.shrinkage, written=_SHARE, number=True),
+            Column("95 %", lambda one: f"{_SHARE(one.low)} to {_SHARE(one.high)}", number=True),
+        )
+        yield Table(title, columns, (regime.before, *regime.foretold))
+
+
+def _asked(one: Foretold, found: Diagnosis) -> str:
+    control = "wrong cause: " if one.causes == found.control and one.causes else ""
+    return control + (", ".join(one.causes) or "no cause")
+
+
+def _records(found: Diagnosis) -> Iterator[Figure]:
+    for at, trial in enumerate(found.problem.trials):
+        draw = partial(figures.swings_figure, found, at)
+        yield Figure(f"{RECORD}{at + 1}", f"{trial.name}. {_SWINGS}", draw)
+
+
+def _remains(found: Diagnosis) -> Section:
+    wide = found.verdict.inflation
+    line = (
+        f"All evidence is weakened by {wide:.2f}, the chi-square per degree of freedom that the "
+        "search's best fit leaves."
+    )
+    columns: tuple[Column[Any], ...] = (
+        word("where", "kind"),
+        Column("verdict", lambda one: "gap" if one.beyond else "no gap"),
+        number("E/u", "after", _TWO),
+    )
+    left = Table("Remainder", columns, found.where)
+    return Section("What remains", (Text((line,) if wide > 1.0 else ()), left))
+
+
+def _next(found: Diagnosis) -> Section:
+    lines: tuple[str, ...] = ()
+    if found.proposals and found.rivals is not None:
+        one, other = (" + ".join(rival.names) for rival in found.rivals)
+        lines = (
+            "Records that a further test can make, by the ln evidence that the right one of two "
+            f"answers is expected to gain at least, whichever is right: {one}, or {other}.",
+        )
+    runs = Table("Next", NEXT, found.proposals, "next", most=_PROPOSED)
+    return Section("Next", (Text(lines), runs))

@@ -20,8 +20,7 @@ from analysis.gap.pendulum.verdict import (
     remainder,
 )
 from analysis.inertia.spread import said_of
-from pmm.gap.pendulum_conclusion import Conclusion, conclusion_of
-from pmm.gap.pendulum_document import parameters
+from pmm.gap.pendulum_conclusion import Conclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE
 
 FASTER: Final = "damping that grows faster than linearly"

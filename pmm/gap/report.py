@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Final
 
 from analysis.gap.description import Description
@@ -21,7 +21,6 @@ from pmm.gap.cells import Cell, heat_cells
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.conclusion import Conclusion
 from pmm.gap.examine import Examined
-from pmm.gap.plain import plain_values
 from pmm.gap.reported import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes
@@ -29,7 +28,6 @@ from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
 from pmm.gap.words import Remedies, joined, sentences
 
-JSON_SCHEMA: Final = "pmm-gap-1"
 _SHOWN: Final = 8  # hypotheses of the ranking
 _LEAST: Final = 1e-4
 PROPOSED: Final = 5  # runs
@@ -71,29 +69,6 @@ class GapReport:
     cells: tuple[Cell, ...]
     description: Description | None
     next_runs: tuple[dict[str, Any], ...]
-
-    @property
-    def used(self) -> str:
-        """How many runs it rests on, and what u is."""
-        held = f", {len(self.held_out)} withheld" if self.held_out else ""
-        return (
-            f"{len(self.runs)} runs used{held}, {len(self.left_out)} left out. Below, u is the "
-            "standard uncertainty of a number: a difference of 1 u is noise."
-        )
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return it as a document for programs; what is not known is ``null``."""
-        rows, found = asdict(self), self.conclusion
-        whole = rows.pop("conclusion")
-        told = {
-            "verdict": found.verdict,
-            "class_probability": found.probability,
-            "takes": found.weighing.takes,
-            "walk": whole["walk"],
-            "remains": whole["remains"],
-        }
-        document: dict[str, Any] = {"schema": JSON_SCHEMA, **plain_values({**rows, **told})}
-        return document
 
 
 def gap_report(examined: Examined) -> GapReport:

@@ -12,9 +12,9 @@ from analysis.gap.fit import Fit
 from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
+from pmm.document.labels import display
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.steps import StepRow
-from pmm.labels import display
 
 _UNITS: Final = {
     **dict.fromkeys(FORCES, "N"),

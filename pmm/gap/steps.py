@@ -1,6 +1,5 @@
 """The walk along the chain as rows: the difference step by step, and what an answer leaves."""
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -58,12 +57,6 @@ class StepRow:
         """The largest number, and what is out of its tolerance."""
         off = [f"{name} off by {units:+.1f} tolerances" for name, units in self.strained.items()]
         return "; ".join([self.worst, *off])
-
-    @property
-    def said(self) -> tuple[str, str, str]:
-        """E/u as stated and after the free numbers, and how many numbers were compared."""
-        stated = f"{self.stated_u:.2f}" if math.isfinite(self.stated_u) else "-"
-        return stated, f"{self.gap_u:.2f}", str(self.count)
 
 
 def step_row(one: Gap, strained: Mapping[str, float] = MappingProxyType({})) -> StepRow:

@@ -7,7 +7,9 @@ from pathlib import Path
 from analysis.coefficients.recommendation import recommended
 from pmm.coefficients.reading import sha256_of
 from pmm.coefficients.workflow import Outcome
-from pmm.flag_lines import FlagLine, flag_lines
+from pmm.document.flag_lines import FlagLine, flag_lines
+from pmm.document.inline import inline_svg
+from pmm.document.style import render
 from pmm.report.campaign_tables import (
     Grid,
     budget_table,
@@ -18,9 +20,7 @@ from pmm.report.campaign_tables import (
     value_tables,
 )
 from pmm.report.coefficient_plots import figures
-from pmm.report.inline import inline_svg
 from pmm.report.page import write_template
-from pmm.report.style import render
 from pmm.version import provenance
 
 

@@ -12,7 +12,7 @@ from analysis.coefficients.form_choice import BEYOND_DOUBT
 from analysis.coefficients.recommendation import recommended
 from analysis.coefficients.stated_uncertainties import STATED
 from pmm.coefficients.workflow import Outcome
-from pmm.report.rounding import rounded
+from pmm.document.notation import rounded
 
 _FEW_DIGITS = 0.1
 _DASH = "–"

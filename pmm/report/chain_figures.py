@@ -13,8 +13,8 @@ from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.order import place_in
 from pmm.campaign.runs import Run
-from pmm.labels import display, plain
-from pmm.report.style import PALETTE, TRACE, drawing, write_figure
+from pmm.document.labels import display, plain
+from pmm.document.style import PALETTE, TRACE, drawing, write_figure
 from sim import signals
 from sim.effects.effect import Effect
 from sim.effects.switching import switch_on

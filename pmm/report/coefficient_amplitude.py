@@ -7,6 +7,7 @@ import numpy as np
 from analysis.coefficients.campaign_records import LINEAR
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of, place_of
+from pmm.document.style import drawing
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
@@ -16,7 +17,6 @@ from pmm.report.coefficient_panels import (
     points,
     settle,
 )
-from pmm.report.style import drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,9 +9,9 @@ import numpy as np
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.recommendation import recommended
-from pmm.labels import plain
-from pmm.report.rounding import rounded
-from pmm.report.style import PALETTE, drawing
+from pmm.document.labels import plain
+from pmm.document.notation import rounded
+from pmm.document.style import PALETTE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,6 +9,7 @@ from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
 from analysis.coefficients.recommendation import recommended
+from pmm.document.style import PALETTE, TRACE, drawing
 from pmm.report.campaign_tables import amplitudes
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
@@ -19,7 +20,6 @@ from pmm.report.coefficient_panels import (
     points,
     settle,
 )
-from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from pmm.labels import plain
-from pmm.report.style import PALETTE
+from pmm.document.labels import plain
+from pmm.document.style import PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from pmm.document.style import write_figure
 from pmm.report.coefficient_amplitude import amplitude_figure, has_amplitudes
 from pmm.report.coefficient_budget import budget_figure, budget_rows
 from pmm.report.coefficient_frequency import frequency_figure, panels_of
-from pmm.report.style import write_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

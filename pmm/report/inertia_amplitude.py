@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.inertia.record import ModeAnalysis, RecordAnalysis
+from pmm.document.labels import display, plain, shown_name
+from pmm.document.style import PALETTE, TRACE, drawing
 from pmm.inertia.sources import PeriodRuns
-from pmm.labels import display, plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,10 +4,10 @@ from textwrap import shorten
 from typing import TYPE_CHECKING
 
 from analysis.inertia.monte_carlo import Assessment
+from pmm.document.labels import plain
+from pmm.document.notation import rounded
+from pmm.document.style import PALETTE, TRACE, drawing
 from pmm.inertia.outcome import Finding, Outcome
-from pmm.labels import plain
-from pmm.report.rounding import rounded
-from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

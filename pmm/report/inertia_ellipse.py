@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.inertia.principal_axes import inertia_ellipse
+from pmm.document.labels import plain
+from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.inertia.outcome import PlaneAxes
-from pmm.labels import plain
-from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
+from pmm.document.labels import plain, shown_name
+from pmm.document.style import FIT, PALETTE, drawing
 from pmm.inertia.sources import PeriodRuns
-from pmm.labels import plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS
-from pmm.report.style import FIT, PALETTE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

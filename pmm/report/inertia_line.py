@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pmm.document.labels import plain
+from pmm.document.style import PALETTE, drawing
 from pmm.inertia.outcome import Outcome
-from pmm.labels import plain
-from pmm.report.style import PALETTE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

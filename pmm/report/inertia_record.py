@@ -7,10 +7,10 @@ import numpy as np
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
 from hardware.description.arrays import FloatArray
+from pmm.document.labels import display, plain, shown_name
+from pmm.document.style import FIT, STEADY_SHADE, TRACE, drawing
 from pmm.inertia.sources import PeriodRuns
-from pmm.labels import display, plain, shown_name
 from pmm.report.envelope import zigzag
-from pmm.report.style import FIT, STEADY_SHADE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -8,10 +8,10 @@ from analysis.inertia.beats import beat_period
 from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from hardware.description.arrays import FloatArray
+from pmm.document.labels import display, plain, shown_name
+from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.inertia.sources import PeriodRuns
-from pmm.labels import display, plain, shown_name
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
-from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pmm.document.labels import plain, shown_name
+from pmm.document.style import PALETTE, TRACE, drawing
 from pmm.inertia.outcome import StaticTest
-from pmm.labels import plain, shown_name
-from pmm.report.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

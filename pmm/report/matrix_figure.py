@@ -9,12 +9,12 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.kinds import RunKind
+from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.plan.findings import PlanVerdict
 from pmm.plan.limits import limit_findings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

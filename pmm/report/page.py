@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from analysis.resolver.analysis import Analysis
-from pmm.flag_lines import FlagLine, flag_lines
-from pmm.labels import plain
-from pmm.report.inline import inline_svg
+from pmm.document.flag_lines import FlagLine, flag_lines
+from pmm.document.inline import inline_svg
+from pmm.document.labels import plain
+from pmm.document.style import render
 from pmm.report.plots import FIGURES
-from pmm.report.style import render
 from pmm.report.tabulate import GateTable, gate_table, provenance, versions
 from pmm.whole_file import write_whole
 
@@ -83,7 +83,7 @@ def write_template(
     )
     environment.filters["markup"] = Markup
     template = environment.from_string(files(package).joinpath(name).read_text(encoding="utf-8"))
-    style = files("pmm.report").joinpath("page.css").read_text(encoding="utf-8")
+    style = files("pmm.document").joinpath("page.css").read_text(encoding="utf-8")
     page = template.render(style=style, **content)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A file name may hold bytes that are no text; they must not cost the page.

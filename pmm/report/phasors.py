@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
-from pmm.labels import Display, display, loads_first, shown_name
+from pmm.document.labels import Display, display, loads_first, shown_name
+from pmm.document.style import PALETTE, drawing
 from pmm.report.gated import caption, reading_of, single_periods
 from pmm.report.region import Ellipse, ellipses
-from pmm.report.style import PALETTE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from analysis.resolver.analysis import Analysis
 from hardware.description.errors import ConfigurationError
+from pmm.document.style import write_figure
 from pmm.report.gate import gate_figure
 from pmm.report.phasors import phasor_figure
 from pmm.report.spectrum import spectrum_figure
-from pmm.report.style import write_figure
 
 __all__ = ["FIGURES", "gate_figure", "phasor_figure", "save_figures", "spectrum_figure"]
 

@@ -10,8 +10,8 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
-from pmm.labels import display, shown_name
-from pmm.report.style import PALETTE, drawing, write_figure
+from pmm.document.labels import display, shown_name
+from pmm.document.style import PALETTE, drawing, write_figure
 from sim.effects.agreement import phasor
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation

@@ -13,8 +13,8 @@ from analysis.coefficients.term_waves import MOVES, waves_of
 from analysis.coefficients.terms import VELOCITY_LETTERS, term_of
 from analysis.coefficients.tows import Tow
 from hardware.description.kinds import RunKind
-from pmm.report.rounding import rounded
-from pmm.report.style import FIT, PALETTE
+from pmm.document.notation import rounded
+from pmm.document.style import FIT, PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,10 +10,10 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights
 from hardware.description.arrays import FloatArray
-from pmm.labels import axis_label, display, loads_first, shown_name
+from pmm.document.labels import axis_label, display, loads_first, shown_name
+from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.report.envelope import tops
 from pmm.report.gated import caption, gate_sums, in_words, reading_of
-from pmm.report.style import FIT, PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,10 +8,10 @@ import numpy as np
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.version import version_of
-from pmm.flag_lines import FlagLine, flag_lines
-from pmm.labels import display, loads_first, plain
+from pmm.document.flag_lines import FlagLine, flag_lines
+from pmm.document.labels import display, loads_first, plain
+from pmm.document.notation import rounded, rounded_phase
 from pmm.report.gated import caption
-from pmm.report.rounding import rounded, rounded_phase
 from pmm.tables import floored, window_kind
 
 # What a window is called by how it was come by.

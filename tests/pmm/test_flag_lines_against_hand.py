@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.description.flags import Flag, Severity
-from pmm.flag_lines import flag_lines
+from pmm.document.flag_lines import flag_lines
 
 
 def repaired(run: str, channel: str, samples: int) -> Flag:

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pmm.tables import format_value, is_open
+from pmm.document.notation import is_open
+from pmm.tables import format_value
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def roll(tmp_path: Path) -> Path:
 
 def test_the_cause_is_named_added_and_gone(roll: Path) -> None:
     before = run("pendulum", roll, *FEW)
-    assert before.stdout.startswith("The cause: ")
+    assert before.stdout.startswith("roll: The cause: ")
     assert "quadratic_drag: loss = " in before.stdout
     assert f"gap add-pendulum {roll} --most 1 --effects quadratic_drag" in before.stdout
     done = run("add-pendulum", roll, *FEW)
@@ -50,8 +50,8 @@ def test_the_cause_is_named_added_and_gone(roll: Path) -> None:
     assert added["name"] == "quadratic_drag"
     assert added["parameters"] == {"loss": pytest.approx(LOSS, rel=2e-3)}
     after = run("pendulum", roll, *FEW)
-    assert after.stdout.startswith("No gap: ")
-    assert "NOTE  the simulation has quadratic_drag on" in after.stdout
+    assert after.stdout.startswith("roll: No gap: ")
+    assert "NOTE    the simulation has quadratic_drag on" in after.stdout
     again = run("add-pendulum", roll, *FEW)
     assert again.exit_code == 1
     assert "No gap: " in again.stderr
@@ -138,7 +138,7 @@ def test_longer_lines_of_a_rod_are_named_added_and_gone(tmp_path: Path) -> None:
     (added,) = tomllib.loads(path.read_text())["effects"]
     assert added["name"] == "line_excess"
     assert added["parameters"]["excess_m"] == pytest.approx(EXCESS_M, rel=0.1)
-    assert run("pendulum", path, *ASKED).stdout.startswith("No gap: ")
+    assert run("pendulum", path, *ASKED).stdout.startswith(f"{path.stem}: No gap: ")
 
 
 def test_an_effect_in_the_file_is_the_body_stated_so(tmp_path: Path) -> None:

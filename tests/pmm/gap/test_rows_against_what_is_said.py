@@ -4,33 +4,37 @@ import math
 
 import pytest
 
-from pmm.gap.pendulum_sections import percent
-from pmm.gap.rows import ControlRow, Ranked
+from pmm.document.notation import NOT_KNOWN, percent
+from pmm.gap.document import interval, parameters, shrinks
+from pmm.gap.rows import ControlRow
 from tests.pmm.gap.rigs import run
 
 
-def shrinks(share: float, low: float, high: float, before: float = 10.0) -> tuple[str, ...]:
-    return ControlRow("any", before, before * (1.0 - share), share, low, high).said[2:]
+def control(share: float, low: float, high: float, before: float = 10.0) -> tuple[str, str]:
+    one = ControlRow("any", before, before * (1.0 - share), share, low, high)
+    return shrinks(one), interval(one)
 
 
 def test_a_share_that_rounds_to_nothing_has_no_sign() -> None:
-    assert shrinks(-0.003, -0.004, 0.002) == ("0 %", "0 to 0 %")
-    assert shrinks(-0.02, -0.09, 0.15) == ("-2 %", "-9 to 15 %")
-    assert percent(-0.0004) == "0.0 %"
+    assert control(-0.003, -0.004, 0.002) == ("0 %", "0 to 0 %")
+    assert control(-0.02, -0.09, 0.15) == ("-2 %", "-9 to 15 %")
+    assert percent("z.1f")(-0.0004) == "0.0 %"
 
 
 def test_what_is_not_known_is_a_dash() -> None:
-    assert shrinks(0.5, math.nan, math.nan) == ("50 %", "-")
-    assert shrinks(0.0, 0.0, 0.0, before=0.0) == ("-", "-")
+    assert control(0.5, math.nan, math.nan) == ("50 %", NOT_KNOWN)
+    assert control(0.0, 0.0, 0.0, before=0.0) == (NOT_KNOWN, NOT_KNOWN)
 
 
 def test_a_parameter_that_is_held_has_no_interval() -> None:
-    parameters = {
+    held = {
         "force_n": {"value": 0.30126, "low": 0.3, "high": 0.3025},
         "since_zero_s": {"value": 1800.0, "low": 1800.0, "high": 1800.0},
     }
-    one = Ranked("any", 0.9, 0.0, "structure", [{"name": "any", "parameters": parameters}], {}, [])
-    assert one.parameters == ["force_n = 0.3013 (0.3 to 0.3025)", "since_zero_s = 1800"]
+    assert parameters([{"name": "any", "parameters": held}]) == [
+        "force_n = 0.3013 (0.3 to 0.3025)",
+        "since_zero_s = 1800",
+    ]
 
 
 @pytest.mark.parametrize("command", ["diagnose", "add", "answer"])

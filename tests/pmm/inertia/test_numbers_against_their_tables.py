@@ -7,11 +7,12 @@ import pytest
 from click.testing import CliRunner
 
 from pmm.cli import cli
+from pmm.document.data import as_data
+from pmm.document.style import write_figures
 from pmm.inertia import bifilar, swing
-from pmm.inertia.document import document
 from pmm.inertia.outcome import Outcome
 from pmm.inertia.sources import PeriodSource
-from pmm.report.inertia_plots import save_figures
+from pmm.report.inertia_document import document
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "inertia"
 
@@ -31,7 +32,7 @@ def test_the_hull_of_the_recipe_comes_back(hull: Outcome) -> None:
 
 
 def test_shares_add_up_and_json_has_no_nan(hull: Outcome) -> None:
-    text = json.loads(json.dumps(document(hull), allow_nan=False))
+    text = json.loads(json.dumps(as_data(document(hull)), allow_nan=False))
     for row in text["results"].values():
         if "budget" in row:
             assert sum(line["share_percent"] for line in row["budget"]) == pytest.approx(100.0)
@@ -42,19 +43,22 @@ def test_shares_add_up_and_json_has_no_nan(hull: Outcome) -> None:
 
 
 def test_the_same_document_twice(hull: Outcome) -> None:
-    assert document(hull) == document(bifilar.run(str(EXAMPLES / "hull.toml")))
+    again = bifilar.run(str(EXAMPLES / "hull.toml"))
+    assert as_data(document(hull)) == as_data(document(again))
 
 
 def test_the_table_prints_the_documents_numbers(hull: Outcome) -> None:
     arguments = ["inertia", "bifilar", str(EXAMPLES / "hull.toml")]
     printed = CliRunner().invoke(cli, arguments, catch_exceptions=False).stdout
-    row = document(hull)["results"]["k_yaw_m"]
+    row = as_data(document(hull))["results"]["k_yaw_m"]
     assert f"{row['value']:.5f} ± {row['standard_uncertainty']:.5f}" in printed
     assert f"{row['interval_95'][0]:.5g} to {row['interval_95'][1]:.5g}" in printed
 
 
 def test_figures_of_records_are_drawn(hull: Outcome, tmp_path: Path) -> None:
-    written = {path.name for path in save_figures(hull, tmp_path, "hull", ("svg",))}
+    written = {
+        path.name for path in write_figures(document(hull).figures, tmp_path, "hull", ("svg",))
+    }
     assert written == {
         "hull-stern-yaw-record.svg",
         "hull-stern-yaw-amplitude.svg",

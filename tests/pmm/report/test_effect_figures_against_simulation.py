@@ -5,9 +5,9 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import SetPoint
+from pmm.document.style import render
 from pmm.report.chain_figures import chain_figure, traces
 from pmm.report.signature_figure import channels_of, signature_figure, signature_grid
-from pmm.report.style import render
 from sim.effects.catalogue import build
 from sim.rig import SimulatedRig, vertical_rig
 

@@ -11,8 +11,8 @@ from matplotlib import _pylab_helpers
 
 from analysis.resolver.analysis import Analysis
 from hardware.description.errors import ConfigurationError
+from pmm.document.style import render
 from pmm.report.plots import FIGURES, save_figures
-from pmm.report.style import render
 from tests.pmm.report.runs import analysed, run
 
 HOSTILE = ("<script>alert(1)</script>", '_hidden $x^2$ \\frac & \'q" id="a"', "力\x00\n\x1b")

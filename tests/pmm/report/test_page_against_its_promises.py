@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from pmm.document.notation import rounded, rounded_phase
 from pmm.report.page import write_page
-from pmm.report.rounding import rounded, rounded_phase
 from pmm.tables import floored
 from tests.pmm.report.runs import analysed, run
 

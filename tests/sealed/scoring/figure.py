@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Final
 
-from pmm.report.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawing
 from tests.sealed.scoring.rows import RowScore
 from tests.sealed.scoring.score import Score
 

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from pmm.report.inline import inline_svg
+from pmm.document.inline import inline_svg
+from pmm.document.style import render
 from pmm.report.page import write_template
-from pmm.report.style import render
 from pmm.report.tabulate import versions
 from tests.sealed.scoring.figure import score_figure
 from tests.sealed.scoring.score import Score

@@ -13,7 +13,7 @@ def inline_svg(svg: bytes, prefix: str, description: str) -> str:
     Parameters
     ----------
     svg
-        A file that :func:`pmm.report.style.render` made.
+        A file that :func:`pmm.document.style.render` made.
     prefix
         Goes before every id and every reference to one.
     description

@@ -1,12 +1,15 @@
 """Flags as lines for people: equal ones stand once, with the runs and channels that they are of."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from hardware.description.flags import Flag, Severity
+from pmm.document.content import Note
 
 _NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+NONE: Mapping[str, str] = MappingProxyType({})
 _NAMED = 12  # names in one line; JSON holds all
 _ORDER = (Severity.VOID, Severity.WARNING, Severity.NOTE)
 
@@ -50,6 +53,24 @@ def flag_lines(flags: Iterable[Flag]) -> tuple[FlagLine, ...]:
         key = (_ORDER.index(flag.severity), flag.code, _words(flag))
         groups.setdefault(key, []).append(flag)
     return tuple(_line(groups[key]) for key in sorted(groups, key=lambda key: key[0]))
+
+
+def flag_notes(flags: Iterable[Flag], options: Mapping[str, str] = NONE) -> list[Note]:
+    """Return a note for each kind of flag, the gravest first.
+
+    Parameters
+    ----------
+    options
+        By code, what a reader can do about it.
+    """
+    return [
+        Note(
+            str(one.severity),
+            f"{one.text} ({options[one.code]})" if one.code in options else one.text,
+            one.code,
+        )
+        for one in flag_lines(flags)
+    ]
 
 
 def _line(alike: Sequence[Flag]) -> FlagLine:

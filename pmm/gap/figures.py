@@ -8,11 +8,10 @@ import numpy as np
 from analysis.gap.description import ForceMap
 from analysis.gap.where import CHAIN
 from hardware.description.arrays import FloatArray
+from pmm.document.labels import plain
+from pmm.document.style import PALETTE, TRACE, drawing
 from pmm.gap.cells import HARMONIC, Cell
-from pmm.gap.report import GapReport
-from pmm.gap.words import joined
-from pmm.labels import plain
-from pmm.report.heat import (
+from pmm.gap.heat import (
     AFTER,
     BEFORE,
     LEAST_U,
@@ -23,7 +22,8 @@ from pmm.report.heat import (
     logarithmic,
     probability_bars,
 )
-from pmm.report.style import PALETTE, TRACE, drawing
+from pmm.gap.report import GapReport
+from pmm.gap.words import joined
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from io import BytesIO
@@ -14,6 +14,8 @@ from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from pmm.document.content import Figure as DocumentFigure
 
 # Okabe and Ito's colours, told apart with any colour vision; their yellow is lost on white.
 PALETTE: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -134,6 +136,28 @@ def write_figure(
     for path, suffix in zip(paths, formats, strict=True):
         write_whole(path, render(figure, suffix, name))
     return paths
+
+
+def write_figures(
+    figures: Iterable["DocumentFigure"],
+    folder: Path,
+    stem: str,
+    formats: Sequence[str] = ("svg", "png"),
+) -> list[Path]:
+    """Write figures of a document as ``<stem>-<name>.<format>`` and return the files.
+
+    Raises
+    ------
+    ConfigurationError
+        If a format is not known or the stem is no plain file name.
+    """
+    if not stem or Path(stem).name != stem:
+        raise ConfigurationError(f"figures cannot be named {stem!r}; give a name without a folder")
+    return [
+        path
+        for one in figures
+        for path in write_figure(one.draw(), folder, f"{stem}-{one.name}", formats)
+    ]
 
 
 def compact(svg: bytes) -> bytes:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from pmm.labels import plain
-from pmm.report.style import PALETTE, TRACE, drawing
+from pmm.document.labels import plain
+from pmm.document.style import PALETTE, TRACE, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

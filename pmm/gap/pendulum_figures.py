@@ -10,10 +10,10 @@ from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import as_stated, remainder
 from hardware.description.arrays import FloatArray
-from pmm.gap.pendulum_document import ranking
-from pmm.labels import plain
-from pmm.report.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
-from pmm.report.style import PALETTE, TRACE, drawing
+from pmm.document.labels import plain
+from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.gap.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
+from pmm.gap.pendulum_conclusion import ranking
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

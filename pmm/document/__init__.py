@@ -1,0 +1,1 @@
+"""One content, three renderers: what a command found, for a terminal, a page and programs."""

@@ -1,0 +1,61 @@
+"""How numbers and names are written for people: digits, intervals, shares, rows of names."""
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+NOT_KNOWN: Final = "–"
+_NEGLIGIBLE: Final = 1e-8  # of a value: its digits would run on without saying more
+_SIGNIFICANT: Final = 4  # digits where no interval says how many
+_OPEN_DEG: Final = 90.0  # half-width of a phase that is not known
+
+
+def written(form: str, unit: str = "") -> Callable[[float], str]:
+    """Return how a number is written by a format; one that is not known is a dash."""
+    return lambda value: f"{value:{form}}{unit}" if math.isfinite(value) else NOT_KNOWN
+
+
+def percent(form: str) -> Callable[[float], str]:
+    """Return how a share is written in per cent."""
+    return lambda share: written(form, " %")(100.0 * share)
+
+
+def rounded(value: float, half_width: float) -> str:
+    """Return ``value ± half_width`` with two digits of the latter, as many places in both.
+
+    A value alone, in four digits, where there is no interval; a dash for no number at all.
+    """
+    if not math.isfinite(value):
+        return NOT_KNOWN
+    if not (math.isfinite(half_width) and half_width > 0.0):
+        return _minus(f"{value:.{_SIGNIFICANT}g}")
+    power = math.floor(math.log10(max(abs(value), half_width)))
+    if not -5 <= power <= 5:
+        scaled = rounded(value / 10.0**power, half_width / 10.0**power)
+        return f"({scaled})·10^{_minus(str(power))}"
+    if half_width < _NEGLIGIBLE * abs(value):
+        return _minus(f"{value:.9g} ± {half_width:.1e}")
+    # 0.0996 rounds to 0.10: the exponent after rounding counts.
+    places = max(0, 1 - int(f"{half_width:.1e}".partition("e")[2]))
+    return _minus(f"{value:z.{places}f} ± {half_width:.{places}f}")
+
+
+def rounded_phase(phase_deg: float, half_width_deg: float, amplitude: float = 1.0) -> str:
+    """Return a phase with its interval, or that it is open (:func:`is_open`)."""
+    if is_open(half_width_deg, amplitude):
+        return "open"
+    return rounded(phase_deg, half_width_deg)
+
+
+def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
+    """Whether a phase is not known: its interval takes in half the circle, or nothing turns."""
+    return phase_half_width_deg >= _OPEN_DEG or amplitude == 0.0
+
+
+def counted(number: int, what: str) -> str:
+    """Return ``1 run``, ``2 runs``."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", "−")

@@ -1,0 +1,110 @@
+"""A document as one HTML page: it needs no other file, no network and no script.
+
+It reads in light and dark, on a phone and in print.
+"""
+
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pmm.document.content import Content, Document, Figure, Section
+from pmm.document.inline import inline_svg
+from pmm.document.style import render
+from pmm.version import provenance
+from pmm.whole_file import write_whole
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A content, by its kind as the template knows it; figures as markup."""
+
+    kind: str
+    content: Content
+    svg: str = ""
+
+
+@dataclass(frozen=True)
+class _File:
+    name: str
+    sha256: str
+    text: str
+
+
+def write_page(
+    document: Document, path: Path, *, command: str, title: str = "", read: Sequence[Path] = ()
+) -> None:
+    """Write a document as a page.
+
+    Parameters
+    ----------
+    path
+        The file to write; its folder is made if it is not there.
+    command
+        What was run to make it, so that it can be made again.
+    title
+        Heading in place of the document's own.
+    read
+        Configuration to show in full, with hashes.
+    """
+    content = {
+        "title": title or f"{document.name}: {document.about}",
+        "sections": [
+            (one, _anchor(one), parts) for one in document.sections if (parts := _parts(one))
+        ],
+        "command": command,
+        "versions": provenance(),
+        "files": [_file(one) for one in read],
+    }
+    write_template("page.html.jinja", content, path)
+
+
+def write_template(
+    name: str, content: Mapping[str, Any], path: Path, package: str = "pmm.document"
+) -> None:
+    """Fill a package's template and write it as a page; all pages share one style.
+
+    Parameters
+    ----------
+    content
+        Plain text by the template's names: all of it is escaped. The drawings alone are markup, and
+        their text was escaped in them.
+    """
+    from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
+
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["markup"] = Markup
+    template = environment.from_string(files(package).joinpath(name).read_text(encoding="utf-8"))
+    style = files("pmm.document").joinpath("page.css").read_text(encoding="utf-8")
+    page = template.render(style=style, **content)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # A file name may hold bytes that are no text; they must not cost the page.
+    write_whole(path, page.encode("utf-8", errors="replace"))
+
+
+def _anchor(section: Section) -> str:
+    return re.sub(r"\W+", "-", section.title.lower()).strip("-")
+
+
+def _parts(section: Section) -> list[_Part]:
+    return [
+        _Part(type(one).__name__, one, drawn(one) if isinstance(one, Figure) else "")
+        for one in section.contents
+        if not one.empty
+    ]
+
+
+def drawn(figure: Figure) -> str:
+    """Return a figure as markup; its name tells its ids from those of the page's others."""
+    return inline_svg(render(figure.draw(), "svg", figure.name), figure.name, figure.caption)
+
+
+def _file(path: Path) -> _File:
+    whole = path.read_bytes()
+    return _File(path.name, hashlib.sha256(whole).hexdigest(), whole.decode(errors="replace"))

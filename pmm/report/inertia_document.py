@@ -1,0 +1,275 @@
+"""What ``pmm inertia`` shows of a job: said once, for the terminal, files and programs."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+from analysis.inertia.amplitude import PowerDecay
+from analysis.inertia.budget import BudgetShare
+from analysis.inertia.estimate import Estimate
+from analysis.inertia.forms import SwingForm
+from analysis.inertia.monte_carlo import Assessment
+from analysis.inertia.result import budget_rows, estimate_numbers
+from pmm.document.content import (
+    ABSENT,
+    Column,
+    Content,
+    Data,
+    Document,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    data_only,
+    number,
+    word,
+)
+from pmm.document.flag_lines import flag_notes
+from pmm.document.notation import rounded, written
+from pmm.inertia.fits import FormFit
+from pmm.inertia.outcome import Finding, Outcome
+from pmm.inertia.sources import PeriodRuns
+from pmm.report.inertia_figures import figures
+
+SCHEMA: Final = "pmm-inertia-1"
+_NOTHING: Final = 1e-9  # metres, kilograms: what rounding leaves of zero
+_MOST_LINES: Final = 8  # of a budget; the rest together
+_FORMS: Final = {
+    SwingForm.F1: "undamped",
+    SwingForm.F2: "damped",
+    SwingForm.F3: "damped, whole periods",
+    SwingForm.F4: "damped, with an offset",
+}
+
+# The period of one source and mode, and the single runs' periods, for people.
+_Period = tuple[str, str, Estimate, tuple[float, ...]]
+PERIODS: Final[tuple[Column[_Period], ...]] = (
+    Column("period from", lambda row: row[0]),
+    Column("how", lambda row: row[1]),
+    Column("T ± u", lambda row: _value(row[2]), unit="s", number=True),
+    Column("dof", lambda row: _freedom(row[2]), number=True),
+    Column("runs", lambda row: _few(row[3]), unit="s", number=True),
+)
+FITS: Final[tuple[Column[FormFit], ...]] = (
+    word("fit of", "record"),
+    Column("form", lambda one: one.form, "form", lambda form: f"{form} {_FORMS[form]}"),
+    Column("T ± u of this fit", lambda one: rounded(one.period_s, one.period_uncertainty_s),
+           unit="s", number=True),
+    number("decay", "decay_1_s", written(".3g"), "1/s"),
+    number("offset", "offset", written(".3g")),
+    number("residual", "residual", written(".3g")),
+    *data_only("where", "channel", "period_s", "period_uncertainty_s"),
+)  # fmt: skip
+FINDINGS: Final[tuple[Column[Finding], ...]] = (
+    word("result", "what"),
+    Column("name", lambda one: one.name),
+    Column("value ± u", lambda one: _value(one.estimate), number=True),
+    Column("dof", lambda one: _freedom(one.estimate) if one.estimate.uncertainty else "",
+           number=True),
+    Column("95 % interval", lambda one: _interval(one), "interval_95",
+           lambda pair: f"{pair[0]:.5g} to {pair[1]:.5g}" if pair[0] < pair[1] else "",
+           number=True),
+    Column("unit", lambda one: one.estimate.unit, "unit"),
+    *(
+        Column(None, lambda one, key=key: estimate_numbers(one.estimate)[key], key)  # type: ignore[misc]
+        for key in ("value", "standard_uncertainty", "degrees_of_freedom")
+    ),
+    *(
+        Column(None, lambda one, key=key: _assessment(one.assessment).get(key, ABSENT), key)  # type: ignore[misc]
+        for key in ("budget", "linear", "monte_carlo")
+    ),
+)  # fmt: skip
+BUDGET: Final[tuple[Column[BudgetShare], ...]] = (
+    Column("value ± u", lambda line: _value(line.input), number=True),
+    Column("unit", lambda line: line.input.unit),
+    Column("dof", lambda line: _freedom(line.input), number=True),
+    Column("contribution", lambda line: f"{line.contribution:.2g}", number=True),
+    Column("share", lambda line: f"{100.0 * line.share:.1f} %", number=True),
+)
+MODEL: Final[tuple[Column[tuple[str, Estimate]], ...]] = (
+    Column("model", lambda row: row[0]),
+    Column("value ± u", lambda row: _value(row[1]), number=True),
+    Column("dof", lambda row: _freedom(row[1]), number=True),
+    Column("unit", lambda row: row[1].unit),
+)
+PLACEMENTS: Final[tuple[Column[tuple[str, float, float, float, float]], ...]] = (
+    Column("weight", lambda row: row[0], "name"),
+    Column("mass", lambda row: row[1], "mass_kg", written("g"), "kg", number=True),
+    *(
+        Column(axis, lambda row, k=k: row[k], written=written(".4f"), unit="m", number=True)  # type: ignore[misc]
+        for k, axis in enumerate("xyz", 2)
+    ),
+    Column(None, lambda row: row[2:], "position_m"),
+)
+
+
+def document(outcome: Outcome, fits: Sequence[FormFit] = ()) -> Document:
+    """Return what is shown of a job; ``docs/inertia-files.md`` describes what programs get.
+
+    Parameters
+    ----------
+    fits
+        Of the records by the forms F1 to F4, where they were asked for.
+    """
+    results = Table("Results", FINDINGS, outcome.findings, "results", by=lambda one: one.name)
+    return Document(
+        f"{outcome.job}: {outcome.name}",
+        "mass properties",
+        (
+            Section("Periods", tuple(_periods(outcome.periods))),
+            Section("Fits", (Table("Fits", FITS, fits, "fits"),)),
+            Section("Results", (results, *_numbers(outcome))),
+            Section("Budgets", tuple(_budgets(outcome))),
+            Section("Model", tuple(_model(outcome))),
+            Section("Checks", tuple(_checks(outcome))),
+            Section("Figures", tuple(figures(outcome))),
+        ),
+        SCHEMA,
+    )
+
+
+def _periods(periods: Sequence[PeriodRuns]) -> Iterator[Content]:
+    rows = tuple(
+        ("", "", period, runs) if number else (one.where, one.how, period, runs)
+        for one in periods
+        for number, period in enumerate(one.periods)
+        for runs in (one.single[number] if number < len(one.single) else (),)
+    )
+    yield Table("Periods", PERIODS, rows)
+    yield Text([_used(run) for one in periods for run in one.records], faint=True)
+    yield Data("periods", [_period(one) for one in periods])
+
+
+def _used(run: Any) -> str:
+    decays = ", ".join(
+        f"time constant {mode.decay.time_constant_s:.4g} s, beta {mode.decay.beta:z.2f} ± "
+        f"{mode.decay.beta_uncertainty:.1g}"
+        for mode in run.modes
+    )
+    return f"used {run.part.series.name}: {run.part.because}; {decays}"
+
+
+def _period(one: PeriodRuns) -> dict[str, Any]:
+    return {
+        "where": one.where,
+        "how": one.how,
+        "periods": [estimate_numbers(period) for period in one.periods],
+        "runs_s": one.single,
+        "used": [run.part.because for run in one.records],
+        "decay": [[_decay(mode.decay) for mode in run.modes] for run in one.records],
+    }
+
+
+def _decay(one: PowerDecay) -> dict[str, Any]:
+    return {
+        "amplitude": one.amplitude,
+        "time_constant_s": one.time_constant_s,
+        "beta": one.beta,
+        "beta_uncertainty": one.beta_uncertainty,
+    }
+
+
+def _numbers(outcome: Outcome) -> Iterator[Data]:
+    """Yield what programs alone get."""
+    yield Data("job", outcome.job)
+    yield Data("name", outcome.name)
+    yield Data("model", None if outcome.body is None else outcome.body.numbers())
+    yield Data("next_step", outcome.next_step)
+    flags = ({"code": f.code, "severity": f.severity, "message": f.message} for f in outcome.flags)
+    yield Data("flags", list(flags))
+
+
+def _budgets(outcome: Outcome) -> Iterator[Content]:
+    for finding, one in outcome.budgeted:
+        lines = [line for line in one.budget.shares if line.input.uncertainty > 0.0]
+        rest = lines[_MOST_LINES:]
+        more = f"{len(rest)} more: {100.0 * sum(line.share for line in rest):.1f} %"
+        title = f"budget of {finding.name}"
+        columns: tuple[Column[BudgetShare], ...] = (Column(title, lambda line: line.name), *BUDGET)
+        yield Table(title, columns, lines, most=_MOST_LINES)
+        yield Text([*([more] if rest else []), *_intervals(one)], faint=True)
+
+
+def _intervals(one: Assessment) -> Iterator[str]:
+    linear, trial = one.budget.result, one.monte_carlo
+    low, high = linear.interval()
+    yield (
+        f"budget      {low:.6g} to {high:.6g}, u = {linear.uncertainty:#.2g}, "
+        f"{_freedom(linear)} degrees of freedom"
+    )
+    verdict = "good enough" if one.linear_good_enough else "not good enough, this interval holds"
+    yield (
+        f"Monte Carlo {trial.low:.6g} to {trial.high:.6g}, {trial.trials} trials: "
+        f"the budget is {verdict}"
+    )
+
+
+def _assessment(one: Assessment | None) -> dict[str, Any]:
+    if one is None:
+        return {}
+    linear, trial = one.budget.result, one.monte_carlo
+    return {
+        "budget": budget_rows(one.budget),
+        "linear": {
+            "value": linear.value,
+            "standard_uncertainty": linear.uncertainty,
+            "interval_95": linear.interval(),
+            "good_enough": one.linear_good_enough,
+        },
+        "monte_carlo": {
+            "trials": trial.trials,
+            "mean": trial.mean,
+            "standard_deviation": trial.uncertainty,
+            "interval_95": (trial.low, trial.high),
+        },
+    }
+
+
+def _model(outcome: Outcome) -> Iterator[Content]:
+    rows: dict[str, Estimate] = {}
+    body = outcome.body
+    if body is not None and outcome.job not in ("combine", "ballast"):
+        rows = {
+            "mass": body.mass,
+            "CG forward of the midpoint": body.cg_x,
+            "CG below it": body.cg_z,
+        }
+        for axis, gyradius in body.gyradii.items():
+            rows[f"{axis} gyradius"] = gyradius
+            rows[f"{axis} inertia about the CG"] = body.inertia(axis)
+        axis = "pitch" if outcome.plane == "vertical" else "yaw"
+        if outcome.plane is not None and axis in body.gyradii:
+            rows[f"{axis} inertia about the midpoint"] = body.about_midpoint(outcome.plane)
+    yield Table("Model", MODEL, tuple(rows.items()))
+    yield Table("Placements", PLACEMENTS, outcome.placements, "placements")
+
+
+def _checks(outcome: Outcome) -> Iterator[Content]:
+    yield Notes([Note(one.verdict, one.message) for one in outcome.comparisons])
+    targets = (("quantity", "name"), ("target", "target"), ("tolerance", "tolerance"),
+               ("verdict", "verdict"))  # fmt: skip
+    rows = [{key: getattr(one, own) for key, own in targets} for one in outcome.comparisons]
+    yield Data("targets", rows)
+    yield Text(outcome.notes, "notes")
+    yield Notes(flag_notes(outcome.flags))
+    yield Notes([] if outcome.next_step is None else [Note("next step", outcome.next_step)])
+
+
+def _value(estimate: Estimate) -> str:
+    value = estimate.value if abs(estimate.value) > _NOTHING else 0.0
+    return rounded(value, estimate.uncertainty)
+
+
+def _freedom(estimate: Estimate) -> str:
+    value = estimate.degrees_of_freedom
+    return "∞" if math.isinf(value) or value > 1e4 else f"{value:.3g}"
+
+
+def _interval(one: Finding) -> tuple[float, float]:
+    return one.assessment.interval if one.assessment else one.estimate.interval()
+
+
+def _few(runs: tuple[float, ...]) -> str:
+    shown = " ".join(f"{run:.5g}" for run in runs[:4])
+    return f"{shown} ..." if len(runs) > 4 else shown
