@@ -102,14 +102,14 @@ def strut_displacements(
     if orders < 1:
         raise ConfigurationError(f"orders = {orders}; it must be 1 or more")
     angles = np.array([0.0, set_point.strut_phase_rad])
-    found = np.zeros((orders + 1, 2), dtype=np.complex128)
-    found[1] = set_point.eccentricity_m * np.exp(1j * angles)
+    displacements = np.zeros((orders + 1, 2), dtype=np.complex128)
+    displacements[1] = set_point.eccentricity_m * np.exp(1j * angles)
     if oscillator.rod_length_m is None:
-        return found
+        return displacements
     rod = rod_series(set_point.eccentricity_m, oscillator.rod_length_m, orders // 2)
     for m, amplitude in enumerate(rod):
-        found[2 * m] += 1j * amplitude * np.exp(2j * m * angles)  # cos x = Im(i exp(i x))
-    return found
+        displacements[2 * m] += 1j * amplitude * np.exp(2j * m * angles)  # cos x = Im(i exp(i x))
+    return displacements
 
 
 def rod_series(eccentricity_m: float, rod_length_m: float, terms: int) -> FloatArray:

@@ -19,12 +19,12 @@ def mistaken_units(si: str) -> dict[float, str]:
         The unit in which the values should be; they were in another one, or already in it while
         another was stated.
     """
-    found = defaultdict(list)
+    units = defaultdict(list)
     for name, factor in units_of(si).items():
         if factor != 1.0:
-            found[1.0 / factor].append(f"{name} in place of {si}")
-            found[factor].append(f"{si} in place of {name}")
-    return {factor: " or ".join(said) for factor, said in found.items()}
+            units[1.0 / factor].append(f"{name} in place of {si}")
+            units[factor].append(f"{si} in place of {name}")
+    return {factor: " or ".join(said) for factor, said in units.items()}
 
 
 def mistaken(factor: float, si: str, near: float) -> str:
@@ -40,5 +40,5 @@ def mistaken(factor: float, si: str, near: float) -> str:
     if not 0.0 < factor < math.inf:
         return ""
     known = mistaken_units(si)
-    nearest = min(known, key=lambda one: abs(math.log(one / factor)))
+    nearest = min(known, key=lambda ratio: abs(math.log(ratio / factor)))
     return known[nearest] if abs(math.log(nearest / factor)) < near else ""

@@ -70,7 +70,7 @@ def plausibility_flags(
         The model and the struts' distance from its midpoint; without them the forces' unit is
         judged from one gauge against the other only.
     """
-    runs = [one for one in runs if one.set_point.eccentricity_m > 0.0]
+    runs = [run for run in runs if run.set_point.eccentricity_m > 0.0]
     if len(runs) < _FEW:
         return ()
     units = (*_of_displacements(runs), *_of_forces(runs, body, half_spacing_m))
@@ -79,7 +79,7 @@ def plausibility_flags(
 
 def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
     for name in DISPLACEMENTS:
-        told = [(abs(one.first[name]), one.set_point.eccentricity_m) for one in _with(runs, name)]
+        told = [(abs(run.first[name]), run.set_point.eccentricity_m) for run in _with(runs, name)]
         ratio = _usual([seen / wanted for seen, wanted in told if wanted > 0.0])
         meant = mistaken(ratio, DISPLACEMENT_AFT.unit, _NEAR)
         if meant:
@@ -89,19 +89,19 @@ def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
 def _of_forces(
     runs: Sequence[Seen], body: Body | None, half_spacing_m: float | None
 ) -> Iterator[Flag]:
-    found: set[str] = set()
+    units: set[str] = set()
     for name in FORCES if body is not None else ():
-        inertial = [_inertia_n(one.set_point, body, half_spacing_m) for one in _with(runs, name)]
-        seen = [abs(one.first[name]) for one in _with(runs, name)]
+        inertial = [_inertia_n(run.set_point, body, half_spacing_m) for run in _with(runs, name)]
+        seen = [abs(run.first[name]) for run in _with(runs, name)]
         ratio = _median([a / b for a, b in zip(seen, inertial, strict=True) if b > 0.0])
         if math.isfinite(ratio) and not _PLAUSIBLE[0] < ratio < _PLAUSIBLE[1]:
-            found.add(name)
+            units.add(name)
             yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
-    both = [one for one in runs if set(FORCES) <= set(one.first)]
-    sizes = [tuple(abs(one.first[name]) for name in FORCES) for one in both]
+    both = [run for run in runs if set(FORCES) <= set(run.first)]
+    sizes = [tuple(abs(run.first[name]) for name in FORCES) for run in both]
     ratio = _usual([aft / fore for aft, fore in sizes if fore > 0.0])
     meant = mistaken(ratio, FORCE_AFT.unit, _NEAR)
-    if meant and not found:
+    if meant and not units:
         said = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
         yield _units(FORCES[0], said, f"{meant}, or the reverse in {FORCES[1]}")
 
@@ -125,7 +125,7 @@ def _meant(ratio: float) -> str:
 
 
 def _of_phase_unit(runs: Sequence[Seen]) -> Iterator[Flag]:
-    far = [one for one in runs if abs(one.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
+    far = [run for run in runs if abs(run.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
     if far:
         told = far[0].set_point.strut_phase_rad
         message = (
@@ -138,10 +138,10 @@ def _of_phase_unit(runs: Sequence[Seen]) -> Iterator[Flag]:
 def _of_strut_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
     """Aft and fore displacement against the strut phase that was set."""
     aft, fore = DISPLACEMENTS
-    both = [one for one in runs if {aft, fore} <= set(one.first)]
+    both = [run for run in runs if {aft, fore} <= set(run.first)]
     turns = [
-        _angle(one.first[fore], one.first[aft] * _turned(one.set_point.strut_phase_rad))
-        for one in both
+        _angle(run.first[fore], run.first[aft] * _turned(run.set_point.strut_phase_rad))
+        for run in both
     ]
     if _in_most([abs(turn) > _OPPOSITE_RAD for turn in turns]):
         yield _opposite(fore, f"it moves against {aft} turned by the set-points' strut phase")
@@ -150,43 +150,45 @@ def _of_strut_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
 def _of_force_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
     """Each gauge's force per displacement of its strut, which one rigid body makes alike."""
     aft, fore = FORCES
-    both = [one for one in runs if {aft, fore} <= set(one.first)]
-    apart = [abs(_angle(_stiffness(one, aft), _stiffness(one, fore))) for one in both]
+    both = [run for run in runs if {aft, fore} <= set(run.first)]
+    apart = [abs(_angle(_stiffness(run, aft), _stiffness(run, fore))) for run in both]
     if _in_most([turn > _OPPOSITE_RAD for turn in apart]):
-        work = {name: _median([_stiffness(one, name).imag for one in both]) for name in FORCES}
+        work = {name: _median([_stiffness(run, name).imag for run in both]) for name in FORCES}
         wrong = min(work, key=lambda name: work[name])
         other = fore if wrong == aft else aft
         yield _opposite(wrong, f"it pushes against {other} in all runs and takes work out")
         return
     for name in FORCES:
-        told = [_stiffness(one, name) for one in _with(runs, name)]
-        if _in_most([one.imag < -0.1 * abs(one) for one in told]) and _alone(runs, name):
+        told = [_stiffness(run, name) for run in _with(runs, name)]
+        if _in_most([stiffness.imag < -0.1 * abs(stiffness) for stiffness in told]) and _alone(
+            runs, name
+        ):
             yield _opposite(name, "the water would drive the model")
 
 
 def _alone(runs: Sequence[Seen], name: str) -> bool:
     """Whether the work of all gauges together is negative: a single one's may well be."""
-    total = [sum(_stiffness(one, each).imag for each in FORCES if each in one.first)
-             for one in _with(runs, name)]  # fmt: skip
+    total = [sum(_stiffness(run, each).imag for each in FORCES if each in run.first)
+             for run in _with(runs, name)]  # fmt: skip
     return _in_most([each < 0.0 for each in total])
 
 
-def _stiffness(one: Seen, force: str) -> complex:
+def _stiffness(run: Seen, force: str) -> complex:
     """Return force over displacement of its strut, as the set-point has it; N/m."""
-    phase = one.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
-    return one.first[force] / (one.set_point.eccentricity_m * _turned(phase))
+    phase = run.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
+    return run.first[force] / (run.set_point.eccentricity_m * _turned(phase))
 
 
 def _turned(phase_rad: float) -> complex:
     return complex(math.cos(phase_rad), math.sin(phase_rad))
 
 
-def _angle(one: complex, other: complex) -> float:
-    return float(np.angle(one * other.conjugate()))
+def _angle(phasor: complex, other: complex) -> float:
+    return float(np.angle(phasor * other.conjugate()))
 
 
 def _with(runs: Sequence[Seen], name: str) -> list[Seen]:
-    return [one for one in runs if name in one.first]
+    return [run for run in runs if name in run.first]
 
 
 def _in_most(said: Sequence[bool]) -> bool:
@@ -205,8 +207,8 @@ def _usual(ratios: Sequence[float]) -> float:
     return _median(positive)
 
 
-def _units(channel: str, found: str, meant: str) -> Flag:
-    message = f"units look wrong: its first harmonic is {found}: {meant}? Then {_UNIT}"
+def _units(channel: str, apparent: str, meant: str) -> Flag:
+    message = f"units look wrong: its first harmonic is {apparent}: {meant}? Then {_UNIT}"
     return Flag("units_implausible", Severity.WARNING, message, channel)
 
 

@@ -77,12 +77,14 @@ class Pulses:
 
     def spikes(self) -> tuple[Spike, ...]:
         """Return the pulses that are spikes: those that stand out, and do not recur as motion."""
-        tall = [one for one in self.found if one.curvature > STANDS_OUT * self.rest]
-        return tuple(one for one in tall if not _recur(self._like(one)))
+        tall = [pulse for pulse in self.found if pulse.curvature > STANDS_OUT * self.rest]
+        return tuple(pulse for pulse in tall if not _recur(self._like(pulse)))
 
     def _like(self, spike: Spike) -> FloatArray:
         """Return the places of all pulses that bend an eighth as much or more."""
-        like = [one.start for one in self.found if one.curvature * STANDS_OUT >= spike.curvature]
+        like = [
+            pulse.start for pulse in self.found if pulse.curvature * STANDS_OUT >= spike.curvature
+        ]
         return np.array(like, dtype=np.float64)
 
 
@@ -96,7 +98,7 @@ def find_spikes(samples: Samples) -> tuple[tuple[Spike, ...], ...]:
         samples = samples[:, 0 : samples.shape[1]]  # read once
     with np.errstate(over="ignore", invalid="ignore"):  # of numbers near the largest
         curvature = _curvature(samples)
-        return tuple(_spikes_of(samples, row, one) for row, one in enumerate(curvature))
+        return tuple(_spikes_of(samples, row, largest) for row, largest in enumerate(curvature))
 
 
 def most_of(count: int) -> int:
@@ -115,18 +117,18 @@ def find_pulses(samples: Samples, row: int, curvature: FloatArray, most: int) ->
         Pulses beyond which none is a spike.
     """
     count = samples.shape[1]
-    found: list[Spike] = []
+    pulses: list[Spike] = []
     while curvature.size:
         chunk = int(np.argmax(curvature))
-        place, values, bend = _window(samples, row, chunk, found)
+        place, values, bend = _window(samples, row, chunk, pulses)
         if bend < curvature[chunk]:
             curvature[chunk] = bend  # what was taken out stood here too
             continue
         pulse = _pulse(place, values, count) if 0.0 < bend < np.inf else None
-        if pulse is None or any(_touch(pulse, one) for one in found):
-            return Pulses(tuple(sorted(found, key=lambda one: one.start)), bend)
-        found.append(pulse)
-        if len(found) > most:
+        if pulse is None or any(_touch(pulse, known) for known in pulses):
+            return Pulses(tuple(sorted(pulses, key=lambda item: item.start)), bend)
+        pulses.append(pulse)
+        if len(pulses) > most:
             return Pulses((), np.inf)
     return Pulses((), 0.0)
 
@@ -139,11 +141,11 @@ def _spikes_of(samples: Samples, row: int, curvature: FloatArray) -> tuple[Spike
 def _curvature(samples: Samples) -> FloatArray:
     """Return the largest second difference of each 32 samples, shape ``(channels, chunks)``."""
     channels, count = samples.shape
-    found = [
+    chunks_curvature = [
         curvature_of_chunks(samples[:, start : min(start + _BLOCK + 2, count)])
         for start in range(0, max(count - 2, 0), _BLOCK)
     ]
-    return np.concatenate([np.zeros((channels, 0)), *found], axis=1)
+    return np.concatenate([np.zeros((channels, 0)), *chunks_curvature], axis=1)
 
 
 def curvature_of_chunks(values: FloatArray) -> FloatArray:
@@ -155,12 +157,12 @@ def curvature_of_chunks(values: FloatArray) -> FloatArray:
         Shape ``(channels, samples)``; over missing samples goes a straight line.
     """
     chunks = -(-(values.shape[1] - 2) // _CHUNK)
-    found = np.empty((len(values), max(chunks, 0)))
-    for row, channel in zip(found, values, strict=True):
+    largest = np.empty((len(values), max(chunks, 0)))
+    for row, channel in zip(largest, values, strict=True):
         bend = np.zeros(row.size * _CHUNK)
         _second_difference(_without_holes(channel), bend[: channel.size - 2])
         bend.reshape(-1, _CHUNK).max(axis=1, out=row)
-    return found
+    return largest
 
 
 def _second_difference(values: FloatArray, into: FloatArray) -> None:
@@ -179,7 +181,7 @@ def _without_holes(values: FloatArray) -> FloatArray:
 
 
 def _window(
-    samples: Samples, row: int, chunk: int, found: list[Spike]
+    samples: Samples, row: int, chunk: int, spikes: list[Spike]
 ) -> tuple[IntArray, FloatArray, float]:
     """Return the good samples around where a chunk bends most: their numbers and values, the bend.
 
@@ -188,9 +190,9 @@ def _window(
     first = max(0, chunk * _CHUNK - 2 * AROUND)
     stop = min(samples.shape[1], (chunk + 1) * _CHUNK + 2 * AROUND)
     values = np.array(samples[row : row + 1, first:stop][0])
-    for one in found:
-        within = slice(max(one.start - first, 0), max(one.stop - first, 0))
-        values[within] = one.instead[max(first - one.start, 0) :][: values[within].size]
+    for spike in spikes:
+        within = slice(max(spike.start - first, 0), max(spike.stop - first, 0))
+        values[within] = spike.instead[max(first - spike.start, 0) :][: values[within].size]
     good = np.flatnonzero(np.isfinite(values))
     place, values = good + first, values[good]
     bend = np.abs(np.diff(values, n=2))
@@ -226,7 +228,7 @@ def _pulse(place: IntArray, values: FloatArray, count: int) -> Spike | None:
     best = min((left for left, *_ in trials), default=np.inf)
     if not bend > STANDS_OUT * best:
         return None
-    _, length, start, without = next(one for one in trials if one[0] <= 2.0 * best)
+    _, length, start, without = next(trial for trial in trials if trial[0] <= 2.0 * best)
     inside = slice(start, start + length)
     away = values[inside] - without[inside]
     first, last = int(place[start]), int(place[start + length - 1]) + 1
@@ -250,9 +252,9 @@ def cubic(length: int) -> FloatArray:
     return weights
 
 
-def _touch(one: Spike, other: Spike) -> bool:
+def _touch(spike: Spike, other: Spike) -> bool:
     """Whether a pulse stands on what another's cubic rests on: then both are one longer event."""
-    return one.start - 2 < other.stop + 2 and other.start - 2 < one.stop + 2
+    return spike.start - 2 < other.stop + 2 and other.start - 2 < spike.stop + 2
 
 
 def _recur(times: FloatArray) -> bool:

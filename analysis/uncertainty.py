@@ -41,9 +41,9 @@ class Contribution:
 
     def dense(self, size: int) -> FloatArray:
         """Return the parts of all values, shape ``(size, k)``."""
-        found = np.zeros((size, self.parts.shape[1]))
-        found[self.rows] = self.parts
-        return found
+        parts = np.zeros((size, self.parts.shape[1]))
+        parts[self.rows] = self.parts
+        return parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +70,10 @@ class UncertainValues:
         chosen = self if rows is None else self.taken(rows)
         size = len(chosen)
         total = np.zeros((size, size))
-        for one in chosen.contributions:
-            total[np.ix_(one.rows, one.rows)] += one.parts @ one.parts.T
+        for contribution in chosen.contributions:
+            total[np.ix_(contribution.rows, contribution.rows)] += (
+                contribution.parts @ contribution.parts.T
+            )
         return total
 
     def variances(self) -> FloatArray:
@@ -80,11 +82,11 @@ class UncertainValues:
 
     @cached_property
     def _variances(self) -> FloatArray:
-        found = np.zeros((len(self.contributions), len(self)))
-        for k, one in enumerate(self.contributions):
-            found[k, one.rows] = (one.parts**2).sum(axis=1)
-        found.flags.writeable = False
-        return found
+        variances = np.zeros((len(self.contributions), len(self)))
+        for k, contribution in enumerate(self.contributions):
+            variances[k, contribution.rows] = (contribution.parts**2).sum(axis=1)
+        variances.flags.writeable = False
+        return variances
 
     @property
     def standard_uncertainty(self) -> FloatArray:
@@ -95,12 +97,14 @@ class UncertainValues:
     def degrees_of_freedom(self) -> FloatArray:
         """Effective degrees of freedom (Welch and Satterthwaite), shape ``(n,)``."""
         by_input = self.variances()
-        freedom = np.array([one.degrees_of_freedom for one in self.contributions])
+        freedom = np.array([contribution.degrees_of_freedom for contribution in self.contributions])
         known = np.where(freedom > 0.0, freedom, np.inf)
         loss = (by_input**2 / known[:, None]).sum(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = by_input.sum(axis=0) ** 2 / loss
-        return np.asarray(np.where(loss > 0.0, found, np.where(np.isnan(loss), np.nan, np.inf)))
+            freedom_of_values = by_input.sum(axis=0) ** 2 / loss
+        return np.asarray(
+            np.where(loss > 0.0, freedom_of_values, np.where(np.isnan(loss), np.nan, np.inf))
+        )
 
     def half_width(self, level: float = 0.95) -> FloatArray:
         """Return the half-width of each one's interval (Student's t), shape ``(n,)``."""
@@ -111,8 +115,8 @@ class UncertainValues:
         parts = self.variances()[:, row]
         total = parts.sum()
         named = {
-            one.label: float(part / total) if total > 0.0 else 0.0
-            for one, part in zip(self.contributions, parts, strict=True)
+            contribution.label: float(part / total) if total > 0.0 else 0.0
+            for contribution, part in zip(self.contributions, parts, strict=True)
             if part > 0.0
         }
         return dict(sorted(named.items(), key=lambda item: -item[1]))
@@ -125,29 +129,39 @@ class UncertainValues:
         if len(np.unique(chosen)) != len(chosen):
             return self.mapped(np.eye(len(self))[chosen])
         acting = sorted({k for row in chosen for k in self._inputs_of[row]})
-        found = []
-        for one in (self.contributions[k] for k in acting):
-            keep = place[one.rows] >= 0
-            found.append(replace(one, rows=place[one.rows[keep]], parts=one.parts[keep]))
-        return UncertainValues(self.values[chosen], tuple(found))
+        contributions = []
+        for contribution in (self.contributions[k] for k in acting):
+            keep = place[contribution.rows] >= 0
+            contributions.append(
+                replace(
+                    contribution,
+                    rows=place[contribution.rows[keep]],
+                    parts=contribution.parts[keep],
+                )
+            )
+        return UncertainValues(self.values[chosen], tuple(contributions))
 
     @cached_property
     def _inputs_of(self) -> list[list[int]]:
         """Which inputs act on each value."""
-        found: list[list[int]] = [[] for _ in range(len(self))]
-        for k, one in enumerate(self.contributions):
-            for row in one.rows:
-                found[row].append(k)
-        return found
+        inputs: list[list[int]] = [[] for _ in range(len(self))]
+        for k, contribution in enumerate(self.contributions):
+            for row in contribution.rows:
+                inputs[row].append(k)
+        return inputs
 
     def mapped(self, matrix: FloatArray) -> "UncertainValues":
         """Return ``matrix @ values``, uncertainties and all; ``matrix`` has the shape (m, n)."""
         everywhere = np.arange(len(matrix))
-        found = (
-            replace(one, rows=everywhere, parts=matrix[:, one.rows] @ one.parts)
-            for one in self.contributions
+        mapped_contributions = (
+            replace(
+                contribution,
+                rows=everywhere,
+                parts=matrix[:, contribution.rows] @ contribution.parts,
+            )
+            for contribution in self.contributions
         )
-        return UncertainValues(matrix @ self.values, tuple(found))
+        return UncertainValues(matrix @ self.values, tuple(mapped_contributions))
 
     def plus(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "UncertainValues":
         """Return the values with one more input, or with more of one that is there.
@@ -163,24 +177,30 @@ class UncertainValues:
             If the label is that of an input with several deviates.
         """
         column = np.asarray(parts, dtype=np.float64)[:, None]
-        kept = [one for one in self.contributions if one.label != label]
-        for one in self.contributions:
-            if one.label != label:
+        kept = [contribution for contribution in self.contributions if contribution.label != label]
+        for contribution in self.contributions:
+            if contribution.label != label:
                 continue
-            if one.parts.shape[1] != 1:
-                raise ConfigurationError(f"{label!r} has {one.parts.shape[1]} deviates, not one")
-            column = column + one.dense(len(self))
+            if contribution.parts.shape[1] != 1:
+                raise ConfigurationError(
+                    f"{label!r} has {contribution.parts.shape[1]} deviates, not one"
+                )
+            column = column + contribution.dense(len(self))
         kept.append(Contribution(label, freedom, np.arange(len(self)), column))
         return replace(self, contributions=tuple(kept))
 
 
 def added(contributions: Iterable[Contribution]) -> tuple[Contribution, ...]:
     """Return what each input does in all: contributions of one label to the same rows added up."""
-    found: dict[str, Contribution] = {}
-    for one in contributions:
-        before = found.get(one.label)
-        found[one.label] = one if before is None else replace(one, parts=before.parts + one.parts)
-    return tuple(found.values())
+    by_label: dict[str, Contribution] = {}
+    for contribution in contributions:
+        before = by_label.get(contribution.label)
+        by_label[contribution.label] = (
+            contribution
+            if before is None
+            else replace(contribution, parts=before.parts + contribution.parts)
+        )
+    return tuple(by_label.values())
 
 
 def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
@@ -193,12 +213,12 @@ def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
     """
     gathered: dict[str, list[Contribution]] = {}
     first = 0
-    for one in several:
-        for part in one.contributions:
+    for values_of_one in several:
+        for part in values_of_one.contributions:
             moved = replace(part, rows=part.rows + first)
             gathered.setdefault(part.label, []).append(moved)
-        first += len(one)
-    values = np.concatenate([one.values for one in several]) if several else np.zeros(0)
+        first += len(values_of_one)
+    values = np.concatenate([uncertain.values for uncertain in several]) if several else np.zeros(0)
     return UncertainValues(values, tuple(_one_input(parts) for parts in gathered.values()))
 
 
@@ -229,5 +249,5 @@ def student_factor(degrees_of_freedom: ArrayLike, level: float = 0.95) -> FloatA
 
     place, freedom = 0.5 + level / 2.0, np.asarray(degrees_of_freedom, dtype=np.float64)
     endless = np.isinf(freedom)
-    found = stdtrit(np.where(endless, 1.0, freedom), place)
-    return np.asarray(np.where(endless, ndtri(place), found))
+    factor = stdtrit(np.where(endless, 1.0, freedom), place)
+    return np.asarray(np.where(endless, ndtri(place), factor))

@@ -130,11 +130,13 @@ class Chain:
         """
         given = self._checked(substitute or {}, count)
         block = Block(state.next_sample, count, state.sample_rate_hz)
-        signals: dict[str, FloatArray] = {one.name: given[one.name] for one in self.inputs}
+        signals: dict[str, FloatArray] = {signal.name: given[signal.name] for signal in self.inputs}
         after: list[Any] = []
         for stage, before in zip(self.stages, state.stages, strict=True):
-            fed = {one.name: signals[one.name] for one in stage.reads}
-            fed |= {one.name: given[one.name] for one in stage.writes if one.name in given}
+            fed = {signal.name: signals[signal.name] for signal in stage.reads}
+            fed |= {
+                signal.name: given[signal.name] for signal in stage.writes if signal.name in given
+            }
             stage_state, written = stage.run(before, block, fed)
             after.append(stage_state)
             signals |= {name: given.get(name, values) for name, values in written.items()}

@@ -108,7 +108,7 @@ def standing_state(
     turn = replace(set_point, frequency_hz=turn_hz)
     period = Period(turn_hz, _ORDERS, _POINTS)
     still = np.zeros(_ORDERS + 1, dtype=np.complex128)
-    given = {one.name: still for motion in signals.STRUT_MOTIONS for one in motion}
+    given = {signal.name: still for motion in signals.STRUT_MOTIONS for signal in motion}
     for (displacement, *_), at_m in zip(signals.STRUT_MOTIONS, stands_at_m, strict=True):
         given[displacement.name] = period.constant(at_m)
     turning = replace(standing(rig), drive=DriveSettings())  # a period needs a turn

@@ -137,7 +137,7 @@ class SimulatedRig:
             self.water if in_water else HullCoefficients(),
             self.radiation if in_water else None,
             self.mounting,
-            tuple(one for one in self.forces if in_water or not one.in_water),
+            tuple(force for force in self.forces if in_water or not force.in_water),
             self.cross_flow if in_water else None,
             carriage_speed_m_s * self.flow_factor,
             self.flow_factor,

@@ -137,7 +137,7 @@ def _check_strut_forces(rig: SimulatedRig, run: Signals) -> None:
 
 def _overloads(rig: SimulatedRig, run: Signals) -> tuple[Flag, ...]:
     """Flag each dynamometer whose force goes beyond its full scale."""
-    found = []
+    overloads = []
     for signal in (signals.FORCE_AFT, signals.FORCE_FORE):
         peak, limit = _peak(run[signal.name]), _gauge_full_scale(rig, signal.name)
         if limit is not None and peak > limit:
@@ -145,8 +145,8 @@ def _overloads(rig: SimulatedRig, run: Signals) -> tuple[Flag, ...]:
                 f"{signal.name}: {peak:.4g} N is beyond the dynamometer's full scale of "
                 f"{limit:.4g} N; lower the frequency or the eccentricity"
             )
-            found.append(Flag("dynamometer-overload", Severity.WARNING, message, signal.name))
-    return tuple(found)
+            overloads.append(Flag("dynamometer-overload", Severity.WARNING, message, signal.name))
+    return tuple(overloads)
 
 
 def _ramp_in_record(rig: SimulatedRig, settling_s: float) -> tuple[Flag, ...]:

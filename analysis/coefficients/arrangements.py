@@ -28,7 +28,7 @@ _LARGEST_LOG = 700.0  # of a ratio that a float holds
 
 
 def other_arrangement(
-    found: CampaignCoefficients,
+    coefficients: CampaignCoefficients,
     stated: Arrangement,
     key: str,
     other: str,
@@ -48,12 +48,12 @@ def other_arrangement(
     if np.isnan(values).any():
         text = f"{key} = {other!r} was not compared: it takes force_x, or smaller angles"
         return OtherArrangement(key, own, other, math.nan, math.nan, (), (), NOT_COMPARED, text)
-    apart, half = np.abs(values - found.values), found.half_widths
+    apart, half = np.abs(values - coefficients.values), coefficients.half_widths
     moved = np.divide(apart, half, out=np.zeros_like(half), where=half > 0.0)
     order = [int(k) for k in np.argsort(-moved) if moved[k] > 1.0]
     sizes: dict[str, float] = {}
     for k in order:
-        sizes.setdefault(found.entries[k].name, float(moved[k]))
+        sizes.setdefault(coefficients.entries[k].name, float(moved[k]))
     verdict = _verdict(evidence, bool(sizes))
     ratio = math.exp(min(max(evidence, -_LARGEST_LOG), _LARGEST_LOG))
     largest = float(moved.max(initial=0.0))
@@ -68,7 +68,11 @@ def arrangement_flags(several: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
         BETTER: ("arrangement_doubted", Severity.WARNING),
         OPEN: ("rests_on_arrangement", Severity.NOTE),
     }
-    return tuple(Flag(*codes[one.verdict], one.message) for one in several if one.verdict in codes)
+    return tuple(
+        Flag(*codes[arrangement.verdict], arrangement.message)
+        for arrangement in several
+        if arrangement.verdict in codes
+    )
 
 
 def _verdict(evidence: float, moves: bool) -> str:

@@ -87,11 +87,11 @@ def of_struts(
     values, slope = pointwise(lambda waves: _model(geometry, waves), inputs)
     gauged = len(wanted)
     by_struts = by_parts(slope[:, :gauged], maps, orders)
-    found = harmonics(values, orders)
-    found[2] -= geometry.drift_rad
+    harmonics_of_body = harmonics(values, orders)
+    harmonics_of_body[2] -= geometry.drift_rad
     names = CHANNELS[: len(values)]
     phasors = struts.carried(
-        found[0::2] + 1j * found[1::2],
+        harmonics_of_body[0::2] + 1j * harmonics_of_body[1::2],
         by_struts,
         labels(names, orders),
         UNITS[: len(names)] * (orders + 1),
@@ -102,7 +102,7 @@ def of_struts(
     sensitivity[2, STATED.index("alignment_rad")] -= 1.0  # the rotation is from the drift
     faster = slope[:, 2:4] * inputs[2:4] + 2.0 * slope[:, 4:6] * inputs[4:6]
     sensitivity[:, STATED.index("frequency_relative")] += harmonics(faster.sum(axis=1), orders)
-    moved = _moved(found.reshape(orders + 1, len(names), 2), geometry, omega)
+    moved = _moved(harmonics_of_body.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
     moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
     return InBodyAxes(phasors, sensitivity, _of_tare(geometry, moving, channels - 2))
@@ -130,9 +130,9 @@ def parts_of_struts(
     runs, count, channels = readings.shape
     moved = driven(interleaved(readings[..., :2].reshape(runs, -1)), omega)
     read = waves(interleaved(readings[..., 2:].reshape(runs, -1)), channels - 2)
-    found = harmonics(in_body_axes(geometry, moved, read), count - 1)
-    found[:, 2] -= np.ravel(geometry.drift_rad)
-    return found, _of_tare(geometry, moved, channels - 2)
+    parts = harmonics(in_body_axes(geometry, moved, read), count - 1)
+    parts[:, 2] -= np.ravel(geometry.drift_rad)
+    return parts, _of_tare(geometry, moved, channels - 2)
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:
@@ -177,23 +177,23 @@ def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool
     }
     if asked:
         moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
-    found = np.zeros((len(shaped), channels, 2, len(STATED)))
+    sensitivity = np.zeros((len(shaped), channels, 2, len(STATED)))
     for name, columns in moves.items():
         for channel, change in columns.items():
-            found[:, channel, 0, STATED.index(name)] = change.real
-            found[:, channel, 1, STATED.index(name)] = change.imag
-    return found.reshape(2 * len(values), len(STATED))
+            sensitivity[:, channel, 0, STATED.index(name)] = change.real
+            sensitivity[:, channel, 1, STATED.index(name)] = change.imag
+    return sensitivity.reshape(2 * len(values), len(STATED))
 
 
 def _moved(parts: FloatArray, geometry: Geometry, omega: float) -> FloatArray:
     """How motion and loads follow the place of the midpoint on the model, ahead."""
     rotation = parts[:, 1, 0] + 1j * parts[:, 1, 1]
     turning = 1j * omega * np.arange(len(parts)) * rotation
-    found = np.zeros_like(parts)
+    changed = np.zeros_like(parts)
     for channel, change in (
         (0, -geometry.side * rotation),
         (3, -geometry.side * turning),
         (5, geometry.side * (parts[:, 4, 0] + 1j * parts[:, 4, 1])),
     ):
-        found[:, channel, 0], found[:, channel, 1] = change.real, change.imag
-    return found
+        changed[:, channel, 0], changed[:, channel, 1] = change.real, change.imag
+    return changed

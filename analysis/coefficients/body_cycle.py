@@ -142,18 +142,18 @@ class BodyCycle:
 
         Of each, force and moment about the midpoint; shape ``(3, 2)``.
         """
-        found = np.zeros((3, 2, 2))
+        matrix = np.zeros((3, 2, 2))
         if self.body is not None:
             square = (2.0 * math.pi * self.frequency_hz) ** 2
-            found[0] = square * mass_matrix(self.body, self.plane)
-            found[1] = weight_matrix(self.body, self.plane)
-        found[2] = self.restoring
-        return np.abs(found @ self.motion)
+            matrix[0] = square * mass_matrix(self.body, self.plane)
+            matrix[1] = weight_matrix(self.body, self.plane)
+        matrix[2] = self.restoring
+        return np.abs(matrix @ self.motion)
 
     def _at(self, names: tuple[str, ...], order: int = 1) -> ComplexArray:
         if order > self.orders:
             return np.zeros(len(names), dtype=np.complex128)
-        return self.phasors.values[[self.phasors.index(at_order(one, order)) for one in names]]
+        return self.phasors.values[[self.phasors.index(at_order(name, order)) for name in names]]
 
     @cached_property
     def hull(self) -> HullCycle:
@@ -229,7 +229,9 @@ class BodyCycle:
             if len(readings) and len(dry.readings):
                 readings[n, gauges] -= turn * dry.readings[n, gauges]
             for name in (
-                one for one in CHANNELS[4:] if one in self.channels and one in dry.channels
+                channel
+                for channel in CHANNELS[4:]
+                if channel in self.channels and channel in dry.channels
             ):
                 place = self.phasors.index(at_order(name, n))
                 scale[place, dry.phasors.index(at_order(name, n))] = turn

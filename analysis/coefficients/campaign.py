@@ -68,7 +68,9 @@ def campaign_coefficients(
     """
     check_campaign(cycles)
     known = repeatability(cycles)
-    widened = [with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in cycles]
+    widened = [
+        with_repeats(cycle, known) if cycle.frequency_hz > 0.0 else cycle for cycle in cycles
+    ]
     groups = plan(widened, request)
     return assemble(list(mapped(_Solver(request), groups)), widened, known, request)
 
@@ -93,7 +95,7 @@ def assemble(
         *(np.concatenate([getattr(block.trials, name) for block in blocks])
           for name in ("standard_uncertainty", "low", "high")),
     ) if blocks else TrialColumns(0, np.zeros(0), np.zeros(0), np.zeros(0))  # fmt: skip
-    found = CampaignCoefficients(
+    coefficients = CampaignCoefficients(
         request.form,
         cycles[0].plane,
         "dimensional",
@@ -106,9 +108,9 @@ def assemble(
         missing=_still_missing(blocks, entries),
         flags=tuple(dict.fromkeys(flag for block in blocks for flag in block.flags)),
     )
-    _check_wanted(found, request)
-    whole = with_zero_frequency(found) if request.zero_frequency else found
-    others = tuple(_others(found, whole, blocks, cycles))
+    _check_wanted(coefficients, request)
+    whole = with_zero_frequency(coefficients) if request.zero_frequency else coefficients
+    others = tuple(_others(coefficients, whole, blocks, cycles))
     return replace(
         whole,
         checks=consistency(whole, cycles),
@@ -118,7 +120,7 @@ def assemble(
 
 
 def _others(
-    found: CampaignCoefficients,
+    coefficients: CampaignCoefficients,
     whole: CampaignCoefficients,
     blocks: Sequence[GroupCoefficients],
     cycles: Sequence[BodyCycle],
@@ -133,11 +135,11 @@ def _others(
     if not all(block.others for block in blocks):
         return
     for several in zip(*(block.others for block in blocks), strict=True):
-        values = np.concatenate([one.values for one in several])
-        if len(whole.entries) > len(found.entries) and np.isfinite(values).all():
-            uncertain = UncertainValues(values, found.uncertain.contributions)
-            values = with_zero_frequency(replace(found, uncertain=uncertain)).values
-        evidence = sum(one.evidence for one in several)
+        values = np.concatenate([block.values for block in several])
+        if len(whole.entries) > len(coefficients.entries) and np.isfinite(values).all():
+            uncertain = UncertainValues(values, coefficients.uncertain.contributions)
+            values = with_zero_frequency(replace(coefficients, uncertain=uncertain)).values
+        evidence = sum(other.evidence for other in several)
         first = several[0]
         yield other_arrangement(
             whole, cycles[0].arrangement, first.key, first.other, values, evidence
@@ -153,48 +155,50 @@ def _still_missing(
     return tuple(missing for missing in every if missing.name not in names)
 
 
-def _check_wanted(found: CampaignCoefficients, request: Request) -> None:
+def _check_wanted(coefficients: CampaignCoefficients, request: Request) -> None:
     for name in request.wanted:
-        _check_name(name, found, request)
-        if found.rows(name):
+        _check_name(name, coefficients, request)
+        if coefficients.rows(name):
             continue
-        why = [missing.message for missing in found.missing if missing.name == name]
-        known = ", ".join(dict.fromkeys(entry.name for entry in found.entries))
+        why = [missing.message for missing in coefficients.missing if missing.name == name]
+        known = ", ".join(dict.fromkeys(entry.name for entry in coefficients.entries))
         raise DataError(why[0] if why else f"{name} is not determined by these runs ({known} are)")
 
 
-def _check_name(name: str, found: CampaignCoefficients, request: Request) -> None:
+def _check_name(name: str, coefficients: CampaignCoefficients, request: Request) -> None:
     """Refuse a name that is neither of the form nor a term."""
     try:
-        place_of(name, found.plane, request.form)
+        place_of(name, coefficients.plane, request.form)
     except ConfigurationError as unknown:
         try:
-            term_of(name, found.plane)
+            term_of(name, coefficients.plane)
         except ConfigurationError:
             raise unknown from None
 
 
-def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
+def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficients:
     """Return the campaign with each coefficient at zero frequency, where two frequencies allow it.
 
     At each frequency the fit of all amplitudes is taken; a linear value of one amplitude only where
     the load was found linear, for it holds what the amplitude adds.
     """
-    entries, values = list(found.entries), [found.uncertain]
-    for name, speed in dict.fromkeys((one.name, one.speed_m_s) for one in found.entries):
-        rows = found.at_each_frequency(name, speed)
+    entries, values = list(coefficients.entries), [coefficients.uncertain]
+    for name, speed in dict.fromkeys(
+        (entry.name, entry.speed_m_s) for entry in coefficients.entries
+    ):
+        rows = coefficients.at_each_frequency(name, speed)
         if len(rows) < 2:
             continue
-        own = found.uncertain.taken(rows)
+        own = coefficients.uncertain.taken(rows)
         label = f"{name} at {speed:g} m/s"
-        frequencies = [found.entries[k].frequency_hz for k in rows]
+        frequencies = [coefficients.entries[k].frequency_hz for k in rows]
         values.append(extrapolate(label, frequencies, own).uncertain)
-        entries.append(_at_zero(found, rows))
-    more = len(entries) - len(found.entries)
+        entries.append(_at_zero(coefficients, rows))
+    more = len(entries) - len(coefficients.entries)
     empty = np.full(more, np.nan)
-    trials = found.trials
+    trials = coefficients.trials
     return replace(
-        found,
+        coefficients,
         entries=tuple(entries),
         uncertain=stacked(values),
         trials=TrialColumns(
@@ -206,16 +210,16 @@ def with_zero_frequency(found: CampaignCoefficients) -> CampaignCoefficients:
     )
 
 
-def _at_zero(found: CampaignCoefficients, rows: Sequence[int]) -> CoefficientEntry:
-    several = [found.entries[k] for k in rows]
+def _at_zero(coefficients: CampaignCoefficients, rows: Sequence[int]) -> CoefficientEntry:
+    several = [coefficients.entries[k] for k in rows]
     return replace(
         several[0],
         method=ZERO_FREQUENCY,
         frequency_hz=0.0,
-        translation_amplitude_m=max(one.translation_amplitude_m for one in several),
-        rotation_amplitude_rad=max(one.rotation_amplitude_rad for one in several),
-        runs=tuple(dict.fromkeys(run for one in several for run in one.runs)),
-        retained=min(one.retained for one in several),
+        translation_amplitude_m=max(entry.translation_amplitude_m for entry in several),
+        rotation_amplitude_rad=max(entry.rotation_amplitude_rad for entry in several),
+        runs=tuple(dict.fromkeys(run for entry in several for run in entry.runs)),
+        retained=min(entry.retained for entry in several),
         misfit=np.nan,
     )
 

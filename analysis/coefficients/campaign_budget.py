@@ -88,41 +88,41 @@ class CoefficientBudget:
     digits: str
 
 
-def budget(found: CampaignCoefficients, row: int) -> CoefficientBudget:
+def budget(coefficients: CampaignCoefficients, row: int) -> CoefficientBudget:
     """Return the budget of one entry of a campaign's table."""
-    entry = found.entries[row]
-    spread = float(found.uncertain.standard_uncertainty[row])
-    freedom = float(found.uncertain.degrees_of_freedom[row])
-    factor = float(student_factor(freedom, found.level))
+    entry = coefficients.entries[row]
+    spread = float(coefficients.uncertain.standard_uncertainty[row])
+    freedom = float(coefficients.uncertain.degrees_of_freedom[row])
+    factor = float(student_factor(freedom, coefficients.level))
     return CoefficientBudget(
         entry.name,
         entry.unit,
-        float(found.values[row]),
+        float(coefficients.values[row]),
         spread,
         freedom,
         factor,
         factor * spread,
-        _lines(found, row, spread),
+        _lines(coefficients, row, spread),
         _digits(entry.name, entry.retained),
     )
 
 
-def correlation(found: CampaignCoefficients, first: int, second: int) -> float:
+def correlation(coefficients: CampaignCoefficients, first: int, second: int) -> float:
     """Return the correlation coefficient of two entries; 0 where one has no uncertainty."""
-    covariance = found.uncertain.covariance([first, second])
+    covariance = coefficients.uncertain.covariance([first, second])
     spread = math.sqrt(covariance[0, 0] * covariance[1, 1])
     return float(covariance[0, 1]) / spread if spread else 0.0
 
 
-def _lines(found: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
+def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
     variances: dict[str, float] = {}
     freedom: dict[str, float] = {}
-    parts = found.uncertain.variances()[:, row]
-    for one, part in zip(found.uncertain.contributions, parts, strict=True):
+    parts = coefficients.uncertain.variances()[:, row]
+    for contribution, part in zip(coefficients.uncertain.contributions, parts, strict=True):
         if part > 0.0:
-            source = _source(one.label)
+            source = _source(contribution.label)
             variances[source] = variances.get(source, 0.0) + float(part)
-            freedom[source] = min(freedom.get(source, math.inf), one.degrees_of_freedom)
+            freedom[source] = min(freedom.get(source, math.inf), contribution.degrees_of_freedom)
     lines = [
         BudgetLine(source, math.sqrt(part), part / spread**2, freedom[source])
         for source, part in variances.items()

@@ -32,12 +32,12 @@ _NAMED = 2  # runs that a check names
 
 
 def consistency(
-    found: CampaignCoefficients, cycles: Sequence[BodyCycle]
+    coefficients: CampaignCoefficients, cycles: Sequence[BodyCycle]
 ) -> tuple[ConsistencyCheck, ...]:
     """Return all checks that the campaign allows."""
-    pairs = [*_two_tests(found), *_static(found), *_single(found)]
-    several = [_compared(found, *pair) for pair in pairs] + restoring_pairs(cycles)
-    return checked(several, found.level)
+    pairs = [*_two_tests(coefficients), *_static(coefficients), *_single(coefficients)]
+    several = [_compared(coefficients, *pair) for pair in pairs] + restoring_pairs(cycles)
+    return checked(several, coefficients.level)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,54 +61,54 @@ def checked(pairs: Sequence[Pair], level: float) -> tuple[ConsistencyCheck, ...]
     return tuple(_check(pair, each) for pair in pairs)
 
 
-def _two_tests(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+def _two_tests(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
     """Linear coefficients at one frequency and speed, of neighbouring amplitudes.
 
     Where the load was found to be curved they differ by nature: there each run is held against the
     fit of all (:func:`_single`).
     """
-    names = dict.fromkeys((one.name, one.speed_m_s) for one in found.entries)
+    names = dict.fromkeys((entry.name, entry.speed_m_s) for entry in coefficients.entries)
     for name, speed in names:
-        if found.curved(name, speed):
+        if coefficients.curved(name, speed):
             continue
-        rows = found.rows(name, method=LINEAR, speed_m_s=speed)
+        rows = coefficients.rows(name, method=LINEAR, speed_m_s=speed)
         for first, second in pairwise(rows):
-            one, other = found.entries[first], found.entries[second]
-            if abs(one.frequency_hz - other.frequency_hz) <= 5e-3 * one.frequency_hz:
+            entry, other = coefficients.entries[first], coefficients.entries[second]
+            if abs(entry.frequency_hz - other.frequency_hz) <= 5e-3 * entry.frequency_hz:
                 yield TWO_TESTS, first, second
 
 
-def _static(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+def _static(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
     """Static drift against zero frequency, or else against the slowest run."""
-    for row in found.rows(method=STATIC_DRIFT):
-        entry = found.entries[row]
+    for row in coefficients.rows(method=STATIC_DRIFT):
+        entry = coefficients.entries[row]
         dynamic = [
             k
             for method in (ZERO_FREQUENCY, HIGHER_ORDER, LINEAR)
-            for k in found.rows(entry.name, method=method, speed_m_s=entry.speed_m_s)
+            for k in coefficients.rows(entry.name, method=method, speed_m_s=entry.speed_m_s)
         ]
         if dynamic:
             yield STATIC, row, dynamic[0]
 
 
-def _single(found: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+def _single(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
     """Each run alone against all runs together."""
     by_run: dict[tuple[str, str], list[int]] = {}
-    for k in found.rows(method=HIGHER_ORDER):
-        whole = found.entries[k]
+    for k in coefficients.rows(method=HIGHER_ORDER):
+        whole = coefficients.entries[k]
         for run in whole.runs if len(whole.runs) > 1 else ():
             by_run.setdefault((whole.name, run), []).append(k)
-    for row in found.rows(method=SINGLE_RUN):
-        entry = found.entries[row]
+    for row in coefficients.rows(method=SINGLE_RUN):
+        entry = coefficients.entries[row]
         for k in by_run.get((entry.name, entry.runs[0]), ()):
             yield SINGLE, row, k
 
 
-def _compared(found: CampaignCoefficients, kind: str, first: int, second: int) -> Pair:
-    one, other = found.entries[first], found.entries[second]
-    both = found.uncertain.taken([first, second])
-    texts = (_where(one), _where(other))
-    return Pair(kind, one.name, one.unit, texts, both)
+def _compared(coefficients: CampaignCoefficients, kind: str, first: int, second: int) -> Pair:
+    entry, other = coefficients.entries[first], coefficients.entries[second]
+    both = coefficients.uncertain.taken([first, second])
+    texts = (_where(entry), _where(other))
+    return Pair(kind, entry.name, entry.unit, texts, both)
 
 
 def _check(pair: Pair, level: float) -> ConsistencyCheck:
@@ -155,13 +155,13 @@ def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
     """
     if cycles[0].plane is not Plane.VERTICAL:
         return []
-    found = []
+    pairs = []
     for column in (0, 1):
         pure = [cycle for cycle in cycles if _serves(cycle, column)]
         if len({round(cycle.frequency_hz, 4) for cycle in pure}) < 2:
             continue
-        found += [_restoring(pure, row, column) for row in (0, 1)]
-    return found
+        pairs += [_restoring(pure, row, column) for row in (0, 1)]
+    return pairs
 
 
 def _serves(cycle: BodyCycle, column: int) -> bool:

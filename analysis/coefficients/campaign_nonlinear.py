@@ -54,8 +54,8 @@ class GroupFits:
 
 def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the fits of force and moment in the form that the data support, and of X."""
-    found = GroupFits()
-    fits, missing = found.fits, found.missing
+    group = GroupFits()
+    fits, missing = group.fits, group.missing
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
     for row in (0, 1):
@@ -64,8 +64,8 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         except DataError as error:
             missing.append(Missing(f"{LOAD_LETTERS[cycles[0].plane][row]} terms", str(error)))
             continue
-        found.choices.append(choice)
-        found.richest.append(richest)
+        group.choices.append(choice)
+        group.richest.append(richest)
         forms = forms_of(cycles[0].plane, row, motions, cross=cross)
         of_all: list[tuple[str, CycleFit]] = []
         for method, of, chosen in _methods(cycles, orders):
@@ -74,8 +74,8 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         for _, several in of_all[:1]:
             fits += _single_runs(several, row, choice, orders, request)
     if all(cycle.has_surge for cycle in cycles):
-        _surge(found, cycles, motions, cross, request)
-    return found
+        _surge(group, cycles, motions, cross, request)
+    return group
 
 
 def _single_runs(
@@ -86,14 +86,14 @@ def _single_runs(
     request: Request,
 ) -> list[tuple[str, CycleFit]]:
     """Return each run's own fit; what its other motion does, by the fit of all, is left open."""
-    found: list[tuple[str, CycleFit]] = []
+    fits: list[tuple[str, CycleFit]] = []
     for cycle in several.problem.cycles:
         own, both = _motions([cycle])
         forms = forms_of(cycle.plane, row, own, cross=both)
         alone: list[tuple[str, CycleFit]] = []
         _try_form(alone, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
-        found += [(method, fit.beside(_LEFT_OUT, _left_out(fit, several))) for method, fit in alone]
-    return found
+        fits += [(method, fit.beside(_LEFT_OUT, _left_out(fit, several))) for method, fit in alone]
+    return fits
 
 
 def _left_out(fit: CycleFit, several: CycleFit) -> FloatArray:
@@ -112,13 +112,13 @@ def _left_out(fit: CycleFit, several: CycleFit) -> FloatArray:
 def _methods(
     cycles: Sequence[BodyCycle], orders: tuple[int, ...]
 ) -> list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]]:
-    found: list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]] = []
+    methods: list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]] = []
     if orders != FIRST:
-        found.append((HIGHER_ORDER, cycles, orders))
-    found.append((FIRST_HARMONICS, cycles, FIRST))
+        methods.append((HIGHER_ORDER, cycles, orders))
+    methods.append((FIRST_HARMONICS, cycles, FIRST))
     if all(cycle.mean_known for cycle in cycles):
-        found.append((QUASI, cycles, QUASI_STEADY))
-    return found
+        methods.append((QUASI, cycles, QUASI_STEADY))
+    return methods
 
 
 def _try_form(
@@ -176,7 +176,7 @@ def _motions(cycles: Sequence[BodyCycle]) -> tuple[str, bool]:
 
 
 def _surge(
-    found: GroupFits,
+    fits: GroupFits,
     cycles: Sequence[BodyCycle],
     motions: str,
     cross: bool,
@@ -193,19 +193,19 @@ def _surge(
     names += [f"X_{v}{r}"] if cross else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
-    _try_surge(found, cycles, names, orders, request)
+    _try_surge(fits, cycles, names, orders, request)
 
 
 def _try_surge(
-    found: GroupFits,
+    fits: GroupFits,
     cycles: Sequence[BodyCycle],
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
 ) -> None:
-    before = len(found.fits)
-    _try(found.fits, found.missing, SURGE_FORCES, cycles, names, orders, request)
-    found.richest.extend(fit for _, fit in found.fits[before:])
+    before = len(fits.fits)
+    _try(fits.fits, fits.missing, SURGE_FORCES, cycles, names, orders, request)
+    fits.richest.extend(fit for _, fit in fits.fits[before:])
 
 
 def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
@@ -215,8 +215,8 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     intervals; X is the resistance and, where the model was turned, quadratic.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
-    found = GroupFits()
-    fits, missing = found.fits, found.missing
+    group = GroupFits()
+    fits, missing = group.fits, group.missing
     for row in (0, 1):
         forms = forms_of(plane, row, "v", steady=True)
         try:
@@ -224,8 +224,8 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         except DataError as error:
             missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
-        found.choices.append(choice)
-        found.richest.append(richest)
+        group.choices.append(choice)
+        group.richest.append(richest)
         _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choice, STATIC, request)
         label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
         fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
@@ -233,5 +233,5 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         letter = VELOCITY_LETTERS[plane][0]
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
         names = ["X_0", f"X_{letter * 2}"] if turned else ["X_0"]
-        _try_surge(found, cycles, names, STATIC, request)
-    return found
+        _try_surge(group, cycles, names, STATIC, request)
+    return group

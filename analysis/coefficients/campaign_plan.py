@@ -75,7 +75,7 @@ def check_campaign(cycles: Sequence[BodyCycle]) -> None:
     """
     if not cycles:
         raise ConfigurationError("no run was given; one or more are needed")
-    twice = [name for name, count in Counter(one.name for one in cycles).items() if count > 1]
+    twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
     faults = [f"two runs are called {name!r}; rename one" for name in twice]
     for cycle in cycles:
         faults += [*_other_rig(cycle, cycles[0]), *_incomplete(cycle)]
@@ -96,9 +96,9 @@ def _other_rig(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
 def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:
     """Yield runs with another body than the rest, but for those known to be made with it."""
     bodies = [
-        (one.name, one.body)
-        for one in cycles
-        if one.body is not None and all(flag.code != OWN_MODEL for flag in one.flags)
+        (cycle.name, cycle.body)
+        for cycle in cycles
+        if cycle.body is not None and all(flag.code != OWN_MODEL for flag in cycle.flags)
     ]
     for name, body in bodies[1:]:
         first, usual = bodies[0]
@@ -130,35 +130,37 @@ def plan(cycles: Sequence[BodyCycle], request: Request) -> tuple[Group, ...]:
     seen. Where one amplitude alone tells nothing apart (pitch about the midpoint at forward speed,
     with heave at another amplitude), all amplitudes of that frequency are solved as one.
     """
-    found = []
+    groups = []
     for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
-        here = [one for one in cycles if _near(one.speed_m_s, speed, _SAME_SPEED, 0.01)]
+        here = [cycle for cycle in cycles if _near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)]
         static = [cycle for cycle in here if cycle.frequency_hz == 0.0]
         if static:
-            found.append(Group(GroupKind.STATIC, tuple(static)))
+            groups.append(Group(GroupKind.STATIC, tuple(static)))
         moving = [cycle for cycle in here if cycle.frequency_hz > 0.0]
         for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
             same = [c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)]
-            found += _by_amplitude(same, request)
-    return tuple(found)
+            groups += _by_amplitude(same, request)
+    return tuple(groups)
 
 
 def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
     straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0]
-    sizes = _classes([strut_amplitude(one) for one in straight], _SAME_AMPLITUDE, 0.0)
+    sizes = _classes([strut_amplitude(cycle) for cycle in straight], _SAME_AMPLITUDE, 0.0)
     classes = [
-        tuple(one for one in straight if _near(strut_amplitude(one), size, _SAME_AMPLITUDE, 0.0))
+        tuple(
+            cycle for cycle in straight if _near(strut_amplitude(cycle), size, _SAME_AMPLITUDE, 0.0)
+        )
         for size in sizes
     ]
     columns = [_told(group, request.form) for group in classes]
     told = [group for group, own in zip(classes, columns, strict=True) if own]
     if straight and {0, 1} != {column for own in columns for column in own} and () in columns:
         told.append(tuple(straight))
-    found = [Group(GroupKind.LINEAR, group) for group in told]
+    groups = [Group(GroupKind.LINEAR, group) for group in told]
     several = len(classes) > 1 or len(straight) < len(cycles)
     if request.nonlinear and several:
-        found.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
-    return found
+        groups.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
+    return groups
 
 
 def _told(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:
@@ -178,8 +180,8 @@ def _near(value: float, centre: float, relative: float, least: float) -> bool:
 
 def _classes(values: Sequence[float], relative: float, least: float) -> list[float]:
     """Return one value of each cluster, in rising order."""
-    found: list[float] = []
+    centres: list[float] = []
     for value in sorted(values):
-        if not found or not _near(value, found[-1], relative, least):
-            found.append(value)
-    return found
+        if not centres or not _near(value, centres[-1], relative, least):
+            centres.append(value)
+    return centres

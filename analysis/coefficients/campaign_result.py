@@ -116,8 +116,8 @@ class CampaignCoefficients:
                 and speed_m_s in (None, entry.speed_m_s)
             )
 
-        found = [k for k, entry in enumerate(self.entries) if wanted(entry)]
-        return sorted(found, key=lambda k: _order(self.entries[k]))
+        rows = [k for k, entry in enumerate(self.entries) if wanted(entry)]
+        return sorted(rows, key=lambda k: _order(self.entries[k]))
 
     def row(self, name: str, *, method: str | None = None) -> int:
         """Return the place of a coefficient that stands once.
@@ -127,22 +127,22 @@ class CampaignCoefficients:
         DataError
             If there is none, or more than one; the message says which there are.
         """
-        found = self.rows(name, method=method)
-        if len(found) != 1:
+        rows = self.rows(name, method=method)
+        if len(rows) != 1:
             known = ", ".join(dict.fromkeys(entry.name for entry in self.entries))
-            why = "; ".join(one.message for one in self.missing if one.name == name)
+            why = "; ".join(missing.message for missing in self.missing if missing.name == name)
             raise DataError(
-                f"{name} stands {len(found)} times in the campaign's table (there are: {known})"
+                f"{name} stands {len(rows)} times in the campaign's table (there are: {known})"
                 + (f": {why}" if why else "")
             )
-        return found[0]
+        return rows[0]
 
     def curved(self, name: str, speed_m_s: float) -> bool:
         """Whether a coefficient's load was found not to be linear in oscillations at a speed."""
         rows = self.rows(name, speed_m_s=speed_m_s)
         moving = [self.entries[k] for k in rows if self.entries[k].frequency_hz > 0.0]
         runs = [run for entry in moving for run in entry.runs]
-        return any(one.fitted != LINEAR_FORM for one in self.choices_of(name, runs))
+        return any(choice.fitted != LINEAR_FORM for choice in self.choices_of(name, runs))
 
     def at_each_frequency(self, name: str, speed_m_s: float) -> list[int]:
         """Return the places of a coefficient's values over frequency, one each.
@@ -161,7 +161,9 @@ class CampaignCoefficients:
         """Return what was found of the form of a coefficient's load with any of some runs."""
         load = load_of(name)
         own = set(runs)
-        return tuple(one for one in self.choices if one.load == load and own & set(one.runs))
+        return tuple(
+            choice for choice in self.choices if choice.load == load and own & set(choice.runs)
+        )
 
     def shares(self, row: int) -> Mapping[str, float]:
         """Return what part of one value's variance each input has, largest first."""

@@ -53,44 +53,44 @@ def solve_group(group: Group, request: Request) -> GroupCoefficients:
 
 
 def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
-    missing = tuple(Missing(*one) for one in lacking_places(cycles, request.form))
+    missing = tuple(Missing(*lacking) for lacking in lacking_places(cycles, request.form))
     try:
-        found = linear_fit(cycles, request.form, request.stated)
+        linear = linear_fit(cycles, request.form, request.stated)
     except DataError:
         others = otherwise(cycles, [], [])
         return GroupCoefficients(
             (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others
         )
-    fit = found.fit
+    fit = linear.fit
     entries = tuple(
         replace(
             _fit_entry(LINEAR, fit, k),
             unit=place.unit,
-            retained=float(found.retained[k]),
-            misfit=found.misfit,
+            retained=float(linear.retained[k]),
+            misfit=linear.misfit,
         )
-        for k, place in enumerate(found.places)
+        for k, place in enumerate(linear.places)
     )
     trials = _fits_trials([(LINEAR, fit)], request)
     others = otherwise(cycles, [fit], [])
     return GroupCoefficients(
-        entries, fit.uncertain, trials, missing=missing, flags=found.flags, others=others
+        entries, fit.uncertain, trials, missing=missing, flags=linear.flags, others=others
     )
 
 
 def _fits_block(
-    found: GroupFits, cycles: Sequence[BodyCycle], request: Request
+    group: GroupFits, cycles: Sequence[BodyCycle], request: Request
 ) -> GroupCoefficients:
-    fits = found.fits
+    fits = group.fits
     entries = tuple(
         _fit_entry(method, fit, k) for method, fit in fits for k in range(len(fit.names))
     )
     uncertain = stacked([fit.uncertain for _, fit in fits])
     flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
     trials = _fits_trials(fits, request)
-    others = otherwise(cycles, [fit for _, fit in fits], found.richest)
+    others = otherwise(cycles, [fit for _, fit in fits], group.richest)
     return GroupCoefficients(
-        entries, uncertain, trials, tuple(found.choices), tuple(found.missing), flags, others
+        entries, uncertain, trials, tuple(group.choices), tuple(group.missing), flags, others
     )
 
 
@@ -106,7 +106,7 @@ def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> Tria
         return no_trials(0)
     names = ("standard_uncertainty", "low", "high")
     return TrialColumns(
-        request.trials, *(np.concatenate([getattr(one, n) for one in columns]) for n in names)
+        request.trials, *(np.concatenate([getattr(column, n) for column in columns]) for n in names)
     )
 
 

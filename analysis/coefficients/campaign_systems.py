@@ -21,7 +21,7 @@ System = Callable[[float], Normalisation]
 
 
 def without_dimensions(
-    found: CampaignCoefficients,
+    coefficients: CampaignCoefficients,
     system: System,
     stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
 ) -> CampaignCoefficients:
@@ -38,23 +38,25 @@ def without_dimensions(
     ConfigurationError
         If the campaign is in a system already, or holds a speed at which the system has no meaning.
     """
-    _check_system(found, DIMENSIONAL)
-    systems = [system(entry.speed_m_s) for entry in found.entries]
-    factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
-    scaled = _scaled(found, 1.0 / factors, common_name(systems), None)
+    _check_system(coefficients, DIMENSIONAL)
+    systems = [system(entry.speed_m_s) for entry in coefficients.entries]
+    factors = np.array(
+        [_factor(coefficients, e, s) for e, s in zip(coefficients.entries, systems, strict=True)]
+    )
+    scaled = _scaled(coefficients, 1.0 / factors, common_name(systems), None)
     uncertain = scaled.uncertain
     if stated.density_relative > 0.0:
         uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
-    if stated.speed_m_s > 0.0 and any(one.speed_m_s > 0.0 for one in systems):
-        pairs = zip(found.entries, systems, strict=True)
-        powers = np.array([_speed_power(found, entry, own) for entry, own in pairs])
-        speeds = np.array([one.speed_m_s or np.inf for one in systems])
+    if stated.speed_m_s > 0.0 and any(system.speed_m_s > 0.0 for system in systems):
+        pairs = zip(coefficients.entries, systems, strict=True)
+        powers = np.array([_speed_power(coefficients, entry, own) for entry, own in pairs])
+        speeds = np.array([system.speed_m_s or np.inf for system in systems])
         parts = -uncertain.values * powers * stated.speed_m_s / speeds
         uncertain = uncertain.plus("speed_m_s", parts)
     return replace(scaled, uncertain=uncertain)
 
 
-def with_dimensions(found: CampaignCoefficients, system: System) -> CampaignCoefficients:
+def with_dimensions(coefficients: CampaignCoefficients, system: System) -> CampaignCoefficients:
     """Return the campaign in SI units: the inverse where the system itself is exact.
 
     Raises
@@ -62,66 +64,76 @@ def with_dimensions(found: CampaignCoefficients, system: System) -> CampaignCoef
     ConfigurationError
         If the campaign is in another system.
     """
-    systems = [system(entry.speed_m_s) for entry in found.entries]
-    _check_system(found, common_name(systems))
-    factors = np.array([_factor(found, e, s) for e, s in zip(found.entries, systems, strict=True)])
-    units = tuple(_term(found, entry).unit for entry in found.entries)
-    return _scaled(found, factors, DIMENSIONAL, units)
+    systems = [system(entry.speed_m_s) for entry in coefficients.entries]
+    _check_system(coefficients, common_name(systems))
+    factors = np.array(
+        [_factor(coefficients, e, s) for e, s in zip(coefficients.entries, systems, strict=True)]
+    )
+    units = tuple(_term(coefficients, entry).unit for entry in coefficients.entries)
+    return _scaled(coefficients, factors, DIMENSIONAL, units)
 
 
-def _check_system(found: CampaignCoefficients, needed: str) -> None:
-    if found.normalisation != needed:
+def _check_system(coefficients: CampaignCoefficients, needed: str) -> None:
+    if coefficients.normalisation != needed:
         raise ConfigurationError(
-            f"the coefficients are in the system {found.normalisation!r}, not in {needed!r}"
+            f"the coefficients are in the system {coefficients.normalisation!r}, not in {needed!r}"
         )
 
 
 def common_name(systems: Sequence[Normalisation]) -> str:
     """Return the systems' name; without the speed where they are of several."""
-    names = list(dict.fromkeys(one.name for one in systems))
+    names = list(dict.fromkeys(system.name for system in systems))
     if len(names) == 1:
         return names[0]
     return re.sub(r"U = [^ ]+ m/s", "U = the carriage's", names[0]) if names else DIMENSIONAL
 
 
-def _term(found: CampaignCoefficients, entry: CoefficientEntry) -> Term:
+def _term(coefficients: CampaignCoefficients, entry: CoefficientEntry) -> Term:
     """Return a coefficient of either form as a term: ``a35`` is that of a rotation's rate."""
     try:
-        return term_of(entry.name, found.plane)
+        return term_of(entry.name, coefficients.plane)
     except ConfigurationError:
-        place = place_of(entry.name, found.plane, Form.SEAKEEPING)
+        place = place_of(entry.name, coefficients.plane, Form.SEAKEEPING)
         letter = "vr"[place.column]
         return Term(place.row, (letter + "dot" if place.inertial else letter,))
 
 
-def _factor(found: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation) -> float:
-    return system.term_factor(_term(found, entry))
+def _factor(
+    coefficients: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
+) -> float:
+    return system.term_factor(_term(coefficients, entry))
 
 
 def _speed_power(
-    found: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
+    coefficients: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
 ) -> float:
     """Power of the speed in what the value is divided by."""
-    term = _term(found, entry)
+    term = _term(coefficients, entry)
     return 2.0 - term.degree - term.rates if system.speed_m_s > 0.0 else 0.0
 
 
 def _scaled(
-    found: CampaignCoefficients, factors: FloatArray, name: str, units: tuple[str, ...] | None
+    coefficients: CampaignCoefficients,
+    factors: FloatArray,
+    name: str,
+    units: tuple[str, ...] | None,
 ) -> CampaignCoefficients:
     contributions = tuple(
         Contribution(
-            one.label, one.degrees_of_freedom, one.rows, one.parts * factors[one.rows][:, None]
+            contribution.label,
+            contribution.degrees_of_freedom,
+            contribution.rows,
+            contribution.parts * factors[contribution.rows][:, None],
         )
-        for one in found.uncertain.contributions
+        for contribution in coefficients.uncertain.contributions
     )
-    trials = found.trials
-    texts = units or ("1",) * len(found.entries)
+    trials = coefficients.trials
+    texts = units or ("1",) * len(coefficients.entries)
     return replace(
-        found,
+        coefficients,
         normalisation=name,
-        entries=tuple(replace(e, unit=u) for e, u in zip(found.entries, texts, strict=True)),
-        uncertain=UncertainValues(found.values * factors, contributions),
+        entries=tuple(replace(e, unit=u) for e, u in zip(coefficients.entries, texts, strict=True)),
+        uncertain=UncertainValues(coefficients.values * factors, contributions),
         trials=TrialColumns(
             trials.count,
             trials.standard_uncertainty * factors,

@@ -66,10 +66,10 @@ class AmplifierFilter:
 
         cutoff = 2.0 * math.pi * self.cutoff_hz
         if self.kind == "bessel":
-            found = signal.bessel(self.order, cutoff, analog=True, output="ba", norm="mag")
+            design = signal.bessel(self.order, cutoff, analog=True, output="ba", norm="mag")
         else:
-            found = signal.butter(self.order, cutoff, analog=True, output="ba")
-        above, below = (np.asarray(part) for part in found)
+            design = signal.butter(self.order, cutoff, analog=True, output="ba")
+        above, below = (np.asarray(part) for part in design)
         return complex(np.polyval(above, s) / np.polyval(below, s))
 
 
@@ -83,7 +83,7 @@ def response_factors(
     DataError
         If a channel lets less than a tenth of this harmonic through.
     """
-    found = {}
+    factors = {}
     for name, response in responses.items():
         value = response_at(response, 2.0 * math.pi * frequency_hz * order)
         if not abs(value) > _LEAST_GAIN:
@@ -92,8 +92,8 @@ def response_factors(
                 f"{frequency_hz:g} Hz through, less than {_LEAST_GAIN:g}; raise the filter's "
                 "frequency or take a lower harmonic"
             )
-        found[name] = 1.0 / value
-    return found
+        factors[name] = 1.0 / value
+    return factors
 
 
 def response_at(response: Response, omega: float) -> complex:

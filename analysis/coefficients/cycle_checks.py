@@ -25,7 +25,7 @@ def check_cycles(cycles: Sequence[BodyCycle], orders: tuple[int, ...]) -> None:
     """
     if not cycles:
         raise ConfigurationError("no run was given; one or more are needed")
-    twice = [name for name, count in Counter(one.name for one in cycles).items() if count > 1]
+    twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
     faults = [f"two runs are called {name!r}; rename one" for name in twice]
     for cycle in cycles:
         faults += _unfit(cycle, cycles[0])

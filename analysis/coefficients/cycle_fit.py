@@ -215,11 +215,11 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
 
 def _variance(problem: CycleProblem, cycle: BodyCycle, slope: FloatArray) -> FloatArray:
     """Of one load's residuals by a cycle's scatter: the mean of both parts of each order."""
-    found = np.zeros(len(slope))
+    variance = np.zeros(len(slope))
     for source in cycle.hull.phasors.sources:
-        found += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
+        variance += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
     numbers = problem.real.reshape(-1, 2)
-    return np.asarray((found.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
+    return np.asarray((variance.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
 
 
 def _trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
@@ -235,15 +235,17 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     """Scatter by source, of all cycles that share it, then each stated uncertainty."""
     problem, stated = fit.problem, fit.stated
     slopes = problem.followed(fit.values)
-    everywhere, found = np.arange(len(problem.terms)), []
+    everywhere, contributions = np.arange(len(problem.terms)), []
     by_stated = np.zeros((len(everywhere), len(STATED)))
     for slope, cycle in zip(slopes, problem.cycles, strict=True):
         for source in cycle.hull.phasors.sources:
             parts = slope @ problem.scatter(cycle, source)
-            found.append(Contribution(source.label, source.degrees_of_freedom, everywhere, parts))
+            contributions.append(
+                Contribution(source.label, source.degrees_of_freedom, everywhere, parts)
+            )
         by_stated += slope @ problem.sensitivity(cycle)
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
             column = by_stated[:, k, None] * spread
-            found.append(Contribution(name, stated.freedom(name), everywhere, column))
-    return added(found)
+            contributions.append(Contribution(name, stated.freedom(name), everywhere, column))
+    return added(contributions)

@@ -65,8 +65,8 @@ class CycleProblem:
     @cached_property
     def parts(self) -> FloatArray:
         """The cycles' numbers, shape ``(cycles, numbers)``."""
-        return np.stack([self._filled(interleaved(one.hull.phasors.values), one)
-                         for one in self.cycles])  # fmt: skip
+        return np.stack([self._filled(interleaved(cycle.hull.phasors.values), cycle)
+                         for cycle in self.cycles])  # fmt: skip
 
     def filled(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
         """Return what stands by a cycle's own phasors as it stands by its numbers here.
@@ -82,9 +82,11 @@ class CycleProblem:
     def _filled(self, rows: FloatArray, cycle: BodyCycle) -> FloatArray:
         shaped = rows.reshape(cycle.orders + 1, len(cycle.channels), 2, *rows.shape[1:])
         count = self.highest + 1
-        found = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
-        found[:, : len(cycle.channels)] = shaped[:count]
-        return np.concatenate((found.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:]))))
+        rows_by_order = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
+        rows_by_order[:, : len(cycle.channels)] = shaped[:count]
+        return np.concatenate(
+            (rows_by_order.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:])))
+        )
 
     def scatter(self, cycle: BodyCycle, source: Contribution) -> FloatArray:
         """Return how a cycle's numbers follow the deviates of a source, ``(numbers, k)``."""
@@ -92,9 +94,9 @@ class CycleProblem:
 
     def sensitivity(self, cycle: BodyCycle) -> FloatArray:
         """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""
-        found = self.filled(cycle, cycle.hull.sensitivity)
-        found[-1, STATED.index("frequency_relative")] = 1.0
-        return found
+        sensitivity = self.filled(cycle, cycle.hull.sensitivity)
+        sensitivity[-1, STATED.index("frequency_relative")] = 1.0
+        return sensitivity
 
     def solve(self, parts: FloatArray) -> FloatArray:
         """Return the terms' coefficients of each trial, ``(trials, terms)``.
@@ -113,19 +115,19 @@ class CycleProblem:
 
     def weighed(self, weights: FloatArray) -> "CycleProblem":
         """Return the same problem, all that was worked out included, with other weights."""
-        found = replace(self, weights=weights)
+        problem = replace(self, weights=weights)
         known = {name: self.__dict__[name] for name in _WORKED_OUT if name in self.__dict__}
-        found.__dict__.update(known)
-        return found
+        problem.__dict__.update(known)
+        return problem
 
     def solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
         """Return the coefficients, ``(trials, terms)``, of what :meth:`design` returns."""
-        found = np.empty((len(design), len(self.terms)))
+        solution = np.empty((len(design), len(self.terms)))
         for row, columns in self.rows:
             matrix = self.weighted(design[..., columns], row)
             target = self.weighted(loads[..., row, None], row)[..., 0]
-            found[:, columns] = least_squares(matrix, target)
-        return found
+            solution[:, columns] = least_squares(matrix, target)
+        return solution
 
     def squares(self, design: FloatArray, loads: FloatArray, values: FloatArray) -> FloatArray:
         """Return the weighted squares of what coefficients leave over, by load.
@@ -135,12 +137,12 @@ class CycleProblem:
         values
             Shape ``(..., terms)``, for :meth:`design` of as many trials: ``(..., 3)``.
         """
-        found = np.zeros((*values.shape[:-1], 3))
+        squares = np.zeros((*values.shape[:-1], 3))
         for row, columns in self.rows:
             fitted = np.einsum("...kbc,...c->...kb", design[..., columns], values[..., columns])
             left = self.weighted((loads[..., row] - fitted)[..., None], row)
-            found[..., row] = (left**2).sum(axis=(-2, -1))
-        return found
+            squares[..., row] = (left**2).sum(axis=(-2, -1))
+        return squares
 
     def weighted(self, values: FloatArray, row: int) -> FloatArray:
         """Return what stands by cycle and number, ``(..., cycles, 2 orders, k)``, as equations.
@@ -207,7 +209,7 @@ class CycleProblem:
 
     @cached_property
     def _omega(self) -> FloatArray:
-        return np.array([2.0 * math.pi * one.frequency_hz for one in self.cycles])
+        return np.array([2.0 * math.pi * cycle.frequency_hz for cycle in self.cycles])
 
     @cached_property
     def _made_of(self) -> tuple[tuple[int, int], ...]:
@@ -220,11 +222,11 @@ class CycleProblem:
         """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 5, instants)``."""
         shaped = self._shaped(parts)
         pace = self._omega * (1.0 + parts[..., -1])
-        found = []
+        moves = []
         for channel, times in self._made_of:
             own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
-            found.append((pace**times)[..., None] * (own @ basis(self.highest + 1, times)))
-        return np.stack(found, axis=-2)
+            moves.append((pace**times)[..., None] * (own @ basis(self.highest + 1, times)))
+        return np.stack(moves, axis=-2)
 
     def residual_slopes(self, values: FloatArray, row: int) -> FloatArray:
         """Return how one load's residuals follow a cycle's numbers, terms' values held.
@@ -245,7 +247,7 @@ class CycleProblem:
             What :meth:`solve` found for the cycles as they are.
         """
         design, loads = self.nominal
-        found = np.zeros((len(self.cycles), len(values), self.parts.shape[1]))
+        changes = np.zeros((len(self.cycles), len(values), self.parts.shape[1]))
         for row, columns in self.rows:
             weight = self._weight(row)
             matrix = weight[..., None] * design[..., columns]
@@ -261,8 +263,8 @@ class CycleProblem:
             pull = np.einsum("c,kcbt->kbt", values[columns], by_terms)
             change = change - (pulled @ self.apart.T)[:, :, None, :] * pull[:, None]
             total = self._by_numbers(change) + pulled @ self._load_slope(row)
-            found[:, columns] = inverse @ total
-        return found
+            changes[:, columns] = inverse @ total
+        return changes
 
     @cached_property
     def _slopes(self) -> FloatArray:
@@ -270,11 +272,11 @@ class CycleProblem:
         return slopes_of(self.terms, self.moved)
 
     def _load_slope(self, row: int) -> FloatArray:
-        found = np.zeros((2 * len(self.orders), self.parts.shape[1]))
+        slope = np.zeros((2 * len(self.orders), self.parts.shape[1]))
         place = np.arange(self.parts.shape[1] - 1).reshape(self.highest + 1, len(CHANNELS), 2)
         rows = place[list(self.orders), _LOADS + row].ravel()
-        found[np.arange(len(rows)), rows] = -self.form.sign
-        return found
+        slope[np.arange(len(rows)), rows] = -self.form.sign
+        return slope
 
     def _by_numbers(self, over: FloatArray) -> FloatArray:
         """Return what changes per move and instant are per number: the moves' own slope after.
@@ -282,13 +284,13 @@ class CycleProblem:
         Shape ``(cycles, k, 5, instants)`` to ``(cycles, k, numbers)``.
         """
         count = self.highest + 1
-        found = np.zeros((*over.shape[:2], count, len(CHANNELS), 2))
+        slopes = np.zeros((*over.shape[:2], count, len(CHANNELS), 2))
         by_pace = np.zeros(over.shape[:2])
         for k, (channel, times) in enumerate(self._made_of):
             own = over[:, :, k] @ basis(count, times).T * (self._omega**times)[:, None, None]
-            found[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
+            slopes[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
             by_pace += times * np.einsum("kct,kt->kc", over[:, :, k], self.moved[:, k])
-        flat = found.reshape(*over.shape[:2], -1)
+        flat = slopes.reshape(*over.shape[:2], -1)
         return np.concatenate((flat, by_pace[..., None]), axis=-1)
 
 

@@ -54,14 +54,14 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
         ]
         ways.append([*own, (deviations, problem.sensitivity(cycle).T)])
     pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
-    found = []
+    cycles = []
     for some in pieces:
         parts = [
             nominal + sum(deviates[some] @ way for deviates, way in own)
             for nominal, own in zip(problem.parts, ways, strict=True)
         ]
-        found.append(problem.solve(np.stack(parts, axis=1)))
-    return np.concatenate(found)
+        cycles.append(problem.solve(np.stack(parts, axis=1)))
+    return np.concatenate(cycles)
 
 
 class DeviateDraws:

@@ -52,12 +52,12 @@ def to_dict(result: CampaignCoefficients) -> dict[str, Any]:
     """Return a campaign's coefficients with nothing but what JSON knows."""
     contributions = [
         {
-            "label": one.label,
-            "degrees_of_freedom": one.degrees_of_freedom,
-            "rows": one.rows.tolist(),
-            "parts": one.parts.tolist(),
+            "label": contribution.label,
+            "degrees_of_freedom": contribution.degrees_of_freedom,
+            "rows": contribution.rows.tolist(),
+            "parts": contribution.parts.tolist(),
         }
-        for one in result.uncertain.contributions
+        for contribution in result.uncertain.contributions
     ]
     content = {
         **_head(result),
@@ -67,11 +67,11 @@ def to_dict(result: CampaignCoefficients) -> dict[str, Any]:
             "count": result.trials.count,
             "standard_uncertainty": result.trials.standard_uncertainty.tolist(),
         },
-        **{name: [asdict(one) for one in getattr(result, name)] for name in _RECORDS},
+        **{name: [asdict(record) for record in getattr(result, name)] for name in _RECORDS},
         "flags": [asdict(flag) for flag in result.flags],
     }
-    found: dict[str, Any] = _plain(content)
-    return found
+    plain: dict[str, Any] = _plain(content)
+    return plain
 
 
 def from_dict(content: Mapping[str, Any]) -> CampaignCoefficients:
@@ -87,12 +87,12 @@ def from_dict(content: Mapping[str, Any]) -> CampaignCoefficients:
     size = len(table)
     contributions = tuple(
         Contribution(
-            str(one["label"]),
-            _number(one["degrees_of_freedom"]),
-            np.array(one["rows"], dtype=np.int64),
-            _numbers(one["parts"]).reshape(len(one["rows"]), -1),
+            str(contribution["label"]),
+            _number(contribution["degrees_of_freedom"]),
+            np.array(contribution["rows"], dtype=np.int64),
+            _numbers(contribution["parts"]).reshape(len(contribution["rows"]), -1),
         )
-        for one in content["contributions"]
+        for contribution in content["contributions"]
     )
     trials = TrialColumns(
         int(content["trials"]["count"]),
@@ -101,7 +101,7 @@ def from_dict(content: Mapping[str, Any]) -> CampaignCoefficients:
         _numbers([row["trials_high"] for row in table]),
     )
     values = _numbers([row["value"] for row in table]).reshape(size)
-    names = [one.name for one in fields(CoefficientEntry)]
+    names = [field.name for field in fields(CoefficientEntry)]
     entries = tuple(_record(CoefficientEntry, {name: row[name] for name in names}) for row in table)
     return _result(content, entries, UncertainValues(values, contributions), trials)
 
@@ -121,12 +121,15 @@ def to_dataset(result: CampaignCoefficients) -> "xr.Dataset":
     columns["trials_standard_uncertainty"] = ("entry", trials_spread)
     columns |= _long_table(result.uncertain.contributions)
     inputs = result.uncertain.contributions
-    columns["input_label"] = ("input", np.array([one.label for one in inputs], dtype=str))
-    freedom = np.array([one.degrees_of_freedom for one in inputs])
+    columns["input_label"] = (
+        "input",
+        np.array([contribution.label for contribution in inputs], dtype=str),
+    )
+    freedom = np.array([contribution.degrees_of_freedom for contribution in inputs])
     columns["input_degrees_of_freedom"] = ("input", freedom)
     attributes: dict[str, Any] = {**_head(result), "trials": result.trials.count}
     for name in (*_RECORDS, "flags"):
-        attributes[name] = json.dumps(_plain([asdict(one) for one in getattr(result, name)]))
+        attributes[name] = json.dumps(_plain([asdict(record) for record in getattr(result, name)]))
     return xr.Dataset(columns, attrs=attributes)
 
 
@@ -144,7 +147,9 @@ def from_dataset(dataset: "xr.Dataset") -> CampaignCoefficients:
     content: dict[str, Any] = {**attributes}
     for name in (*_RECORDS, "flags"):
         content[name] = json.loads(attributes[name])
-    by_name = {one.name: dataset[one.name].values.tolist() for one in fields(CoefficientEntry)}
+    by_name = {
+        field.name: dataset[field.name].values.tolist() for field in fields(CoefficientEntry)
+    }
     by_name["runs"] = [json.loads(text) for text in by_name["runs"]]
     entries = tuple(
         _record(CoefficientEntry, {name: column[k] for name, column in by_name.items()})
@@ -173,7 +178,8 @@ def _result(
     trials: TrialColumns,
 ) -> CampaignCoefficients:
     records: dict[str, Any] = {
-        name: tuple(_record(kind, one) for one in content[name]) for name, kind in _RECORDS.items()
+        name: tuple(_record(kind, record) for record in content[name])
+        for name, kind in _RECORDS.items()
     }
     flags = tuple(map(Flag.read, content["flags"]))
     return CampaignCoefficients(
@@ -191,16 +197,18 @@ def _result(
 
 def _long_table(contributions: Sequence[Contribution]) -> dict[str, Any]:
     """Return entry, input, deviate and part of everything that is in the contributions."""
-    found: list[tuple[Any, ...]] = [(np.zeros(0),) * 4]
-    for k, one in enumerate(contributions):
-        rows, deviates = np.meshgrid(one.rows, np.arange(one.parts.shape[1]), indexing="ij")
+    long_rows: list[tuple[Any, ...]] = [(np.zeros(0),) * 4]
+    for k, contribution in enumerate(contributions):
+        rows, deviates = np.meshgrid(
+            contribution.rows, np.arange(contribution.parts.shape[1]), indexing="ij"
+        )
         whose = np.full(rows.size, k)
-        found.append((rows.ravel(), whose, deviates.ravel(), one.parts.ravel()))
+        long_rows.append((rows.ravel(), whose, deviates.ravel(), contribution.parts.ravel()))
     names = ("of_entry", "of_input", "of_deviate", "part")
     kinds = (np.int64, np.int64, np.int64, np.float64)
     return {
         name: ("contribution", np.concatenate(column).astype(kind))
-        for name, kind, column in zip(names, kinds, zip(*found, strict=True), strict=True)
+        for name, kind, column in zip(names, kinds, zip(*long_rows, strict=True), strict=True)
     }
 
 
@@ -209,24 +217,24 @@ def _from_long(dataset: "xr.Dataset") -> tuple[Contribution, ...]:
     entry, whose, deviate, part = (dataset[name].values for name in names)
     labels = dataset["input_label"].values.tolist()
     freedom = dataset["input_degrees_of_freedom"].values
-    found = []
+    contributions = []
     for k, label in enumerate(labels):
         mine = whose == k
         count = int(deviate[mine].max()) + 1
         rows = entry[mine].reshape(-1, count)[:, 0]
         parts = part[mine].reshape(-1, count)
-        found.append(Contribution(str(label), float(freedom[k]), rows, parts))
-    return tuple(found)
+        contributions.append(Contribution(str(label), float(freedom[k]), rows, parts))
+    return tuple(contributions)
 
 
-def _check_schema(found: object) -> None:
-    if found != SCHEMA:
-        raise DataError(f"no coefficients of a campaign: schema {found!r}, {SCHEMA!r} is needed")
+def _check_schema(schema: object) -> None:
+    if schema != SCHEMA:
+        raise DataError(f"no coefficients of a campaign: schema {schema!r}, {SCHEMA!r} is needed")
 
 
 def _record(kind: type[Record], content: Mapping[str, Any]) -> Record:
     """Build a record: lists are tuples, text and ``None`` are numbers where the field is one."""
-    annotations = {one.name: str(one.type) for one in fields(kind)}  # type: ignore[arg-type]
+    annotations = {field.name: str(field.type) for field in fields(kind)}  # type: ignore[arg-type]
     return kind(**{name: _typed(content[name], wanted) for name, wanted in annotations.items()})
 
 
@@ -238,9 +246,9 @@ def _typed(value: Any, wanted: str) -> Any:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: _plain(one) for key, one in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else ("inf" if value > 0.0 else "-inf")
     return value
@@ -252,5 +260,5 @@ def _number(value: Any) -> float:
 
 def _numbers(values: Any) -> FloatArray:
     if isinstance(values, list):
-        return np.array([_numbers(one) for one in values], dtype=np.float64)
+        return np.array([_numbers(value) for value in values], dtype=np.float64)
     return np.asarray(_number(values))

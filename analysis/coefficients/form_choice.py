@@ -150,13 +150,13 @@ def _criteria(fits: Mapping[str, CycleFit], row: int) -> tuple[dict[str, float],
     richest = max(fits.values(), key=lambda fit: len(fit.names))
     spare = float(richest.data[row]) - len(richest.names)
     dispersion = max(1.0, float(richest.chi_square[row]) / spare) if spare > 0 else 1.0
-    found = {}
+    criteria = {}
     for form, fit in fits.items():
         count, data = len(fit.names), float(fit.data[row])
         few = data - count - 1.0
         penalty = 2.0 * count * (count + 1.0) / few if few > 0 else 0.0
-        found[form] = float(fit.chi_square[row]) / dispersion + 2.0 * count + penalty
-    return found, dispersion, richest
+        criteria[form] = float(fit.chi_square[row]) / dispersion + 2.0 * count + penalty
+    return criteria, dispersion, richest
 
 
 def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
@@ -168,25 +168,25 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
         return math.exp(min((min(others) - criteria[best]) / 2.0, 700.0)) if others else math.inf
 
     if best == LINEAR_FORM:
-        found = ratio((CUBIC, QUADRATIC, BOTH))
+        verdict = ratio((CUBIC, QUADRATIC, BOTH))
         needed = "no non-linear term is needed within the scatter"
-        return best, best, found, needed if len(criteria) > 1 else _TOO_FEW
+        return best, best, verdict, needed if len(criteria) > 1 else _TOO_FEW
     if best == BOTH and ratio((CUBIC, QUADRATIC)) < DECIDES:
         return _verdict({form: value for form, value in criteria.items() if form != BOTH})
     rivals = [form for form in (CUBIC, QUADRATIC) if form != best]
     over_linear, over_rivals = ratio((LINEAR_FORM,)), ratio(rivals)
-    if (found := min(over_linear, over_rivals)) >= DECIDES:
-        return best, best, found, f"{best} is {times(found)} as well supported as the next"
+    if (verdict := min(over_linear, over_rivals)) >= DECIDES:
+        return best, best, verdict, f"{best} is {times(verdict)} as well supported as the next"
     if over_linear < DECIDES:
-        taken, close, found = LINEAR_FORM, LINEAR_FORM, over_linear
+        taken, close, verdict = LINEAR_FORM, LINEAR_FORM, over_linear
     else:
         taken, close = best, rivals[0]
     why = (
-        f"{best} is {times(found)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
+        f"{best} is {times(verdict)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
         f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
         "take a larger range of amplitudes (or of drift angles, and more sizes), or more periods"
     )
-    return NOT_SEPARABLE, taken, found, why
+    return NOT_SEPARABLE, taken, verdict, why
 
 
 def times(ratio: float) -> str:

@@ -47,7 +47,7 @@ def as_reported(
         Of the carriage and the motion; the manoeuvring form does not depend on them.
     """
     back = np.linalg.inv(point_matrix(point_ahead_m, plane))
-    added, damped = (back.T @ np.asarray(one) @ back for one in (added_mass, damping))
+    added, damped = (back.T @ np.asarray(matrix) @ back for matrix in (added_mass, damping))
     if form is Form.SEAKEEPING:
         # v = q' + U E q, and q is -q''/omega^2: what goes with q adds to what goes with q''.
         turn = speed_m_s * incidence(plane)

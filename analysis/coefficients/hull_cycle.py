@@ -96,17 +96,17 @@ def on_hull(
     faster = (slope[:, : len(_INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
     own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
     sensitivity = own + whole @ sensitivity
-    found = net.parts(parts, harmonics(values, orders))
+    changes = net.parts(parts, harmonics(values, orders))
     shift, by_pace, by_speed = _to_point(
         count, len(channels), point_ahead_m, plane, omega, speed_m_s
     )
     sensitivity = shift @ sensitivity
-    sensitivity[:, STATED.index("frequency_relative")] += by_pace @ found
-    sensitivity[:, STATED.index("speed_m_s")] += by_speed @ found
-    found = shift @ found
+    sensitivity[:, STATED.index("frequency_relative")] += by_pace @ changes
+    sensitivity[:, STATED.index("speed_m_s")] += by_speed @ changes
+    changes = shift @ changes
     return HullCycle(
         gross.carried(
-            from_interleaved(found),
+            from_interleaved(changes),
             shift @ whole,
             labels(channels, orders),
             UNITS[: len(channels)] * count,
@@ -130,20 +130,20 @@ def parts_on_hull(
     """
     channels, plane = cycles[0].channels, cycles[0].plane
     count, loads = cycles[0].orders + 1, len(channels) - _MOVING
-    omega = np.array([2.0 * math.pi * one.frequency_hz for one in cycles])
+    omega = np.array([2.0 * math.pi * cycle.frequency_hz for cycle in cycles])
     rates = [
         omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
     ]
     moved = np.stack([rates[times][..., channel, :] for channel, times in _INPUTS], axis=-2)
-    stated = np.stack([_taken(one.body, one.drift_rad) for one in cycles])
+    stated = np.stack([_taken(cycle.body, cycle.drift_rad) for cycle in cycles])
     inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
-    restoring = np.stack([one.restoring for one in cycles])
+    restoring = np.stack([cycle.restoring for cycle in cycles])
     asked = _asked(np.concatenate(inputs, axis=-2), plane, of_tare, restoring)[..., :loads, :]
     net = _Net(count, len(channels)).parts(gross, harmonics(asked, count - 1))
     turned = np.empty_like(net)
-    for k, one in enumerate(cycles):
-        pace, speed = float(omega[k]), one.speed_m_s
-        shift, *_ = _to_point(count, len(channels), one.point_ahead_m, plane, pace, speed)
+    for k, cycle in enumerate(cycles):
+        pace, speed = float(omega[k]), cycle.speed_m_s
+        shift, *_ = _to_point(count, len(channels), cycle.point_ahead_m, plane, pace, speed)
         turned[:, k] = net[:, k] @ shift.T
     return turned
 
@@ -167,15 +167,15 @@ class _Net:
 
     def with_loads(self, asked: FloatArray) -> FloatArray:
         """Return the slope of the hull's parts by the gross ones."""
-        found = np.diag(np.where(self.is_load, -1.0, 1.0))
-        found[self.loads] += asked
-        return found
+        signs = np.diag(np.where(self.is_load, -1.0, 1.0))
+        signs[self.loads] += asked
+        return signs
 
     def parts(self, gross: FloatArray, asked: FloatArray) -> FloatArray:
         """Return the hull's parts, ``(..., 2 n)``, of the gross ones and of what is asked."""
-        found = np.where(self.is_load, -gross, gross)
-        found[..., self.loads] += asked
-        return found
+        parts = np.where(self.is_load, -gross, gross)
+        parts[..., self.loads] += asked
+        return parts
 
 
 def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArray) -> Waves:
@@ -190,15 +190,15 @@ def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArra
         np.stack((u_rate, v_rate, r_rate), axis=-2),
     )
     moments = np.stack((mass, mass * ahead, mass * below, turned), axis=-2)
-    found = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
+    loads = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
     if plane is Plane.VERTICAL:
         hanging = STANDARD_GRAVITY_M_S2 * mass * below
-        found[..., 1, :] += hanging * np.sin(rotation + drift)
+        loads[..., 1, :] += hanging * np.sin(rotation + drift)
         tared = (hanging * np.sin(drift))[..., None, :] * of_tare
-        found[..., : of_tare.shape[-2], :] -= tared
+        loads[..., : of_tare.shape[-2], :] -= tared
     place = np.stack((translation, rotation), axis=-2)
-    found[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, place)
-    return np.asarray(found)
+    loads[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, place)
+    return np.asarray(loads)
 
 
 def _to_point(

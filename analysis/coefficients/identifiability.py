@@ -16,16 +16,16 @@ _APART = 2e-2  # ratio of singular values above which two motions can be told ap
 
 def moved_of(cycles: Sequence[BodyCycle], form: Form) -> ComplexArray:
     """Return the fundamental's velocities of a form, the rotation's at the struts; (cycles, 2)."""
-    found = []
-    for one in cycles:
-        phasors, rate = one.hull.phasors, 2j * math.pi * one.frequency_hz
+    moved = []
+    for cycle in cycles:
+        phasors, rate = cycle.hull.phasors, 2j * math.pi * cycle.frequency_hz
         across = (
             phasors[at_order("across", 1)]
             if form is Form.MANOEUVRING
             else rate * phasors[at_order("translation", 1)]
         )
-        found.append((across, rate * one.half_spacing_m * phasors[at_order("rotation", 1)]))
-    return np.array(found)
+        moved.append((across, rate * cycle.half_spacing_m * phasors[at_order("rotation", 1)]))
+    return np.array(moved)
 
 
 def told_apart(moved: ComplexArray) -> tuple[int, ...]:

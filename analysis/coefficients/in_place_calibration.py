@@ -105,5 +105,5 @@ def _forces(struts: StrutCycle, body: Body, omega: float) -> ComplexArray:
     asked = inertia(body, state, geometry.plane)
     if geometry.plane is Plane.VERTICAL:
         asked = asked + weight(body, state)
-    found = readings(geometry, state.line_rad, asked) - zero_readings(geometry, body)[:, None]
-    return from_interleaved(harmonics(found[:2], 1))[2:]
+    forces = readings(geometry, state.line_rad, asked) - zero_readings(geometry, body)[:, None]
+    return from_interleaved(harmonics(forces[:2], 1))[2:]

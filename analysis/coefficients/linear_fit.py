@@ -66,13 +66,13 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
     if not columns:
         raise DataError(mixed(cycles, form, moved))
     places = tuple(place for place in PLACES if place.column in columns)
-    terms = tuple(Term(one.row, (_FACTORS[one.column][one.inertial],)) for one in places)
+    terms = tuple(Term(place.row, (_FACTORS[place.column][place.inertial],)) for place in places)
     names = tuple(name_of(place, cycles[0].plane, form) for place in places)
     fit = fit_terms(cycles, terms, names, FIRST, form=form, stated=stated)
     retained = _retained(cycles, moved, places, fit.values)
     misfit = fit.misfit(0, 1)
     flags = (
-        *(flag.of(one.name) for one in cycles for flag in one.flags),
+        *(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags),
         *_flags(fit, places, retained, misfit),
         *_neglected(cycles, form, columns, moved),
     )
@@ -95,7 +95,7 @@ def _retained(
     cycles: Sequence[BodyCycle], moved: np.ndarray, places: Sequence[Place], values: FloatArray
 ) -> FloatArray:
     """Return each coefficient's part of the load over the largest it is left from, ``(n,)``."""
-    found = []
+    ratios = []
     for place, value in zip(places, values, strict=True):
         k = int(np.argmax(np.abs(moved[:, place.column])))
         cycle = cycles[k]
@@ -103,14 +103,14 @@ def _retained(
         own = abs(float(value)) * pace
         own *= 2.0 * np.pi * cycle.frequency_hz if place.inertial else 1.0
         whole = max(abs(cycle.loads[place.row]), *cycle.taken[:, place.row])
-        found.append(own / max(own, whole, 1e-300))
-    return np.array(found)
+        ratios.append(own / max(own, whole, 1e-300))
+    return np.array(ratios)
 
 
 def _flags(
     fit: CycleFit, places: Sequence[Place], retained: FloatArray, misfit: float
 ) -> list[Flag]:
-    found = []
+    flags = []
     own = tuple(cycle.name for cycle in fit.problem.cycles)
     for name, place, part in zip(fit.names, places, retained, strict=True):
         if part < _DIGIT:
@@ -120,17 +120,17 @@ def _flags(
                 f"{100 * _DIGIT:g} %): an error in {what} is {1.0 / max(part, 1e-12):.3g} times "
                 "as large in it"
             )
-            found.append(Flag("digits_lost", Severity.WARNING, text, name, own))
+            flags.append(Flag("digits_lost", Severity.WARNING, text, name, own))
     if misfit > _DISAGREE:
         text = (
             f"the runs differ {misfit:.2g} times as much as their scatter (limit {_DISAGREE:g}): "
             "amplitude, alignment or a force that is not linear; solve them apart"
         )
-        found.append(Flag("runs_disagree", Severity.WARNING, text, None, own))
+        flags.append(Flag("runs_disagree", Severity.WARNING, text, None, own))
     if not np.isfinite(fit.uncertain.standard_uncertainty).all():
         text = "a run has too few periods for scatter: no interval can be given"
-        found.append(Flag("no_interval", Severity.WARNING, text, None, own))
-    return found
+        flags.append(Flag("no_interval", Severity.WARNING, text, None, own))
+    return flags
 
 
 def _neglected(

@@ -89,8 +89,8 @@ class Phasors:
         """Return some of the phasors, in this order."""
         rows = [self.index(name) for name in names]
         units = tuple(self.units[row] for row in rows)
-        found = self.real.taken(parts_of(rows))
-        return Phasors(tuple(names), units, self.values[rows], found.contributions)
+        selected = self.real.taken(parts_of(rows))
+        return Phasors(tuple(names), units, self.values[rows], selected.contributions)
 
     def referred_to(self, name: str) -> "Phasors":
         """Turn all phases so that this phasor's own is zero (fundamentals only).

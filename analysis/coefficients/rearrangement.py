@@ -49,13 +49,13 @@ def alternatives(given: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
 
     A turntable is no alternative to two struts, nor they to it: their channels are others.
     """
-    found = []
+    arrangements = []
     table = given.joint is Joint.YAW_TABLE
-    for key in (one.name for one in fields(given) if not (table and one.name in _OF_STRUTS)):
+    for key in (field.name for field in fields(given) if not (table and field.name in _OF_STRUTS)):
         stated = getattr(given, key)
         ways = [way for way in type(stated) if way not in (stated, Joint.YAW_TABLE)]
-        found += [(key, replace(given, **{key: way})) for way in ways]
-    return tuple(found)
+        arrangements += [(key, replace(given, **{key: way})) for way in ways]
+    return tuple(arrangements)
 
 
 def otherwise(
@@ -71,7 +71,7 @@ def otherwise(
         The fits that tell by what they leave over: one for each load, of all runs, in the richest
         form, so that a wrong form does not speak for an arrangement.
     """
-    if not all(len(one.readings) for one in cycles):
+    if not all(len(cycle.readings) for cycle in cycles):
         return ()
     given = cycles[0].arrangement
     ways = alternatives(given)
@@ -88,27 +88,27 @@ def otherwise(
 def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str, FloatArray]:
     """Return the hull's interleaved parts by run and arrangement, ``(2 n, ways)`` of each run."""
     by_shape: dict[tuple[int, ...], list[BodyCycle]] = {}
-    for one in cycles:
-        by_shape.setdefault(one.readings.shape, []).append(one)
-    found: dict[str, FloatArray] = {}
+    for cycle in cycles:
+        by_shape.setdefault(cycle.readings.shape, []).append(cycle)
+    parts_of_key: dict[str, FloatArray] = {}
     for alike in by_shape.values():
         gross, of_tare = zip(*(_gross(alike, way) for way in ways), strict=True)
         parts = parts_on_hull(np.stack(gross), np.stack(of_tare), alike)
-        found |= {one.name: parts[:, k].T for k, one in enumerate(alike)}
-    return found
+        parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
+    return parts_of_key
 
 
 def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, FloatArray]:
     """Return gross parts and ``of_tare``; NaN where the alternative does not let them be had."""
-    speed, drift = np.array([[one.speed_m_s, one.drift_rad] for one in cycles]).T[..., None]
-    own = np.stack([interleaved(one.phasors.values) for one in cycles])
-    own_tare = np.stack([one.of_tare for one in cycles])
+    speed, drift = np.array([[cycle.speed_m_s, cycle.drift_rad] for cycle in cycles]).T[..., None]
+    own = np.stack([interleaved(cycle.phasors.values) for cycle in cycles])
+    own_tare = np.stack([cycle.of_tare for cycle in cycles])
     stated = cycles[0].arrangement
     if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
         return own, own_tare
     geometry = Geometry(cycles[0].plane, cycles[0].half_spacing_m, way, speed, drift)
-    omega = np.array([2.0 * np.pi * one.frequency_hz for one in cycles])
-    readings = np.stack([one.readings for one in cycles])
+    omega = np.array([2.0 * np.pi * cycle.frequency_hz for cycle in cycles])
+    readings = np.stack([cycle.readings for cycle in cycles])
     try:
         return parts_of_struts(readings, geometry, omega)
     except DataError:  # no force_x, or the struts cannot reach
@@ -117,7 +117,7 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, F
 
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
     problem = fit.problem
-    parts = np.stack([problem.filled(one, table[one.name]) for one in problem.cycles])
+    parts = np.stack([problem.filled(cycle, table[cycle.name]) for cycle in problem.cycles])
     return fit.refitted(np.moveaxis(parts, -1, 0))
 
 

@@ -37,37 +37,40 @@ _FIRST = (
 )  # single runs are checks on all of these
 
 
-def recommended(found: CampaignCoefficients) -> tuple[int, ...]:
+def recommended(coefficients: CampaignCoefficients) -> tuple[int, ...]:
     """Return the places of the values to be used first, one a coefficient and carriage speed.
 
     In the seakeeping form: one a coefficient, speed and frequency.
     """
-    spread = found.uncertain.standard_uncertainty
-    kinds = dict.fromkeys((one.name, one.speed_m_s) for one in found.entries)
-    curved = {kind: found.curved(*kind) for kind in kinds}
+    spread = coefficients.uncertain.standard_uncertainty
+    kinds = dict.fromkeys((entry.name, entry.speed_m_s) for entry in coefficients.entries)
+    curved = {kind: coefficients.curved(*kind) for kind in kinds}
 
     def order(k: int) -> tuple[int, float, float]:
         """By method and frequency; then the smallest amplitude of a curve, else the surest."""
-        entry = found.entries[k]
+        entry = coefficients.entries[k]
         size = entry.translation_amplitude_m + entry.rotation_amplitude_rad
         last = size if curved[entry.name, entry.speed_m_s] else float(spread[k])
         return _FIRST.index(entry.method), entry.frequency_hz, last
 
     best: dict[tuple[str, float, float], int] = {}
-    for k in found.rows():
-        entry = found.entries[k]
-        if _serves(found, entry, curved=curved[entry.name, entry.speed_m_s]):
+    for k in coefficients.rows():
+        entry = coefficients.entries[k]
+        if _serves(coefficients, entry, curved=curved[entry.name, entry.speed_m_s]):
             key = (entry.name, entry.speed_m_s, _own_frequency(entry))
             best[key] = min(best.get(key, k), k, key=order)
     return tuple(best.values())
 
 
-def table(found: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
+def table(coefficients: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
     """Yield a row per entry: its own, value, uncertainty, interval, trials, whether first."""
-    first = set(recommended(found))
-    spread, freedom = found.uncertain.standard_uncertainty, found.uncertain.degrees_of_freedom
-    half = found.half_widths
-    for k, entry in enumerate(found.entries):
+    first = set(recommended(coefficients))
+    spread, freedom = (
+        coefficients.uncertain.standard_uncertainty,
+        coefficients.uncertain.degrees_of_freedom,
+    )
+    half = coefficients.half_widths
+    for k, entry in enumerate(coefficients.entries):
         yield {
             "name": entry.name,
             "unit": entry.unit,
@@ -77,12 +80,12 @@ def table(found: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
             "translation_amplitude_m": entry.translation_amplitude_m,
             "rotation_amplitude_rad": entry.rotation_amplitude_rad,
             "runs": entry.runs,
-            "value": float(found.values[k]),
+            "value": float(coefficients.values[k]),
             "standard_uncertainty": float(spread[k]),
             "half_width": float(half[k]),
             "degrees_of_freedom": float(freedom[k]),
-            "trials_low": float(found.trials.low[k]),
-            "trials_high": float(found.trials.high[k]),
+            "trials_low": float(coefficients.trials.low[k]),
+            "trials_high": float(coefficients.trials.high[k]),
             "retained": entry.retained,
             "misfit": entry.misfit,
             "recommended": k in first,
@@ -98,17 +101,17 @@ def _of_seakeeping(name: str) -> bool:
     return name[0] in "ab"
 
 
-def _serves(found: CampaignCoefficients, entry: CoefficientEntry, *, curved: bool) -> bool:
+def _serves(coefficients: CampaignCoefficients, entry: CoefficientEntry, *, curved: bool) -> bool:
     if entry.method not in _FIRST:
         return False
     if _of_seakeeping(entry.name):
         return entry.method == LINEAR
     if load_of(entry.name) == LOAD_WORDS[2]:
         return True
-    if found.form is Form.SEAKEEPING and not curved:
-        names = [name_of(place, found.plane, Form.MANOEUVRING) for place in PLACES]
+    if coefficients.form is Form.SEAKEEPING and not curved:
+        names = [name_of(place, coefficients.plane, Form.MANOEUVRING) for place in PLACES]
         return entry.name not in names  # the same again in the other form
-    if term_of(entry.name, found.plane).degree < 2:
+    if term_of(entry.name, coefficients.plane).degree < 2:
         return True
-    choices = found.choices_of(entry.name, entry.runs)
-    return all(one.fitted == one.verdict != LINEAR_FORM for one in choices)
+    choices = coefficients.choices_of(entry.name, entry.runs)
+    return all(choice.fitted == choice.verdict != LINEAR_FORM for choice in choices)

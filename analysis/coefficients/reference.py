@@ -92,7 +92,7 @@ def table_of_matrices(
     )
 
 
-def compared(found: CampaignCoefficients, table: ReferenceTable) -> CampaignCoefficients:
+def compared(coefficients: CampaignCoefficients, table: ReferenceTable) -> CampaignCoefficients:
     """Return the campaign with the table's values beside its own: linear and zero frequency.
 
     Raises
@@ -102,32 +102,32 @@ def compared(found: CampaignCoefficients, table: ReferenceTable) -> CampaignCoef
     DataError
         If the table has nothing for any of the campaign's entries.
     """
-    if table.normalisation != found.normalisation:
+    if table.normalisation != coefficients.normalisation:
         raise ConfigurationError(
             f"{table.name} is in the system {table.normalisation!r}, the campaign in "
-            f"{found.normalisation!r}; bring both to one"
+            f"{coefficients.normalisation!r}; bring both to one"
         )
-    half, rows = found.half_widths, []
-    for k, entry in enumerate(found.entries):
+    half, rows = coefficients.half_widths, []
+    for k, entry in enumerate(coefficients.entries):
         same_speed = abs(entry.speed_m_s - table.speed_m_s) <= 0.02 * max(table.speed_m_s, 0.01)
         if entry.method not in (LINEAR, ZERO_FREQUENCY) or not same_speed:
             continue
         expected = table.at(entry.name, entry.frequency_hz)
         if expected is not None:
-            rows.append(_row(found, k, float(half[k]), table, expected))
+            rows.append(_row(coefficients, k, float(half[k]), table, expected))
     if not rows:
         raise DataError(
             f"{table.name} ({', '.join(table.values)}; {table.frequency_hz[0]:g} to "
             f"{table.frequency_hz[-1]:g} Hz, {table.speed_m_s:g} m/s) has nothing of what the "
             "campaign measured; check names, frequencies and speed"
         )
-    return replace(found, references=(*found.references, *rows))
+    return replace(coefficients, references=(*coefficients.references, *rows))
 
 
 def _row(
-    found: CampaignCoefficients, k: int, half: float, table: ReferenceTable, expected: float
+    coefficients: CampaignCoefficients, k: int, half: float, table: ReferenceTable, expected: float
 ) -> ReferenceRow:
-    entry, measured = found.entries[k], float(found.values[k])
+    entry, measured = coefficients.entries[k], float(coefficients.values[k])
     allowance = table.allowance_relative * abs(expected)
     return ReferenceRow(
         entry.name,

@@ -78,31 +78,31 @@ def repeatability(cycles: Sequence[BodyCycle]) -> Repeatability:
     return Repeatability(np.sqrt(excess), float(freedom), kinds)
 
 
-def with_repeats(cycle: BodyCycle, found: Repeatability) -> BodyCycle:
+def with_repeats(cycle: BodyCycle, repeating: Repeatability) -> BodyCycle:
     """Return the cycle with what repeating adds as a source of its own."""
-    if not (found.relative > 0.0).any():
+    if not (repeating.relative > 0.0).any():
         return cycle
     places = [cycle.phasors.index(at_order(name, 1)) for name in LOADS]
-    spread = np.repeat(found.relative * _size(cycle), 2)
+    spread = np.repeat(repeating.relative * _size(cycle), 2)
     rows = np.array(parts_of(places))
     label = f"repeats: {cycle.name}"
-    source = Contribution(label, found.degrees_of_freedom, rows, np.diag(spread))
+    source = Contribution(label, repeating.degrees_of_freedom, rows, np.diag(spread))
     return replace(cycle, phasors=replace(cycle.phasors, sources=(*cycle.phasors.sources, source)))
 
 
-def outliers(found: Repeatability) -> tuple[Outlier, ...]:
+def outliers(repeating: Repeatability) -> tuple[Outlier, ...]:
     """Return the runs that stand off from three or more of their kind.
 
     Each is held against the others' mean; the scale is the larger of the runs' own scatter and of
     the scatter between all other repeats. The limit is Student's, so wide that a good campaign
     names any run once in a hundred.
     """
-    tests = 4 * sum(len(kind.runs) for kind in found.kinds if len(kind.runs) > 2)
+    tests = 4 * sum(len(kind.runs) for kind in repeating.kinds if len(kind.runs) > 2)
     named = []
-    for kind in found.kinds:
+    for kind in repeating.kinds:
         for k in range(len(kind.runs) if len(kind.runs) > 2 else 0):
             for row, load in enumerate(LOADS):
-                ratio, freedom = _distance(found.kinds, kind, k, row)
+                ratio, freedom = _distance(repeating.kinds, kind, k, row)
                 limit = _limit(freedom, tests)
                 if ratio > limit:
                     named.append(_outlier(kind, k, load, ratio, limit))
@@ -126,9 +126,13 @@ def _distance(
     others = np.delete(kind.loads[:, row], k)
     apart = kind.loads[k, row] - others.mean()
     whole, freedom = 0.0, 0.0
-    for one in kinds:
-        loads = np.delete(one.loads, k, axis=0) if one is kind else one.loads
-        whole += float(_squares(loads)[row]) * (kind.size[row] / one.size[row]) ** 2
+    for kind_of_motion in kinds:
+        loads = (
+            np.delete(kind_of_motion.loads, k, axis=0)
+            if kind_of_motion is kind
+            else kind_of_motion.loads
+        )
+        whole += float(_squares(loads)[row]) * (kind.size[row] / kind_of_motion.size[row]) ** 2
         freedom += 2.0 * (len(loads) - 1)
     between = whole / freedom
     within = float(kind.variance[:, row].mean())
@@ -144,7 +148,7 @@ def _limit(freedom: float, tests: int) -> float:
 
 def _groups(cycles: Sequence[BodyCycle]) -> list[list[BodyCycle]]:
     groups: list[list[BodyCycle]] = []
-    for cycle in (one for one in cycles if one.frequency_hz > 0.0):
+    for cycle in (cycle for cycle in cycles if cycle.frequency_hz > 0.0):
         for group in groups:
             if _same(group[0], cycle):
                 group.append(cycle)
@@ -155,8 +159,8 @@ def _groups(cycles: Sequence[BodyCycle]) -> list[list[BodyCycle]]:
 
 
 def _ratio(first: BodyCycle, other: BodyCycle) -> complex:
-    own, found = first.at_struts, other.at_struts
-    return complex(np.vdot(own, found) / np.vdot(own, own))
+    own, others_own = first.at_struts, other.at_struts
+    return complex(np.vdot(own, others_own) / np.vdot(own, own))
 
 
 def _same(first: BodyCycle, other: BodyCycle) -> bool:

@@ -135,7 +135,7 @@ def restoring_of(
     )
 
 
-def track_of(one: Restoring, cycle: BodyCycle) -> Track:
+def track_of(restoring: Restoring, cycle: BodyCycle) -> Track:
     """Return force and moment over the displacement, as the harmonics 1 to 3 draw them."""
     theta = np.linspace(0.0, 2.0 * math.pi, _POINTS)
 
@@ -147,7 +147,7 @@ def track_of(one: Restoring, cycle: BodyCycle) -> Track:
             )
         )
 
-    return Track(drawn("rotation" if one.rotates else "translation"), drawn("force"),
+    return Track(drawn("rotation" if restoring.rotates else "translation"), drawn("force"),
                  drawn("moment"))  # fmt: skip
 
 

@@ -80,13 +80,15 @@ class StatedUncertainties:
 
     def drawn(self, count: int, generator: Generator) -> FloatArray:
         """Draw deviations, shape ``(count, len(STATED))``: Student's t where repeats are behind."""
-        found = generator.standard_normal((count, len(STATED))) * self.vector
+        deviations = generator.standard_normal((count, len(STATED))) * self.vector
         for k, name in enumerate(STATED):
             if np.isfinite(nu := self.freedom(name)):
-                found[:, k] *= np.sqrt(nu / generator.chisquare(nu, count))
-        return found
+                deviations[:, k] *= np.sqrt(nu / generator.chisquare(nu, count))
+        return deviations
 
 
 STATED = tuple(
-    one.name for one in fields(StatedUncertainties) if one.name != "inertia_degrees_of_freedom"
+    field.name
+    for field in fields(StatedUncertainties)
+    if field.name != "inertia_degrees_of_freedom"
 )

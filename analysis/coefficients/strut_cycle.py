@@ -65,8 +65,8 @@ class StrutCycle:
         names = tuple(responses)
 
         def factors(order: int) -> ComplexArray:
-            found = response_factors(self.name, self.frequency_hz, order, responses)
-            return np.diag([found[name] for name in names])
+            by_channel = response_factors(self.name, self.frequency_hz, order, responses)
+            return np.diag([by_channel[name] for name in names])
 
         return self._mapped(names, factors)
 
@@ -106,21 +106,21 @@ class StrutCycle:
         inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
         ordered = self.phasors.select(labels(inputs, self.orders))
         asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
-        found = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
+        model = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
         return BodyCycle(
             self.name,
             oscillator.plane,
             oscillator.half_spacing_m,
             self.frequency_hz,
             point.carriage_speed_m_s,
-            found.phasors,
+            model.phasors,
             self.orders,
             point.medium,
             drift_rad=point.drift_rad,
             mean_known=self.mean_known,
             flags=self.flags,
-            sensitivity=found.sensitivity,
-            of_tare=found.of_tare,
+            sensitivity=model.sensitivity,
+            of_tare=model.of_tare,
             arrangement=oscillator.arrangement,
             readings=ordered.values.reshape(self.orders + 1, -1),
         )
@@ -186,9 +186,9 @@ def static_cycle(
         Offsets of the zero runs at that time; without them the means are not known to be loads.
     """
     still = Phasors(
-        tuple(at_order(one, 0) for one in DISPLACEMENTS), ("m", "m"), np.zeros(2, complex)
+        tuple(at_order(channel, 0) for channel in DISPLACEMENTS), ("m", "m"), np.zeros(2, complex)
     )
-    names = tuple(at_order(one, 0) for one in reading.offsets.names)
+    names = tuple(at_order(name, 0) for name in reading.offsets.names)
     forces = replace(reading.offsets, names=names)
     run = StrutCycle(name, oscillator, set_point, 0.0, joined(still, forces), 0)
     return run if zero is None else run.without_zero(zero)

@@ -58,8 +58,8 @@ def _ordered(coefficients: FloatArray, orders: int) -> FloatArray:
 
     The mean counts as the in-phase part of order 0.
     """
-    found = np.zeros((orders + 1, len(coefficients), 2, *coefficients.shape[2:]))
-    found[0, :, 0] = coefficients[:, 0]
+    ordered = np.zeros((orders + 1, len(coefficients), 2, *coefficients.shape[2:]))
+    ordered[0, :, 0] = coefficients[:, 0]
     for n in range(1, orders + 1):
-        found[n] = coefficients[:, 2 * n - 1 : 2 * n + 1]
-    return found
+        ordered[n] = coefficients[:, 2 * n - 1 : 2 * n + 1]
+    return ordered

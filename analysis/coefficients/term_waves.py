@@ -27,23 +27,23 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     numpy.ndarray
         Shape ``(..., terms, instants)``.
     """
-    found = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
+    waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
-        found[..., k, :] = _product([_factor(one, moves) for one in term.factors], moves)
-    return found
+        waves[..., k, :] = _product([_factor(factor, moves) for factor in term.factors], moves)
+    return waves
 
 
 def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     """Return how each term follows each motion, shape ``(..., terms, 5, instants)``."""
-    found = np.zeros((*moves.shape[:-2], len(terms), len(MOVES), moves.shape[-1]))
+    slopes = np.zeros((*moves.shape[:-2], len(terms), len(MOVES), moves.shape[-1]))
     for k, term in enumerate(terms):
-        factors = [_factor(one, moves) for one in term.factors]
+        factors = [_factor(factor, moves) for factor in term.factors]
         for n, name in enumerate(term.factors):
             others = _product(factors[:n] + factors[n + 1 :], moves)
             place = MOVES.index(name.strip("|"))
             own = np.sign(moves[..., place, :]) if "|" in name else 1.0
-            found[..., k, place, :] += own * others
-    return found
+            slopes[..., k, place, :] += own * others
+    return slopes
 
 
 def _factor(name: str, moves: FloatArray) -> FloatArray:
@@ -52,7 +52,7 @@ def _factor(name: str, moves: FloatArray) -> FloatArray:
 
 
 def _product(factors: Sequence[FloatArray], moves: FloatArray) -> FloatArray:
-    found = np.ones_like(moves[..., 0, :])
-    for one in factors:
-        found = found * one
-    return found
+    product = np.ones_like(moves[..., 0, :])
+    for factor in factors:
+        product = product * factor
+    return product

@@ -78,19 +78,19 @@ def term_of(name: str, plane: Plane) -> Term:
         If it means none in this plane.
     """
     velocities, loads = VELOCITY_LETTERS[plane] + AHEAD_LETTER, LOAD_LETTERS[plane] + "X"
-    found = _WORD.fullmatch(name)
-    letters = {one.strip("|")[0] for one in _FACTOR.findall(found[2])} if found else set()
-    if found is None or found[1] not in loads or not letters <= set(velocities):
+    match = _WORD.fullmatch(name)
+    letters = {letter.strip("|")[0] for letter in _FACTOR.findall(match[2])} if match else set()
+    if match is None or match[1] not in loads or not letters <= set(velocities):
         example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
         raise ConfigurationError(
             f"{name!r} is no term in the {plane} plane: a load of {', '.join(loads)}, an "
             f"underscore and factors of {velocities[0]} and {velocities[1]}; for example {example}"
         )
-    row = loads.index(found[1])
+    row = loads.index(match[1])
     common = dict(zip(velocities, "vr" + AHEAD_LETTER, strict=True))
     factors = [
         re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]
-        for f in _FACTOR.findall(found[2])
+        for f in _FACTOR.findall(match[2])
     ]
     return Term(row, tuple(factors))
 

@@ -54,9 +54,9 @@ def tow_of(kind: str, cycle: BodyCycle) -> Tow:
     """Return the loads of a tow whose zeros are taken off."""
     rows = ["force", "moment", *([SURGE_FORCE] if cycle.has_surge else [])]
     means = cycle.phasors.select([at_order(name, 0) for name in rows])
-    value = {name: float(one.real) for name, one in zip(rows, means.values, strict=True)}
+    value = {name: float(value.real) for name, value in zip(rows, means.values, strict=True)}
     spread = means.standard_uncertainty.real
-    u = {name: float(one) for name, one in zip(rows, spread, strict=True)}
+    u = {name: float(standard) for name, standard in zip(rows, spread, strict=True)}
     return Tow(
         cycle.name,
         kind,
@@ -70,5 +70,5 @@ def tow_of(kind: str, cycle: BodyCycle) -> Tow:
         u["moment"],
         value.get(SURGE_FORCE, math.nan),
         u.get(SURGE_FORCE, math.nan),
-        min((one.degrees_of_freedom for one in means.sources), default=math.inf),
+        min((source.degrees_of_freedom for source in means.sources), default=math.inf),
     )

@@ -34,14 +34,14 @@ class Extrapolation:
     weights: tuple[float, ...]
 
 
-def extrapolate(name: str, frequency_hz: Sequence[float], found: UncertainValues) -> Extrapolation:
+def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValues) -> Extrapolation:
     """Return the value at zero frequency.
 
     Parameters
     ----------
     frequency_hz
         Of each value, shape ``(n,)``.
-    found
+    values
         The values, with what they have in common.
 
     Raises
@@ -55,18 +55,18 @@ def extrapolate(name: str, frequency_hz: Sequence[float], found: UncertainValues
             f"{name} at zero frequency needs runs at two frequencies or more, and there is "
             f"{', '.join(f'{f:g} Hz' for f in frequency_hz)}; add runs at a lower one"
         )
-    variance = _own_variance(found)
+    variance = _own_variance(values)
     pace = square / square.max()
     degrees = [k for k in _DEGREES if k < len(np.unique(square))]
     fits = [_at_zero(pace, variance, degree) for degree in degrees]
-    squares = np.array([_chi_square(pace, variance, found.values, d) for d in degrees])
+    squares = np.array([_chi_square(pace, variance, values.values, d) for d in degrees])
     spare = len(pace) - degrees[-1] - 1
     dispersion = max(1.0, squares[-1] / spare) if spare > 0 else 1.0
     criterion = squares / dispersion + 2.0 * (np.array(degrees) + 1.0)
     weights = np.exp((criterion.min() - criterion) / 2.0)
     weights /= weights.sum()
-    singles = np.array([row @ found.values for row in fits])
-    value = found.mapped((weights @ np.array(fits))[None, :])
+    singles = np.array([row @ values.values for row in fits])
+    value = values.mapped((weights @ np.array(fits))[None, :])
     between = float(weights @ (singles - value.values[0]) ** 2)
     lack = (dispersion - 1.0) * float((weights @ np.array(fits)) ** 2 @ variance)
     label = f"extrapolation of {name}"
@@ -74,12 +74,15 @@ def extrapolate(name: str, frequency_hz: Sequence[float], found: UncertainValues
     return Extrapolation(whole, tuple(float(weight) for weight in weights))
 
 
-def _own_variance(found: UncertainValues) -> FloatArray:
+def _own_variance(values: UncertainValues) -> FloatArray:
     """Return the scatter that the values do not share; stated uncertainty moves them together."""
-    by_input = found.variances()
-    own = np.array([np.isfinite(one.degrees_of_freedom) for one in found.contributions], dtype=bool)
-    variance = np.asarray(by_input[own].sum(axis=0)) if own.any() else np.zeros(len(found))
-    size = np.abs(found.values).max() + 1e-300
+    by_input = values.variances()
+    own = np.array(
+        [np.isfinite(contribution.degrees_of_freedom) for contribution in values.contributions],
+        dtype=bool,
+    )
+    variance = np.asarray(by_input[own].sum(axis=0)) if own.any() else np.zeros(len(values))
+    size = np.abs(values.values).max() + 1e-300
     return np.asarray(np.maximum(np.nan_to_num(variance), (1e-9 * size) ** 2))
 
 

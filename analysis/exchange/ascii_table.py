@@ -68,7 +68,7 @@ def read_table(path: Path, *, labelled: bool = False) -> tuple[list[str], FloatA
             rows.append(_numbers(path, number, cells))
     _check_rows(path, rows)
     width = len(rows[0]) + labelled
-    names = next((one for one in comments if len(one) == width), None)
+    names = next((comment for comment in comments if len(comment) == width), None)
     if names is None:
         raise DataError(f"{path}: no comment line names the {width} columns")
     return names, np.array(rows), labels
@@ -84,9 +84,9 @@ def _check_rows(path: Path, rows: Sequence[Sequence[float]]) -> None:
 
 def _numbers(path: Path, number: int, cells: Sequence[str]) -> list[float]:
     try:
-        found = [float(cell) for cell in cells]
+        numbers = [float(cell) for cell in cells]
     except ValueError:
         raise DataError(f"{path}, line {number}: not all of {cells} are numbers") from None
-    if not np.isfinite(found).all():
+    if not np.isfinite(numbers).all():
         raise DataError(f"{path}, line {number}: a value is not finite")
-    return found
+    return numbers

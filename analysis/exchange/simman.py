@@ -125,10 +125,10 @@ def _all_phasors(cycle: BodyCycle) -> dict[str, ComplexArray]:
     turning = rate * own["rotation"]
     values = (-own["force"], -own["moment"], own["translation"], own["rotation"], own["across"],
               turning, rate * own["across"], rate * turning)  # fmt: skip
-    found = dict(zip(NAMES[cycle.plane], values, strict=True))
+    phasors = dict(zip(NAMES[cycle.plane], values, strict=True))
     if cycle.has_surge:
-        found = {"X": -_rows(cycle, SURGE_FORCE), **found}
-    return found
+        phasors = {"X": -_rows(cycle, SURGE_FORCE), **phasors}
+    return phasors
 
 
 def _rows(cycle: BodyCycle, name: str) -> ComplexArray:
@@ -166,8 +166,12 @@ def fourier(
     for name, values in columns.items():
         if name in ("t", *AHEAD):
             continue
-        found = turns @ values  # C_n - i S_n
-        mean[name], sine[name], cosine[name] = float(values.mean()), -found.imag, found.real
+        coefficients = turns @ values  # C_n - i S_n
+        mean[name], sine[name], cosine[name] = (
+            float(values.mean()),
+            -coefficients.imag,
+            coefficients.real,
+        )
     return mean, sine, cosine
 
 
@@ -177,13 +181,13 @@ def _harmonics(values: FloatArray, orders: int) -> ComplexArray:
     return np.concatenate((spectrum[:1], 2j * spectrum[1:]))
 
 
-def _phasor(one: Deliverables, name: str, order: int) -> complex:
+def _phasor(deliverables: Deliverables, name: str, order: int) -> complex:
     if order == 0:
-        return complex(one.mean[name])
-    return complex(one.sine[name][order - 1], one.cosine[name][order - 1])
+        return complex(deliverables.mean[name])
+    return complex(deliverables.sine[name][order - 1], deliverables.cosine[name][order - 1])
 
 
-def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> BodyCycle:
+def cycle_of(deliverables: Deliverables, half_spacing_m: float = 0.5) -> BodyCycle:
     """Return deliverables as a cycle, so that another tank's runs give coefficients too.
 
     Parameters
@@ -191,31 +195,31 @@ def cycle_of(one: Deliverables, half_spacing_m: float = 0.5) -> BodyCycle:
     half_spacing_m
         A length that makes rotations comparable with translations; any of the model's size does.
     """
-    names = NAMES[one.plane]
+    names = NAMES[deliverables.plane]
     force, moment, place, angle, across = names[:5]
     sources = {"translation": place, "rotation": angle, "across": across, "force": force,
                "moment": moment}  # fmt: skip
-    if "X" in one.mean:
+    if "X" in deliverables.mean:
         sources[SURGE_FORCE] = "X"
-    orders = len(one.sine[force])
+    orders = len(deliverables.sine[force])
     rows: dict[str, ComplexArray] = {
         channel: complex(-1.0 if channel in (*LOADS, SURGE_FORCE) else 1.0)
-        * np.array([_phasor(one, name, n) for n in range(orders + 1)], dtype=np.complex128)
+        * np.array([_phasor(deliverables, name, n) for n in range(orders + 1)], dtype=np.complex128)
         for channel, name in sources.items()
     }
-    rows[AHEAD_CHANNEL] = _harmonics(one.columns["u"], orders)
+    rows[AHEAD_CHANNEL] = _harmonics(deliverables.columns["u"], orders)
     channels = CHANNELS if SURGE_FORCE in rows else CHANNELS[:-1]
     values = np.stack([rows[channel] for channel in channels], axis=-1).ravel()
     units = body_frame.UNITS[: len(channels)] * (orders + 1)
     phasors = Phasors(labels(channels, orders), units, values)
     return BodyCycle(
-        one.description.run,
-        one.plane,
+        deliverables.description.run,
+        deliverables.plane,
         half_spacing_m,
-        one.frequency_hz,
-        one.speed_m_s,
+        deliverables.frequency_hz,
+        deliverables.speed_m_s,
         phasors,
         orders,
-        drift_rad=one.drift_rad,
+        drift_rad=deliverables.drift_rad,
         mean_known=True,
     )

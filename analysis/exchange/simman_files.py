@@ -28,7 +28,7 @@ _FILES: Final = (CYCLE_FILE, FOURIER_FILE, DESCRIPTION_FILE)
 _LOADS_ARE: Final = "of the water and of the model's inertia on the model"
 
 
-def write_simman(one: Deliverables, folder: Path, *, overwrite: bool = False) -> Path:
+def write_simman(deliverables: Deliverables, folder: Path, *, overwrite: bool = False) -> Path:
     """Write ``cycle.dat``, ``fourier.dat`` and ``description.txt`` into a folder.
 
     Raises
@@ -40,30 +40,31 @@ def write_simman(one: Deliverables, folder: Path, *, overwrite: bool = False) ->
     if there and not overwrite:
         raise DataError(f"{folder}: {', '.join(there)} there already; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
-    units = _units(one.plane)
-    names = [name for name in ("t", *units) if name in one.columns]
-    title = f"{one.description.run}: one averaged cycle, SI units, model scale"
+    units = _units(deliverables.plane)
+    names = [name for name in ("t", *units) if name in deliverables.columns]
+    title = f"{deliverables.description.run}: one averaged cycle, SI units, model scale"
     write_table(
         folder / CYCLE_FILE,
         title,
         [(name, "s" if name == "t" else units[name]) for name in names],
-        np.stack([one.columns[name] for name in names], axis=1),
+        np.stack([deliverables.columns[name] for name in names], axis=1),
     )
-    orders = len(next(iter(one.sine.values())))
+    orders = len(next(iter(deliverables.sine.values())))
     heads = [("channel", ""), ("A0", "SI")]
     heads += [(f"{part}{n}", "SI") for n in range(1, orders + 1) for part in "SC"]
     rows = []
-    for name in one.mean:
-        parts = np.stack((one.sine[name], one.cosine[name]), axis=1).ravel()
-        rows.append([one.mean[name], *parts])
+    for name in deliverables.mean:
+        parts = np.stack((deliverables.sine[name], deliverables.cosine[name]), axis=1).ravel()
+        rows.append([deliverables.mean[name], *parts])
     write_table(
         folder / FOURIER_FILE,
-        f"{one.description.run}: A0 + sum Sn sin(n theta) + Cn cos(n theta), theta = 0 at t = 0",
+        f"{deliverables.description.run}: A0 + sum Sn sin(n theta) + Cn cos(n theta), "
+        "theta = 0 at t = 0",
         heads,
         np.array(rows),
-        labels=list(one.mean),
+        labels=list(deliverables.mean),
     )
-    (folder / DESCRIPTION_FILE).write_text(_description_text(one), encoding="utf-8")
+    (folder / DESCRIPTION_FILE).write_text(_description_text(deliverables), encoding="utf-8")
     return folder
 
 
@@ -75,16 +76,19 @@ def _units(plane: Plane) -> dict[str, str]:
     )  # fmt: skip
 
 
-def _description_text(one: Deliverables) -> str:
+def _description_text(deliverables: Deliverables) -> str:
     rows: list[tuple[str, Any]] = [
-        ("plane", str(one.plane)),
-        ("frequency_hz", one.frequency_hz),
-        ("speed_m_s", one.speed_m_s),
-        ("drift_rad", one.drift_rad),
+        ("plane", str(deliverables.plane)),
+        ("frequency_hz", deliverables.frequency_hz),
+        ("speed_m_s", deliverables.speed_m_s),
+        ("drift_rad", deliverables.drift_rad),
         ("loads", _LOADS_ARE),
         ("axes", "x ahead, y to starboard, z down, origin midway between the struts"),
     ]
-    rows += [(item.name, getattr(one.description, item.name)) for item in fields(one.description)]
+    rows += [
+        (item.name, getattr(deliverables.description, item.name))
+        for item in fields(deliverables.description)
+    ]
     lines = (f"{key} = {_shown(value)}" for key, value in rows if value not in (None, ""))
     return "\n".join(lines) + "\n"
 

@@ -38,7 +38,7 @@ def main() -> None:
 
 def _answer(reader: str, path: Path, answers: BinaryIO) -> None:
     try:
-        found: ForeignColumns = resolve_name(reader)(path)
+        columns: ForeignColumns = resolve_name(reader)(path)
     except DataError as error:
         _say({"refused": str(error)}, answers)
     except MemoryError:
@@ -47,20 +47,20 @@ def _answer(reader: str, path: Path, answers: BinaryIO) -> None:
         what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         _say({"refused": f"damaged: {what[:500]}"}, answers)
     else:
-        _hand_on(found, answers)
+        _hand_on(columns, answers)
     answers.flush()
 
 
-def _hand_on(found: ForeignColumns, answers: BinaryIO) -> None:
-    units, values = found.units, found.values
-    columns = [[name, units.get(name, ""), len(one)] for name, one in values.items()]
-    answer = {"columns": columns, "sample_rate_hz": found.sample_rate_hz}
+def _hand_on(content: ForeignColumns, answers: BinaryIO) -> None:
+    units, values = content.units, content.values
+    columns = [[name, units.get(name, ""), len(column)] for name, column in values.items()]
+    answer = {"columns": columns, "sample_rate_hz": content.sample_rate_hz}
     if len(columns) > MOST_COLUMNS or len(json.dumps(answer)) >= LONGEST_ANSWER:
         _say({"refused": f"{len(columns)} columns; the limit is {MOST_COLUMNS}"}, answers)
         return
     _say(answer, answers)
-    for one in values.values():
-        answers.write(np.ascontiguousarray(one, np.float64).data)
+    for column in values.values():
+        answers.write(np.ascontiguousarray(column, np.float64).data)
 
 
 def _say(answer: Mapping[str, Any], answers: BinaryIO) -> None:

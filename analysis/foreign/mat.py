@@ -50,10 +50,10 @@ def _version_5(path: Path) -> dict[str, Any]:
     from scipy.io.matlab import MatReadError
 
     try:
-        found: dict[str, Any] = loadmat(path, simplify_cells=True, mat_dtype=False)
+        content: dict[str, Any] = loadmat(path, simplify_cells=True, mat_dtype=False)
     except (MatReadError, OSError, ValueError, TypeError, NotImplementedError) as error:
         raise DataError(f"not a MAT file that can be read: {error}") from None
-    return {key: one for key, one in found.items() if not key.startswith("__")}
+    return {key: value for key, value in content.items() if not key.startswith("__")}
 
 
 def _version_73(path: Path) -> dict[str, Any]:
@@ -70,15 +70,15 @@ def _group(group: Any) -> dict[str, Any]:
     """Return a group's numbers; MATLAB keeps its arrays with the axes turned round."""
     import h5py
 
-    found: dict[str, Any] = {}
-    for key, one in group.items():
+    content: dict[str, Any] = {}
+    for key, item in group.items():
         if key.startswith("#"):
             continue  # where MATLAB keeps what others refer to
-        if isinstance(one, h5py.Group):
-            found[key] = _group(one)
-        elif one.dtype.kind in "fiu" and _text(one.attrs.get("MATLAB_class")) != "char":
-            found[key] = np.asarray(one[()]).T
-    return found
+        if isinstance(item, h5py.Group):
+            content[key] = _group(item)
+        elif item.dtype.kind in "fiu" and _text(item.attrs.get("MATLAB_class")) != "char":
+            content[key] = np.asarray(item[()]).T
+    return content
 
 
 def _text(value: Any) -> str:
@@ -87,12 +87,12 @@ def _text(value: Any) -> str:
 
 def _flat(prefix: str, content: Mapping[str, Any], depth: int) -> Iterator[tuple[str, Any]]:
     """Yield all arrays with the path to them."""
-    for key, one in content.items():
-        if isinstance(one, Mapping):
+    for key, item in content.items():
+        if isinstance(item, Mapping):
             if depth < _DEEPEST:
-                yield from _flat(f"{prefix}{key}.", one, depth + 1)
-        elif isinstance(one, np.ndarray | int | float) and not isinstance(one, bool):
-            array = np.asarray(one)
+                yield from _flat(f"{prefix}{key}.", item, depth + 1)
+        elif isinstance(item, np.ndarray | int | float) and not isinstance(item, bool):
+            array = np.asarray(item)
             if array.dtype.kind in "fiu":
                 yield f"{prefix}{key}", array.astype(np.float64, copy=False)
 

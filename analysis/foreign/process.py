@@ -42,14 +42,14 @@ def read_foreign(path: Path, kind: str, reader: str) -> ForeignColumns:
     allowed = limits()
     child = _idle.take() or _Child()
     try:
-        found = child.read(path, kind, reader, allowed)
+        columns = child.read(path, kind, reader, allowed)
     except BaseException:
         child.end()
         raise
     _idle.keep(child)
-    if isinstance(found, DataError):
-        raise found
-    return found
+    if isinstance(columns, DataError):
+        raise columns
+    return columns
 
 
 def end_children() -> None:
@@ -158,10 +158,10 @@ class _Child:
         line = cast("IO[bytes]", self._process.stdin)
         line.write(json.dumps(request).encode() + b"\n")
         line.flush()
-        found = self._answers.readline(LONGEST_ANSWER)
-        if not found.endswith(b"\n"):
+        reply = self._answers.readline(LONGEST_ANSWER)
+        if not reply.endswith(b"\n"):
             raise EOFError
-        answer: dict[str, Any] = json.loads(found)
+        answer: dict[str, Any] = json.loads(reply)
         return answer
 
     def _columns(

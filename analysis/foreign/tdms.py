@@ -31,7 +31,7 @@ def read_tdms(path: Path) -> ForeignColumns:
 
     try:
         with path.open("rb") as raw, TdmsFile.open(raw) as file:
-            channels = [one for group in file.groups() for one in group.channels()]
+            channels = [channel for group in file.groups() for channel in group.channels()]
             return _columns(channels)
     except (OSError, ValueError, KeyError, IndexError, EOFError, struct.error) as error:
         raise DataError(f"not a sound TDMS file: {error}") from None
@@ -41,15 +41,17 @@ READER: Final = foreign_reader("tdms", read_tdms, "nptdms")
 
 
 def _columns(channels: list[Any]) -> ForeignColumns:
-    numbers = [one for one in channels if len(one) > 1 and one.dtype.kind in "fiu"]
-    counts = Counter(one.name for one in numbers)
+    numbers = [channel for channel in channels if len(channel) > 1 and channel.dtype.kind in "fiu"]
+    counts = Counter(channel.name for channel in numbers)
     names = [
-        one.name if counts[one.name] == 1 else f"{one.group_name}/{one.name}" for one in numbers
+        channel.name if counts[channel.name] == 1 else f"{channel.group_name}/{channel.name}"
+        for channel in numbers
     ]
     values = {
-        name: np.asarray(one[:], dtype=np.float64) for name, one in zip(names, numbers, strict=True)
+        name: np.asarray(channel[:], dtype=np.float64)
+        for name, channel in zip(names, numbers, strict=True)
     }
-    units = {name: _unit(one) for name, one in zip(names, numbers, strict=True)}
+    units = {name: _unit(channel) for name, channel in zip(names, numbers, strict=True)}
     return ForeignColumns(values, units, _rate(numbers))
 
 
@@ -61,9 +63,9 @@ def _rate(channels: list[Any]) -> float | None:
     """Return the rate of the longest channels, which has to be one."""
     longest = max(map(len, channels), default=0)
     steps = {
-        float(one.properties["wf_increment"])
-        for one in channels
-        if len(one) == longest and float(one.properties.get("wf_increment", 0.0)) > 0.0
+        float(channel.properties["wf_increment"])
+        for channel in channels
+        if len(channel) == longest and float(channel.properties.get("wf_increment", 0.0)) > 0.0
     }
     if len(steps) > 1:
         rates = ", ".join(f"{1.0 / step:g}" for step in sorted(steps))

@@ -98,8 +98,8 @@ def place_ballast(
     from scipy.optimize import least_squares
 
     _check(weights)
-    low = np.array([one.low_m for one in weights]).ravel()
-    high = np.array([one.high_m for one in weights]).ravel()
+    low = np.array([weight.low_m for weight in weights]).ravel()
+    high = np.array([weight.high_m for weight in weights]).ravel()
     free = high > low
     middle = 0.5 * (low + high)
 
@@ -135,7 +135,7 @@ def place_ballast(
             gtol=1e-10,
         )
         solved = [settle(misfit, start) for start in starts]
-        best = full(np.asarray(min(solved, key=lambda one: float(one.cost)).x))
+        best = full(np.asarray(min(solved, key=lambda solution: float(solution.cost)).x))
     body = _body(base, weights, best)
     errors = _errors(body, target)
     worst = {key: value for key, value in errors.items() if abs(_scaled(key, value, target)) > 1.0}
@@ -145,20 +145,22 @@ def place_ballast(
 def _check(weights: Sequence[Weight]) -> None:
     if not weights:
         raise ConfigurationError("ballast: no weights to place; give at least one")
-    for one in weights:
-        swapped = [axis for axis, a, b in zip("xyz", one.low_m, one.high_m, strict=True) if a > b]
-        if not one.mass_kg > 0.0 or swapped:
+    for weight in weights:
+        swapped = [
+            axis for axis, a, b in zip("xyz", weight.low_m, weight.high_m, strict=True) if a > b
+        ]
+        if not weight.mass_kg > 0.0 or swapped:
             raise ConfigurationError(
-                f"ballast {one.name!r}: mass {one.mass_kg:g} kg must be above 0 and low_m not "
-                f"above high_m (swapped in: {', '.join(swapped) or 'none'})"
+                f"ballast {weight.name!r}: mass {weight.mass_kg:g} kg must be above 0 and low_m "
+                f"not above high_m (swapped in: {', '.join(swapped) or 'none'})"
             )
 
 
 def _body(base: BodyPart, weights: Sequence[Weight], place: FloatArray) -> FloatArray:
     rows = [base.parameters]
-    for one, where in zip(weights, place.reshape(-1, 3), strict=True):
-        own = one.mass_kg * np.array(one.gyradii_m) ** 2
-        rows.append(np.concatenate([[one.mass_kg], where, own, np.zeros(3)]))
+    for weight, where in zip(weights, place.reshape(-1, 3), strict=True):
+        own = weight.mass_kg * np.array(weight.gyradii_m) ** 2
+        rows.append(np.concatenate([[weight.mass_kg], where, own, np.zeros(3)]))
     return combined(np.array(rows), np.ones(len(rows)))
 
 
@@ -184,7 +186,7 @@ def _slopes(
     A weight moves the centre of gravity by its share of the mass, and an inertia about it by
     ``2 m (p - c)`` in each coordinate across the axis: what the centre's own motion adds is nil.
     """
-    mass = np.array([one.mass_kg for one in weights])
+    mass = np.array([weight.mass_kg for weight in weights])
     arm = 2.0 * mass[:, None] * (place.reshape(-1, 3) - body[1:4])
     rows = []
     for key in _errors(body, target):

@@ -122,8 +122,8 @@ def _minima(peaks: FloatArray) -> list[int]:
     from scipy.signal import find_peaks
 
     depth = -np.log(peaks + 0.02 * peaks.max())
-    found, _ = find_peaks(depth, prominence=0.4)
-    return [int(k) for k in found]
+    minima, _ = find_peaks(depth, prominence=0.4)
+    return [int(k) for k in minima]
 
 
 def _vertex(time_s: FloatArray, peaks: FloatArray, k: int) -> float:

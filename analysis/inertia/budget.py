@@ -104,8 +104,8 @@ def linear_budget(
     matrix = correlation_matrix(tuple(inputs), correlations)
     value, slopes = sensitivities(name, formula, inputs)
     contributions = slopes * np.array([estimate.uncertainty for estimate in inputs.values()])
-    found = UncertainValues(np.array([value]), _by_group(contributions, matrix, inputs))
-    freedom, spread = float(found.degrees_of_freedom[0]), float(found.standard_uncertainty[0])
+    combined = UncertainValues(np.array([value]), _by_group(contributions, matrix, inputs))
+    freedom, spread = float(combined.degrees_of_freedom[0]), float(combined.standard_uncertainty[0])
     result = Estimate(value, spread, unit, freedom)
     return Budget(name, result, _shares(inputs, slopes, contributions, matrix), correlations)
 
@@ -168,15 +168,15 @@ def correlation_matrix(names: tuple[str, ...], correlations: Correlations) -> Fl
 def _by_group(
     contributions: FloatArray, matrix: FloatArray, inputs: Mapping[str, Estimate]
 ) -> tuple[Contribution, ...]:
-    names, found = tuple(inputs), []
+    names, groups = tuple(inputs), []
     for group in _groups(matrix):
         values, vectors = np.linalg.eigh(matrix[np.ix_(group, group)])
         root = vectors * np.sqrt(np.clip(values, 0.0, None))
         label = " and ".join(names[k] for k in group)
         freedom = min(inputs[names[k]].degrees_of_freedom for k in group)
         parts = (contributions[group] @ root)[None]
-        found.append(Contribution(label, freedom, np.zeros(1, dtype=np.int64), parts))
-    return tuple(found)
+        groups.append(Contribution(label, freedom, np.zeros(1, dtype=np.int64), parts))
+    return tuple(groups)
 
 
 def _groups(matrix: FloatArray) -> list[list[int]]:

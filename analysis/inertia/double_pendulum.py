@@ -159,5 +159,5 @@ def best_line_length(
 
     trial = np.linspace(-4.0, 4.0, 81)
     near = trial[int(np.argmin([error(float(x)) for x in trial]))]
-    found = minimize_scalar(error, bounds=(near - 0.2, near + 0.2), method="bounded")
-    return float(depth_m * math.exp(float(found.x)))
+    minimum = minimize_scalar(error, bounds=(near - 0.2, near + 0.2), method="bounded")
+    return float(depth_m * math.exp(float(minimum.x)))

@@ -91,7 +91,7 @@ def read_gate_events(
             f"{path}: no column {', '.join(map(repr, missing))} (columns: {', '.join(header)})"
         )
     places = [header.index(name) for name in (time, *gates)]
-    numbers = [found for row in rows[1:] if (found := _numbers(row, places)) is not None]
+    numbers = [number for row in rows[1:] if (number := _numbers(row, places)) is not None]
     table = np.array(numbers, dtype=np.float64).reshape(len(numbers), len(places))
     return gate_events(path.name, table[:, 0], table[:, 1:].T, gates)
 
@@ -147,8 +147,8 @@ def passages(events: GateEvents) -> Passages:
     flags: list[Flag] = []
     seen = []
     for gate, states in zip(events.gates, events.blocked, strict=True):
-        middle, width, found = _one_gate(events.name, gate, events.time_s, states)
-        flags += found
+        middle, width, gate_flags = _one_gate(events.name, gate, events.time_s, states)
+        flags += gate_flags
         seen.append((middle, width))
     half = _half_period(seen)
     numbered = [_number(middle, width, half, seen[0][0][0]) for middle, width in seen]

@@ -104,14 +104,14 @@ def local_periods(
     rest = values - _others(fit, mode, time_s)
     edges = np.linspace(time_s[0], time_s[-1], count + 1)
     fitted = [_part(time_s, rest, low, high, period) for low, high in pairwise(edges)]
-    found = [part for part in fitted if part is not None]
-    if len(found) < FEWEST_PARTS:
+    periods = [part for part in fitted if part is not None]
+    if len(periods) < FEWEST_PARTS:
         raise DataError(
-            f"{where}: {len(found)} of {count} parts show the oscillation of {period:.4g} "
+            f"{where}: {len(periods)} of {count} parts show the oscillation of {period:.4g} "
             f"s; at least {FEWEST_PARTS} are needed: a record with fewer gaps, or less of other "
             "motions"
         )
-    return _counted_through(found, where)
+    return _counted_through(periods, where)
 
 
 def _others(fit: DampedFit, mode: int, time_s: FloatArray) -> FloatArray:

@@ -122,14 +122,14 @@ def part(
     if any(gyradius.value < 0.0 for gyradius in gyradii):
         raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
     inputs = (mass, *position, *gyradii)
-    at = np.array([one.value for one in inputs])
+    at = np.array([estimate.value for estimate in inputs])
 
     def turn(given: FloatArray) -> FloatArray:
         inertia = given[0] * given[4:7] ** 2
         return np.concatenate([given[:4], inertia, np.array(products_kg_m2)])
 
     slope = jacobian(turn, at)
-    spread = np.array([one.uncertainty for one in inputs])
+    spread = np.array([estimate.uncertainty for estimate in inputs])
     tied = np.eye(len(MADE_OF))
     for (first, second), r in correlations.items():
         i, k = MADE_OF.index(first), MADE_OF.index(second)
@@ -158,7 +158,7 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
     if not parts:
         raise ConfigurationError(f"{name!r}: no parts to combine; at least one is needed")
     signs = np.array([1.0] * len(parts) + [-1.0] * len(without))
-    at = np.concatenate([one.parameters for one in everything])
+    at = np.concatenate([body_part.parameters for body_part in everything])
     left = float(signs @ at[::_SIZE])
     if left <= 0.0:
         raise DataError(
@@ -170,9 +170,9 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
 
     slope = jacobian(put, at)
     covariance = np.zeros((at.size, at.size))
-    for k, one in enumerate(everything):
+    for k, body_part in enumerate(everything):
         block = slice(k * _SIZE, (k + 1) * _SIZE)
-        covariance[block, block] = one.covariance
+        covariance[block, block] = body_part.covariance
     return BodyPart(name, np.asarray(put(at)), slope @ covariance @ slope.T)
 
 

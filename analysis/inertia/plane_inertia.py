@@ -89,10 +89,10 @@ def plane_inertia(
             f"plane inertia: axes at {degrees} deg are too near to each other; spread them over "
             "the half turn"
         )
-    measured = np.array([one.value for one in about])
+    measured = np.array([estimate.value for estimate in about])
     rough = np.linalg.lstsq(matrix, measured, rcond=None)[0]
     slope = 2.0 * s * c * (rough[0] - rough[1]) - 2.0 * rough[2] * (c * c - s * s)
-    spread = np.hypot([one.uncertainty for one in about], slope * angle_uncertainty_rad)
+    spread = np.hypot([estimate.uncertainty for estimate in about], slope * angle_uncertainty_rad)
     weight = 1.0 / np.maximum(spread, 1e-12 * np.abs(measured))
     covariance = np.linalg.inv((matrix * weight[:, None] ** 2).T @ matrix)
     values = covariance @ (matrix.T @ (weight**2 * measured))

@@ -82,7 +82,7 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
     void = [flag for flag in fit.flags if flag.severity is Severity.VOID]
     if void:
         raise DataError(void[0].message)
-    found = []
+    analyses = []
     for mode in range(modes):
         local = local_periods(time_s, values, fit, mode=mode, where=series.where)
         flags += local.flags
@@ -90,13 +90,13 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         if not decay.converged:
             message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"
             flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
-        found.append(ModeAnalysis(local, zero_amplitude_period(local), decay))
+        analyses.append(ModeAnalysis(local, zero_amplitude_period(local), decay))
     if pendulum and series.unit == "rad":
-        local = found[0].local
+        local = analyses[0].local
         flags += check_amplitude_effect(
             series.where, local.amplitude, local.period_s, local.uncertainty_s
         )
-    return RecordAnalysis(part, fit, tuple(found), tuple(flags))
+    return RecordAnalysis(part, fit, tuple(analyses), tuple(flags))
 
 
 def from_runs(

@@ -116,8 +116,8 @@ def compare_geometries(geometries: Sequence[SuspensionGyradius]) -> Spread:
 
     if len(geometries) < 2:
         raise DataError(f"{len(geometries)} geometry; at least 2 are needed to compare")
-    values = np.array([one.gyradius.value for one in geometries])
-    weights = np.array([1.0 / one.gyradius.uncertainty**2 for one in geometries])
+    values = np.array([geometry.gyradius.value for geometry in geometries])
+    weights = np.array([1.0 / geometry.gyradius.uncertainty**2 for geometry in geometries])
     mean = float(np.average(values, weights=weights))
     misfit = float(weights @ (values - mean) ** 2)
     probability = float(chi2.sf(misfit, values.size - 1))
@@ -144,13 +144,13 @@ def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, F
 
 def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]:
     """Fit each cause, and each pair where enough geometries are there, with the gyradius."""
-    d = np.array([one.half_spacing_m for one in geometries])
-    line = np.array([one.line_m for one in geometries])
-    values = np.array([one.gyradius.value for one in geometries])
-    weight = values / np.array([one.gyradius.uncertainty for one in geometries])
+    d = np.array([geometry.half_spacing_m for geometry in geometries])
+    line = np.array([geometry.line_m for geometry in geometries])
+    values = np.array([geometry.gyradius.value for geometry in geometries])
+    weight = values / np.array([geometry.gyradius.uncertainty for geometry in geometries])
     k = float(values.mean())
     shapes = _shapes(d, line, k)
-    found = []
+    causes = []
     for size in (1, 2):
         freedom = d.size - 1 - size
         for names in combinations(shapes, size) if freedom > 0 else ():
@@ -162,9 +162,9 @@ def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]
             sizes = tuple(solved[1:].tolist())
             own = k * math.exp(float(solved[0]))
             share = _foretells(matrix, target, weight)
-            found.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))
+            causes.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))
     # a second cause has to pay for itself (Akaike)
-    return tuple(sorted(found, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
+    return tuple(sorted(causes, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
 
 
 def _foretells(matrix: FloatArray, target: FloatArray, weight: FloatArray) -> float:
@@ -176,12 +176,12 @@ def _foretells(matrix: FloatArray, target: FloatArray, weight: FloatArray) -> fl
 
 def _left_out(matrix: FloatArray, target: FloatArray) -> FloatArray:
     """Return each row's departure from what the others let expect, in sigma."""
-    found = []
+    ways = []
     for at in range(target.size):
         others = np.arange(target.size) != at
         solved, *_ = np.linalg.lstsq(matrix[others], target[others], rcond=None)
-        found.append(target[at] - matrix[at] @ solved)
-    return np.array(found)
+        ways.append(target[at] - matrix[at] @ solved)
+    return np.array(ways)
 
 
 def _flag(

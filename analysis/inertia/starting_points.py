@@ -24,12 +24,12 @@ def starting_points(
     leaves over, or, where the spectrum cannot tell two apart, a split of the first.
     """
     decay = np.full(modes, 0.5 / problem.span_s if problem.damped else 0.0)
-    found = _peeled(problem, modes)
-    points = [(found, decay)]
+    frequencies = _peeled(problem, modes)
+    points = [(frequencies, decay)]
     if modes == 2:
         for split in _SPLITS:
             shift = 2.0 * np.pi * split / problem.span_s
-            points.append((np.array([found[0] - shift, found[0] + shift]), decay))
+            points.append((np.array([frequencies[0] - shift, frequencies[0] + shift]), decay))
     if guess_s is not None:
         points.append((2.0 * np.pi / np.asarray(guess_s, dtype=np.float64), decay))
     return [(np.maximum(omega, np.pi / problem.span_s), rates) for omega, rates in points]
@@ -37,19 +37,19 @@ def starting_points(
 
 def _peeled(problem: ProjectionProblem, modes: int) -> FloatArray:
     """Find one line after another in what the fit so far leaves over."""
-    found: list[float] = []
+    frequencies: list[float] = []
     residual = problem.values - problem.values.mean()
     for count in range(1, modes + 1):
-        found.append(2.0 * np.pi * _strongest_hz(problem.time_s, residual))
+        frequencies.append(2.0 * np.pi * _strongest_hz(problem.time_s, residual))
         if count == modes:
             break
-        start = np.array(found)
+        start = np.array(frequencies)
         rates = np.full(count, 0.5 / problem.span_s if problem.damped else 0.0)
         solution = iterate(problem, start, rates, 15)
-        found = list(solution.omega_rad_s)
+        frequencies = list(solution.omega_rad_s)
         matrix = columns(problem, solution.omega_rad_s, solution.decay_1_s)
         residual = project(problem, matrix)[1]
-    return np.array(found)
+    return np.array(frequencies)
 
 
 def _strongest_hz(time_s: FloatArray, values: FloatArray) -> float:

@@ -91,10 +91,10 @@ def fit_static(series: Sequence[LeverSeries], *, with_offset: bool = True) -> St
     """
     if not series:
         raise DataError("no lever series; at least one is needed")
-    for one in series:
-        _check(one)
+    for levers in series:
+        _check(levers)
     pooled = _fit(series, with_offset)
-    alone = tuple(_fit([one], with_offset) for one in series)
+    alone = tuple(_fit([levers], with_offset) for levers in series)
     disagreeing = _disagreeing(series, alone, with_offset)
     flags = _flags(series, alone, disagreeing)
     return StaticResult(_widened(pooled, alone), alone, disagreeing, flags)
@@ -114,32 +114,32 @@ def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
     return Estimate(value, spread, "m", moment.degrees_of_freedom)
 
 
-def _check(one: LeverSeries) -> None:
-    require_positive(f"series {one.name!r}", lever_m=one.lever_m)
-    if one.weight_kg.size < 3 or not np.ptp(one.weight_kg) > 0.0:
+def _check(levers: LeverSeries) -> None:
+    require_positive(f"series {levers.name!r}", lever_m=levers.lever_m)
+    if levers.weight_kg.size < 3 or not np.ptp(levers.weight_kg) > 0.0:
         raise DataError(
-            f"series {one.name!r}: {one.weight_kg.size} reading(s), weights from "
-            f"{one.weight_kg.min(initial=np.inf):g} kg; at least 3 with different weights are "
+            f"series {levers.name!r}: {levers.weight_kg.size} reading(s), weights from "
+            f"{levers.weight_kg.min(initial=np.inf):g} kg; at least 3 with different weights are "
             "needed"
         )
-    if not (np.isfinite(one.tilt_rad).all() and one.tilt_rad.size == one.weight_kg.size):
-        raise DataError(f"series {one.name!r}: a tilt is missing; leave that reading out")
-    largest = float(np.abs(one.tilt_rad).max())
+    if not (np.isfinite(levers.tilt_rad).all() and levers.tilt_rad.size == levers.weight_kg.size):
+        raise DataError(f"series {levers.name!r}: a tilt is missing; leave that reading out")
+    largest = float(np.abs(levers.tilt_rad).max())
     if largest > 0.7:
         raise DataError(
-            f"series {one.name!r}: a tilt of {largest:.3g} rad is {np.degrees(largest):.0f} deg "
+            f"series {levers.name!r}: a tilt of {largest:.3g} rad is {np.degrees(largest):.0f} deg "
             "(limit 0.7 rad): it seems to be degrees given as radians; convert them"
         )
-    if float(np.polyfit(one.weight_kg, one.tilt_rad, 1)[0]) <= 0.0:
+    if float(np.polyfit(levers.weight_kg, levers.tilt_rad, 1)[0]) <= 0.0:
         raise DataError(
-            f"series {one.name!r}: the tilt falls with the weight; tilts towards the weights are "
-            "positive: turn the sign of the inclinometer"
+            f"series {levers.name!r}: the tilt falls with the weight; tilts towards the weights "
+            "are positive: turn the sign of the inclinometer"
         )
 
 
 def _columns(series: Sequence[LeverSeries], with_offset: bool) -> tuple[FloatArray, FloatArray]:
-    pull = np.concatenate([one.weight_kg * one.lever_m for one in series])
-    tangent = np.concatenate([np.tan(one.tilt_rad) for one in series])
+    pull = np.concatenate([levers.weight_kg * levers.lever_m for levers in series])
+    tangent = np.concatenate([np.tan(levers.tilt_rad) for levers in series])
     return np.column_stack([pull, np.ones(pull.size)][: 1 + with_offset]), tangent
 
 
@@ -156,7 +156,9 @@ def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
     if with_offset:
         error = float(np.sqrt(inverse[1, 1] * variance))
         offset = Estimate(float(solved[1]), error, "rad", float(freedom))
-    return StaticMoment(moment, offset, float(np.sqrt(variance)), tuple(one.name for one in series))
+    return StaticMoment(
+        moment, offset, float(np.sqrt(variance)), tuple(levers.name for levers in series)
+    )
 
 
 def _disagreeing(
@@ -165,8 +167,8 @@ def _disagreeing(
     """Name the series whose moment differs from that of all the others together."""
     if len(series) < 2:
         return ()
-    found = []
-    for k, one in enumerate(series):
+    names = []
+    for k, moment in enumerate(series):
         others = [other for j, other in enumerate(series) if j != k]
         rest = _fit(others, with_offset).moment
         own = alone[k].moment
@@ -174,15 +176,15 @@ def _disagreeing(
         freedom = own.degrees_of_freedom + rest.degrees_of_freedom
         apart = abs(own.value - rest.value)
         if apart > float(student_factor(freedom, 1.0 - DISAGREE / len(series))) * spread:
-            found.append((apart / spread, one.name))
-    return tuple(name for _, name in sorted(found, reverse=True))
+            names.append((apart / spread, moment.name))
+    return tuple(name for _, name in sorted(names, reverse=True))
 
 
 def _widened(pooled: StaticMoment, alone: tuple[StaticMoment, ...]) -> StaticMoment:
     """Let the scatter between series into the uncertainty, where it is the larger."""
     if len(alone) < 2:
         return pooled
-    values = np.array([one.moment.value for one in alone])
+    values = np.array([moment.moment.value for moment in alone])
     between = float(values.std(ddof=1)) / np.sqrt(values.size)
     own = pooled.moment
     if between <= own.uncertainty:
@@ -195,14 +197,14 @@ def _flags(
     series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], disagreeing: tuple[str, ...]
 ) -> tuple[Flag, ...]:
     flags = []
-    if len({one.lever_m for one in series}) < 2:
+    if len({levers.lever_m for levers in series}) < 2:
         message = (
             f"only one lever ({series[0].lever_m:g} m): a series that is wrong as a whole would "
             "not be seen (one was by 8 %); measure at a second lever"
         )
         flags.append(Flag("single_lever", Severity.WARNING, message))
     if disagreeing:
-        values = ", ".join(f"{one.series[0]} {one.moment.value:.5g} kg m" for one in alone)
+        values = ", ".join(f"{moment.series[0]} {moment.moment.value:.5g} kg m" for moment in alone)
         what = ", ".join(map(repr, disagreeing))
         message = (
             f"series {what} differ from the others beyond chance ({values}); check lever and "

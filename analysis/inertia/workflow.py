@@ -114,7 +114,7 @@ def assess_workflow(
         first.unit,
         first.degrees_of_freedom + second.degrees_of_freedom,
     )
-    model, body = (_scaled(_difference(one, tare), scale_relative) for one in (test, check))
+    model, body = (_scaled(_difference(total, tare), scale_relative) for total in (test, check))
     tare = _scaled(tare, scale_relative)
     apart = _difference(body, known)
     error = apart.value / (apart.coverage_factor() * apart.uncertainty)

@@ -34,7 +34,7 @@ def in_body_axes(geometry: Geometry, driven: Driven, readings: Waves) -> Waves:
     DataError
         If the struts cannot reach, or an X gauge is missing that the other loads depend on.
     """
-    found = motion(geometry, driven)
-    place = np.stack((found.across_m, found.rotation_rad), axis=-2)
-    held = loads(geometry, found.line_rad, readings)
-    return np.concatenate((place, found.velocity[..., :2, :], held), axis=-2)
+    moving = motion(geometry, driven)
+    place = np.stack((moving.across_m, moving.rotation_rad), axis=-2)
+    held = loads(geometry, moving.line_rad, readings)
+    return np.concatenate((place, moving.velocity[..., :2, :], held), axis=-2)

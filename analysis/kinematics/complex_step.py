@@ -32,9 +32,9 @@ def pointwise(function: Pointwise, inputs: FloatArray) -> tuple[FloatArray, Floa
         Shapes ``(m, instants)`` and ``(m, k, instants)``.
     """
     stepped = inputs + 1j * _STEP * np.eye(len(inputs))[:, :, None]
-    found = function(stepped)
-    slope = np.moveaxis(found.imag, 0, 1) / _STEP
-    return np.asarray(found[0].real), np.asarray(slope, dtype=np.float64)
+    value = function(stepped)
+    slope = np.moveaxis(value.imag, 0, 1) / _STEP
+    return np.asarray(value[0].real), np.asarray(slope, dtype=np.float64)
 
 
 def by_parts(slope: FloatArray, inputs: FloatArray, orders: int) -> FloatArray:

@@ -70,10 +70,10 @@ def per_part(
     numpy.ndarray
         Shape ``(len(wanted), 2 * channels * count, INSTANTS)``.
     """
-    found = np.zeros((len(wanted), count, channels, 2, INSTANTS))
+    parts = np.zeros((len(wanted), count, channels, 2, INSTANTS))
     for k, (channel, times) in enumerate(wanted):
-        found[k, :, channel] = omega**times * basis(count, times).reshape(count, 2, -1)
-    return found.reshape(len(wanted), -1, INSTANTS)
+        parts[k, :, channel] = omega**times * basis(count, times).reshape(count, 2, -1)
+    return parts.reshape(len(wanted), -1, INSTANTS)
 
 
 @lru_cache(maxsize=32)
@@ -81,9 +81,9 @@ def basis(count: int, times: int) -> FloatArray:
     """Return sine and cosine of each order, differentiated; shape ``(2 * count, INSTANTS)``."""
     order = np.arange(count)[:, None]
     angle = order * 2.0 * np.pi * np.arange(INSTANTS) / INSTANTS + times * np.pi / 2.0
-    found = (order**times)[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=1)
-    found[0] = [[float(times == 0)], [0.0]]  # the mean is real
-    return np.asarray(found, dtype=np.float64).reshape(2 * count, INSTANTS)
+    basis = (order**times)[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=1)
+    basis[0] = [[float(times == 0)], [0.0]]  # the mean is real
+    return np.asarray(basis, dtype=np.float64).reshape(2 * count, INSTANTS)
 
 
 @lru_cache(maxsize=32)

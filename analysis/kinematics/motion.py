@@ -92,7 +92,9 @@ def _line(geometry: Geometry, driven: Driven) -> tuple[Waves, Waves, Waves]:
         return geometry.side * value + set_to, geometry.side * rate, geometry.side * acceleration
     aft, fore = _ends(driven, 0), _ends(driven, 1)
     spacing = 2.0 * geometry.half_spacing_m
-    slope, rate, bend = ((two - one) / spacing for one, two in zip(aft, fore, strict=True))
+    slope, rate, bend = (
+        (two - aft_part) / spacing for aft_part, two in zip(aft, fore, strict=True)
+    )
     slope = slope + 2.0 * geometry.offset_m / spacing
     if geometry.arrangement.joint is Joint.SLIDES_ON_MODEL:
         square = 1.0 + slope**2

@@ -135,11 +135,11 @@ def parse_run(
     DataError
         If an attribute is missing, damaged, or of another schema, or there are no samples.
     """
-    found = attributes.get(schema.ATTR_SCHEMA)
-    if found != schema.SCHEMA:
+    schema_name = attributes.get(schema.ATTR_SCHEMA)
+    if schema_name != schema.SCHEMA:
         raise DataError(
-            f"{where}: the attribute {schema.ATTR_SCHEMA!r} is {found!r}, not {schema.SCHEMA!r}: "
-            "not a recording of this project"
+            f"{where}: the attribute {schema.ATTR_SCHEMA!r} is {schema_name!r}, "
+            f"not {schema.SCHEMA!r}: not a recording of this project"
         )
     if not samples.shape[1]:
         raise DataError(f"{where}: the recording has no samples")

@@ -59,9 +59,9 @@ class Sums:
         first
             Number of the first value, with which a block begins.
         """
-        found = block_sums(values, block_of(name))
+        actual = block_sums(values, block_of(name))
         at = first // block_of(name)
-        same: BoolArray = found == self.blocks[name][at : at + found.size]
+        same: BoolArray = actual == self.blocks[name][at : at + actual.size]
         return same
 
 
@@ -105,7 +105,7 @@ class Summing:
 
     def finish(self, file: Any) -> None:
         """Write the checksums into the file, which is open as :class:`h5netcdf.File`."""
-        blocks = {name: np.concatenate(found) for name, found in self._blocks.items()}
+        blocks = {name: np.concatenate(sums) for name, sums in self._blocks.items()}
         edges = blocks.pop(schema.EDGE_TIME, None)
         attributes = {RUN: attribute_sums(file.attrs), **self._attributes}
         group = file.create_group(schema.CHECKSUMS)
@@ -152,10 +152,10 @@ def _read(group: Any) -> Sums:
     return Sums(blocks, counts, {name: dict(own.items()) for name, own in attributes.items()})
 
 
-def changed_attributes(sums: Sums, found: AttributeSums) -> Iterator[tuple[str, str]]:
+def changed_attributes(sums: Sums, actual: AttributeSums) -> Iterator[tuple[str, str]]:
     """Yield variable and name of each attribute that is not what it was, is new or is gone."""
     for name, told in sums.attributes.items():
-        now = found.get(name, {})
+        now = actual.get(name, {})
         for key in sorted(told.keys() | now.keys()):
             if told.get(key) != now.get(key):
                 yield name, key

@@ -124,7 +124,7 @@ def _photocell(top: TomlTable) -> PhotocellColumn | None:
     table = _subtable(top, "photocell")
     if table is None:
         return None
-    found = PhotocellColumn(
+    photocell = PhotocellColumn(
         column=table.text("column"),
         threshold=table.number("threshold"),
         edge=Edge(table.one_of("edge", tuple(Edge)) or Edge.RISING),
@@ -135,7 +135,7 @@ def _photocell(top: TomlTable) -> PhotocellColumn | None:
     given = [key for key in ("column", "edges_s", "edges_file") if key in table.table]
     if len(given) != 1:
         top.fault("photocell", f"needs one of column, edges_s, edges_file; it has {len(given)}")
-    return found
+    return photocell
 
 
 def _source(table: TomlTable, key: str, name: str) -> ChannelColumn | TomlTable | None:

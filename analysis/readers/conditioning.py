@@ -48,8 +48,8 @@ class WithoutSpikes:
         values = np.array(self.source[rows, when])
         numbers = np.arange(*when.indices(self.shape[1]))
         spikes = self.spikes[rows] if isinstance(rows, slice) else [self.spikes[k] for k in rows]
-        for row, found in zip(values, spikes, strict=True):
-            for spike in found:
+        for row, in_row in zip(values, spikes, strict=True):
+            for spike in in_row:
                 inside = (numbers >= spike.start) & (numbers < spike.stop)
                 row[inside] = spike.instead[numbers[inside] - spike.start]
         return values
@@ -61,15 +61,15 @@ def without_spikes(recording: Recording) -> Recording:
     What stands in their place is the cubic through the two samples on either side, or NaN where one
     of these is missing. A recording without spikes is returned as it is.
     """
-    found = find_spikes(recording.samples)
-    if not any(found):
+    spikes_by_row = find_spikes(recording.samples)
+    if not any(spikes_by_row):
         return recording
     flags = tuple(
         spike_flag(channel, spikes, recording.time_s())
-        for channel, spikes in zip(recording.channels, found, strict=True)
+        for channel, spikes in zip(recording.channels, spikes_by_row, strict=True)
         if spikes
     )
-    samples = WithoutSpikes(recording.samples, found)
+    samples = WithoutSpikes(recording.samples, spikes_by_row)
     return replace(recording, samples=samples, flags=recording.flags + flags)
 
 
@@ -82,11 +82,11 @@ def spike_flag(channel: Channel, spikes: Sequence[Spike], time_s: FloatArray) ->
         Times of all samples that the spikes' numbers count, shape ``(samples,)``.
     """
     unit = f" {channel.unit}" if channel.unit else ""
-    largest = sorted(spikes, key=lambda one: -abs(one.size))[:_NAMED_SPIKES]
+    largest = sorted(spikes, key=lambda spike: -abs(spike.size))[:_NAMED_SPIKES]
     named = ", ".join(
-        f"{one.size:+.4g}{unit} at {time_s[one.start]:.6g} s"
-        + (f" ({one.stop - one.start} samples)" if one.stop - one.start > 1 else "")
-        for one in sorted(largest, key=lambda one: one.start)
+        f"{spike.size:+.4g}{unit} at {time_s[spike.start]:.6g} s"
+        + (f" ({spike.stop - spike.start} samples)" if spike.stop - spike.start > 1 else "")
+        for spike in sorted(largest, key=lambda spike: spike.start)
     )
     more = f" and {len(spikes) - len(largest)} smaller" if len(spikes) > len(largest) else ""
     message = (
@@ -168,13 +168,13 @@ def runs(condition: BoolArray) -> list[tuple[int, int]]:
 
 def saturation_flags(samples: FloatArray, channels: tuple[Channel, ...]) -> tuple[Flag, ...]:
     """Flag samples at the full scale, or, where that is unknown, tops cut off flat."""
-    found = (
+    saturated = (
         _flat_tops(row, channel)
         if channel.full_scale is None
         else _at_full_scale(row, channel, channel.full_scale)
         for row, channel in zip(samples, channels, strict=True)
     )
-    return tuple(flag for flags in found for flag in flags)
+    return tuple(flag for flags in saturated for flag in flags)
 
 
 def _at_full_scale(row: FloatArray, channel: Channel, full_scale: float) -> list[Flag]:

@@ -58,9 +58,9 @@ class Damage:
         """
         for name, bad in self.blocks.items():
             count = edges if name == schema.EDGE_TIME else recording.sample_count
-            found = stretches(bad, block_of(name), count)
-            said = [_said(name, *one, recording) for one in found[:_NAMED]]
-            more = len(found) - len(said)
+            damaged = stretches(bad, block_of(name), count)
+            said = [_said(name, *stretch, recording) for stretch in damaged[:_NAMED]]
+            more = len(damaged) - len(said)
             places = ", ".join(said) + (f" and {more} more stretches" if more else "")
             what = f"{places} are not what was written; {_INSTEAD.get(name, _MISSING)}; {_REMEDY}"
             yield _flag(what, None if name in _INSTEAD else name)
@@ -104,10 +104,10 @@ def _compared(file: Any, sums: Sums, names: Sequence[str]) -> Damage:
     for name in sums.blocks:
         if name not in file:
             continue
-        found, told = file[name].shape[0], sums.counts[name]
-        if found != told:
+        count, told = file[name].shape[0], sums.counts[name]
+        if count != told:
             raise DataError(
-                f"{where}: the variable {name!r} has {found} values, {told} were written; {_REMEDY}"
+                f"{where}: the variable {name!r} has {count} values, {told} were written; {_REMEDY}"
             )
         bad = _bad_blocks(file[name], name, sums)
         if bad.any():
@@ -173,11 +173,11 @@ def _variable_flags(sums: Sums, names: Sequence[str]) -> Iterator[Flag]:
 
 
 def _attribute_flags(file: Any, sums: Sums) -> Iterator[Flag]:
-    found = {RUN: attribute_sums(file.attrs)}
+    sums_now = {RUN: attribute_sums(file.attrs)}
     for name in [name for name in sums.attributes if name in file and name != RUN]:
-        found[name] = attribute_sums(file[name].attrs)
-    for name, key in changed_attributes(sums, found):
-        if name in found:
+        sums_now[name] = attribute_sums(file[name].attrs)
+    for name, key in changed_attributes(sums, sums_now):
+        if name in sums_now:
             of = f" of {name}" if name else ""
             text = f"the attribute {key!r}{of} is not what was written; it is taken as it stands"
             yield _flag(f"{text}; {_REMEDY}", None if name in (RUN, *_INSTEAD) else name)

@@ -48,9 +48,9 @@ def reserved(path: Path, size_bytes: int) -> Iterator[Reserved]:
         If there is no room; nothing is written then.
     """
     with path.open("wb+") as file:
-        found = Reserved(file, size_bytes)
-        found.take()
+        opened = Reserved(file, size_bytes)
+        opened.take()
         file.truncate(0)
-        yield found
+        yield opened
         file.flush()
         os.fsync(file.fileno())

@@ -43,29 +43,29 @@ def foreign_reader(
                 f"{path}: reading {kind.upper()} needs the extra {kind!r}: "
                 f"pip install 'pmm[{kind}]'"
             )
-        found = read_foreign(path, kind, f"{read.__module__}:{read.__qualname__}")
-        return _recording_of(found, path, columns, name, kind)
+        content = read_foreign(path, kind, f"{read.__module__}:{read.__qualname__}")
+        return _recording_of(content, path, columns, name, kind)
 
     return Reader(recording)
 
 
 def _recording_of(
-    found: ForeignColumns, path: Path, columns: ColumnMap, name: str, kind: str
+    content: ForeignColumns, path: Path, columns: ColumnMap, name: str, kind: str
 ) -> Recording:
-    if not found.values:
+    if not content.values:
         raise DataError(
             f"{path}: no vector of numbers in it; there is nothing to take for a channel"
         )
-    length = max(map(len, found.values.values()))
-    kept = {key: values for key, values in found.values.items() if len(values) == length}
-    headers = tuple(_header(k, key, found.units) for k, key in enumerate(kept, 1))
+    length = max(map(len, content.values.values()))
+    kept = {key: values for key, values in content.values.items() if len(values) == length}
+    headers = tuple(_header(k, key, content.units) for k, key in enumerate(kept, 1))
     table = dict(zip(headers, kept.values(), strict=True))
     if columns.sample_rate_hz is None and not _has_time(headers, columns):
-        columns = replace(columns, sample_rate_hz=found.sample_rate_hz)
+        columns = replace(columns, sample_rate_hz=content.sample_rate_hz)
     plan = plan_columns(headers, columns, str(path))
     with path.open("rb") as file:
         origin = Origin(path, name, kind, hashlib.file_digest(file, "sha256").hexdigest())
-    left = [key for key in found.values if key not in kept]
+    left = [key for key in content.values if key not in kept]
     return from_columns(plan, table, columns, origin, _left_out(left, length))
 
 

@@ -49,10 +49,10 @@ def _marks(file: BinaryIO) -> Iterator[int]:
     place, kept = 0, b""
     while block := file.read(_BLOCK):
         data, at = kept + block, place - len(kept)
-        found = data.find(_MARK)
-        while found >= 0:
-            yield at + found
-            found = data.find(_MARK, found + 1)
+        offset = data.find(_MARK)
+        while offset >= 0:
+            yield at + offset
+            offset = data.find(_MARK, offset + 1)
         place += len(block)
         kept = data[1 - len(_MARK) :]
         file.seek(place)
@@ -82,16 +82,21 @@ def check_declared(path: Path) -> None:
 
     allowed = limits()
     with h5py.File(path, "r") as file:
-        for name, one in file.items():
-            if isinstance(one, h5py.Dataset):
-                _check(one, f"{path}: the variable {name!r}", allowed)
+        for name, item in file.items():
+            if isinstance(item, h5py.Dataset):
+                _check(item, f"{path}: the variable {name!r}", allowed)
 
 
-def _check(one: Any, where: str, allowed: ReadingLimits) -> None:
-    stored, chunk = one.id.get_storage_size(), math.prod(one.chunks or ()) * one.dtype.itemsize
-    if one.chunks and chunk > _LARGEST_CHUNK:
+def _check(variable: Any, where: str, allowed: ReadingLimits) -> None:
+    stored, chunk = (
+        variable.id.get_storage_size(),
+        math.prod(variable.chunks or ()) * variable.dtype.itemsize,
+    )
+    if variable.chunks and chunk > _LARGEST_CHUNK:
         raise allowed.too_large(where, f"its chunks of {chunk} bytes, where 2^26 are the most")
-    if one.nbytes > max(allowed.memory_bytes / 4.0, _PACKING * stored):
-        raise allowed.too_large(where, f"it says {one.nbytes} bytes, of which {stored} are there")
-    if one.ndim and one.name == f"/{EDGE_TIME}":
-        allowed.check_rows(one.shape[0], 1, where)
+    if variable.nbytes > max(allowed.memory_bytes / 4.0, _PACKING * stored):
+        raise allowed.too_large(
+            where, f"it says {variable.nbytes} bytes, of which {stored} are there"
+        )
+    if variable.ndim and variable.name == f"/{EDGE_TIME}":
+        allowed.check_rows(variable.shape[0], 1, where)

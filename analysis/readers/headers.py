@@ -48,8 +48,8 @@ def parse_header(number: int, text: str) -> Header:
     if match:
         name, unit = match["name"].strip(), match["unit"].strip()
         return Header(number, text, name or f"column_{number}", unit or None)
-    for found in _SEPARATORS.finditer(text):
-        name, suffix = text[: found.start()], text[found.end() :]
+    for separator in _SEPARATORS.finditer(text):
+        name, suffix = text[: separator.start()], text[separator.end() :]
         if name and suffix not in _NO_SUFFIX and is_unit(suffix):
             return Header(number, text, name, suffix, unit_is_suffix=True)
     return Header(number, text, text or f"column_{number}", None)
@@ -59,7 +59,7 @@ def unit_hint(name: str) -> str:
     """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, nothing where no unit is near."""
     shorter = [name[:k] + name[k + 1 :] for k in range(len(name))]
     cased = [name.lower(), name.upper(), name[:1].lower() + name[1:].upper(), name.capitalize()]
-    near = next((one for one in (*cased, *shorter) if len(one) > 0 and is_unit(one)), None)
+    near = next((word for word in (*cased, *shorter) if len(word) > 0 and is_unit(word)), None)
     return f"; did you mean {near!r}?" if near else ""
 
 
@@ -82,13 +82,13 @@ def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
         lambda h: h.name == wanted.name and h.unit in (None, wanted.unit),
     )
     for rule in rules:
-        found = [header for header in headers if rule(header)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            numbers = " or ".join(header.generic for header in found)
+        matching = [header for header in headers if rule(header)]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
+            numbers = " or ".join(header.generic for header in matching)
             raise ConfigurationError(
-                f"{where}: {len(found)} columns are {selector!r}; ask for {numbers}"
+                f"{where}: {len(matching)} columns are {selector!r}; ask for {numbers}"
             )
     texts = {header.name: header.text or header.generic for header in headers}
     near = [texts[name] for name in get_close_matches(wanted.name, texts, n=3, cutoff=0.5)]

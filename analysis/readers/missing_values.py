@@ -107,14 +107,14 @@ def with_missing_said(recording: Recording) -> Recording:
     For files that are not repaired. What the recording's own flags say already is not said again: a
     gap of all channels at once, and the missing samples of a channel by name.
     """
-    found = _Survey(recording)
+    survey = _Survey(recording)
     said = {flag.channel for flag in recording.flags if flag.code in _SAID}
     flags = tuple(
-        _missing_flag(channel.name, int(found.missing[row]), int(found.longest[row]), recording)
+        _missing_flag(channel.name, int(survey.missing[row]), int(survey.longest[row]), recording)
         for row, channel in enumerate(recording.channels)
-        if found.missing[row] and channel.name not in said
+        if survey.missing[row] and channel.name not in said
     )
-    told = _with_beyond_said(recording, found)
+    told = _with_beyond_said(recording, survey)
     return replace(told, flags=(*told.flags, *flags)) if flags else told
 
 
@@ -130,19 +130,19 @@ def empty_flag(name: str) -> Flag:
     return Flag("channel_empty", Severity.VOID, f"{name}: every sample is missing", name)
 
 
-def _with_beyond_said(recording: Recording, found: _Survey) -> Recording:
-    flags = tuple(_beyond_flags(recording, found))
+def _with_beyond_said(recording: Recording, survey: _Survey) -> Recording:
+    flags = tuple(_beyond_flags(recording, survey))
     if not flags:
         return recording
     samples = _WithoutBeyond(recording.samples)
     return replace(recording, samples=samples, flags=(*recording.flags, *flags))
 
 
-def _beyond_flags(recording: Recording, found: _Survey) -> Iterator[Flag]:
-    for row, (time_s, value) in sorted(found.first.items()):
+def _beyond_flags(recording: Recording, survey: _Survey) -> Iterator[Flag]:
+    for row, (time_s, value) in sorted(survey.first.items()):
         channel = recording.channels[row]
         message = (
-            f"{channel.name}: {found.beyond[row]} sample(s) beyond {LARGEST:g}, the first "
+            f"{channel.name}: {survey.beyond[row]} sample(s) beyond {LARGEST:g}, the first "
             f"{value:g} at {time_s:.6g} s; no sensor gives that, they count as missing: look at "
             "the recorder's overload value and at the column's unit"
         )

@@ -159,7 +159,7 @@ def _most_bytes(recording: Recording) -> int:
     edges = recording.photocell_edges_s
     sums = rows * -(-count // BLOCK_SAMPLES)
     values = rows * -(-count // chunk) * chunk + sums + (0 if edges is None else 2 * len(edges))
-    texts = sum(len(str(one).encode()) for one in run_attributes(recording).values())
+    texts = sum(len(str(value).encode()) for value in run_attributes(recording).values())
     return 8 * values + 2 * texts + 2 * (rows + 2) * _BOOKS_BYTES
 
 

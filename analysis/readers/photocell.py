@@ -80,13 +80,13 @@ def read_edges(path: Path) -> FloatArray:
 
 
 def _time_header(headers: tuple[Header, ...], path: Path) -> Header:
-    found = headers if len(headers) == 1 else [header for header in headers if header.is_time]
-    if len(found) != 1:
+    candidates = headers if len(headers) == 1 else [header for header in headers if header.is_time]
+    if len(candidates) != 1:
         names = ", ".join(header.text or header.generic for header in headers)
         raise DataError(
             f"{path}: name the column of edge times 'time', or leave it alone (columns: {names})"
         )
-    header = found[0]
+    header = candidates[0]
     try:
         if header.unit and unit(header.unit).si != "s":
             raise DataError(f"{path}: edge times in {header.unit!r}; give them in seconds")

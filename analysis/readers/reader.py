@@ -51,7 +51,7 @@ def find_reader(path: Path) -> Reader:
     ending = plain.suffix.lower().removeprefix(".")
     reader = _load(_found()[ending]) if ending in _found() else None
     if reader is None or not (reader.text or plain is path):
-        endings = ", ".join(f".{one}" for one in _found())
+        endings = ", ".join(f".{ending}" for ending in _found())
         raise DataError(
             f"{path}: the kind of file is not known; its name should end in {endings}, or in "
             "that of a text file with .gz behind"
@@ -66,7 +66,7 @@ def name_of(path: Path) -> str:
 
 def text_endings() -> tuple[str, ...]:
     """Return what names of text files end in, packed ones among them."""
-    texts = [f".{name}" for name, one in _found().items() if _load(one).text]
+    texts = [f".{name}" for name, entry in _found().items() if _load(entry).text]
     return tuple(f"{ending}{packed}" for ending in texts for packed in ("", _PACKED))
 
 
@@ -76,7 +76,7 @@ def _unpacked(path: Path) -> Path:
 
 @cache
 def _found() -> Mapping[str, EntryPoint]:
-    return {one.name: one for one in entry_points(group=GROUP)}
+    return {entry_point.name: entry_point for entry_point in entry_points(group=GROUP)}
 
 
 def _load(entry: EntryPoint) -> Reader:

@@ -58,10 +58,10 @@ class StoredSamples:
             if identity(self.path) != self.identity:
                 raise DataError(f"{self.path}: the file has changed since it was opened")
             with h5py.File(self.path, "r") as file:
-                for found, row in zip(values, chosen, strict=True):
+                for target, row in zip(values, chosen, strict=True):
                     for a, b in self._good(row, start, stop):
                         part = np.s_[a - start : b - start]
-                        file[self.variables[row]].read_direct(found, np.s_[a:b], part)
+                        file[self.variables[row]].read_direct(target, np.s_[a:b], part)
         return values[:, ::step]
 
     def _good(self, row: int, start: int, stop: int) -> Iterator[tuple[int, int]]:

@@ -25,11 +25,11 @@ class ChannelPlan:
 
     def resolve(self) -> tuple[Channel, float, tuple[Flag, ...]]:
         """Return the channel in SI units, the factor to them, and what is to be said of it."""
-        found, flags = self._unit()
-        factor = self.spec.sign * self.spec.scale * found.factor
+        resolved, flags = self._unit()
+        factor = self.spec.sign * self.spec.scale * resolved.factor
         full_scale = self.spec.full_scale
-        full_scale_si = None if full_scale is None else full_scale * found.factor
-        return Channel(self.spec.name, found.si, full_scale_si), factor, flags
+        full_scale_si = None if full_scale is None else full_scale * resolved.factor
+        return Channel(self.spec.name, resolved.si, full_scale_si), factor, flags
 
     def _unit(self) -> tuple[Unit, tuple[Flag, ...]]:
         name, own, stated = self.spec.name, self.spec.unit, self.header.unit
@@ -115,8 +115,8 @@ def _time(
 ) -> tuple[Header | None, Header | None]:
     """Return the time column to read and the one that is there."""
     if columns.time:
-        found = find_header(headers, columns.time.column, where)
-        return found, found
+        own = find_header(headers, columns.time.column, where)
+        return own, own
     named = next((header for header in headers if header.is_time), None)
     if columns.sample_rate_hz is not None:
         return None, named
@@ -191,12 +191,12 @@ def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float
         )
         return 1.0, (Flag("time_unit_assumed", Severity.WARNING, text),)
     try:
-        found = unit(name)
+        factor = unit(name)
     except ConfigurationError as error:
         raise DataError(f"{where}: time column {header.text!r}: {error}") from None
-    if found.si != "s":
+    if factor.si != "s":
         raise DataError(
             f"{where}: time column {header.text!r} is in {name!r}, which is no unit of time; "
             "name the right column or its unit in the column map"
         )
-    return found.factor, ()
+    return factor.factor, ()

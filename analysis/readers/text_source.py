@@ -40,17 +40,17 @@ class TextSource:
             If the file cannot be read, is empty, its gzip stream is cut short or damaged, or it is
             not text.
         """
-        stream, found, count = LineStream(self), b"", 0
+        stream, content, count = LineStream(self), b"", 0
         try:
-            while count < lines and len(found) < _HEAD and (block := stream.read()):
-                found += block
+            while count < lines and len(content) < _HEAD and (block := stream.read()):
+                content += block
                 count += block.count(b"\n")
-            found += stream.last_row + stream.line_end
+            content += stream.last_row + stream.line_end
         finally:
             stream.close()
-        if not found.strip():
+        if not content.strip():
             raise DataError(f"{self.path}: the file is empty")
-        return decoded(found)
+        return decoded(content)
 
     def lines(self, skip: int = 0) -> "LineStream":
         """Open the file behind its first ``skip`` lines."""
@@ -174,8 +174,8 @@ def decoded(text: bytes) -> str:
 class _Counted:
     """A file whose bytes are hashed as they are read."""
 
-    def __init__(self, raw: IO[bytes], found: "hashlib._Hash") -> None:
-        self._raw, self._found = raw, found
+    def __init__(self, raw: IO[bytes], digest: "hashlib._Hash") -> None:
+        self._raw, self._found = raw, digest
 
     def read(self, size: int = -1) -> bytes:
         block = self._raw.read(size)

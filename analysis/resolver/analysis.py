@@ -132,13 +132,13 @@ def _reference(
     edges_s = reference.times_at(_edges(recording, reference, settings, fixed=fixed))
     within = recording.between(float(edges_s[0]), float(edges_s[-1]))
     try:
-        found = choose_reference(within, choice)
+        chosen = choose_reference(within, choice)
     except NoReferenceError:  # too few periods to be sure of by themselves
         return reference
-    ends = found.cycles_at(edges_s[[0, -1]]) + np.array([-JUMP_CYCLES, JUMP_CYCLES])
-    cycles = np.unique(np.concatenate((ends, found.cycles)))  # straight on to the gate's ends
-    times_s = found.times_at(cycles)
-    return replace(found, times_s=times_s, cycles=cycles, flags=reference.flags)
+    ends = chosen.cycles_at(edges_s[[0, -1]]) + np.array([-JUMP_CYCLES, JUMP_CYCLES])
+    cycles = np.unique(np.concatenate((ends, chosen.cycles)))  # straight on to the gate's ends
+    times_s = chosen.times_at(cycles)
+    return replace(chosen, times_s=times_s, cycles=cycles, flags=reference.flags)
 
 
 def _edges(
@@ -171,27 +171,27 @@ def _stretch(
     everything = Stretch(0, len(values.ramp), 0.0, 0)
     if settings.opens_s is not None:
         return everything, ()
-    found = find_steady(values, settings.steady_tolerance)
-    if found.period_count >= min(_ENOUGH_STEADY, len(values.ramp)):
-        return found, _limit_flags(recording, values, found, settings)
-    everything = replace(everything, spread=found.spread, channel=found.channel)
+    stretch = find_steady(values, settings.steady_tolerance)
+    if stretch.period_count >= min(_ENOUGH_STEADY, len(values.ramp)):
+        return stretch, _limit_flags(recording, values, stretch, settings)
+    everything = replace(everything, spread=stretch.spread, channel=stretch.channel)
     message = (
         f"no {_ENOUGH_STEADY} periods in a row keep within {100.0 * settings.steady_tolerance:g} % "
         f"of the usual amplitude about their middle in every channel; all {len(values.ramp)} "
         "periods were used. Choose fewer channels, "
         "a wider tolerance, or say when the gate opens"
     )
-    name = recording.channel_names[found.channel]
+    name = recording.channel_names[stretch.channel]
     return everything, (Flag("not_steady", Severity.WARNING, message, name),)
 
 
 def _limit_flags(
-    recording: Recording, values: PeriodValues, found: Stretch, settings: ResolverSettings
+    recording: Recording, values: PeriodValues, stretch: Stretch, settings: ResolverSettings
 ) -> tuple[Flag, ...]:
     """Say where one channel alone ends the steady stretch, and how far it strays there."""
     beside: dict[int, list[str]] = {}
-    for limit in limits(values, found, settings.steady_tolerance):
-        side = "before" if limit.period < found.start else "after"
+    for limit in limits(values, stretch, settings.steady_tolerance):
+        side = "before" if limit.period < stretch.start else "after"
         missing = not np.isfinite(limit.spread)
         what = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
         beside.setdefault(limit.channel, []).append(f"{what} in the period {side} it")
@@ -199,7 +199,7 @@ def _limit_flags(
         Flag(
             "stretch_limited",
             Severity.NOTE,
-            f"this channel ends the steady stretch of {found.period_count} of {len(values.ramp)} "
+            f"this channel ends the steady stretch of {stretch.period_count} of {len(values.ramp)} "
             f"periods: it {' and '.join(told)} (limit "
             f"{100.0 * settings.steady_tolerance:g} % of its usual amplitude)",
             recording.channel_names[channel],

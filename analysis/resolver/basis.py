@@ -22,12 +22,12 @@ def phasors(cycles: FloatArray, highest: int) -> ComplexArray:
     A sine and a cosine are taken of each phase, the orders above the first are their powers.
     """
     angle = 2.0 * np.pi * (cycles % 1.0)
-    found = np.ones((*cycles.shape, highest + 1), dtype=np.complex128)
+    phasors = np.ones((*cycles.shape, highest + 1), dtype=np.complex128)
     if highest > 0:
-        found.real[..., 1], found.imag[..., 1] = np.cos(angle), np.sin(angle)
+        phasors.real[..., 1], phasors.imag[..., 1] = np.cos(angle), np.sin(angle)
     for n in range(2, highest + 1):
-        np.multiply(found[..., n - 1], found[..., 1], out=found[..., n])
-    return found
+        np.multiply(phasors[..., n - 1], phasors[..., 1], out=phasors[..., n])
+    return phasors
 
 
 def basis_of(turned: ComplexArray) -> FloatArray:

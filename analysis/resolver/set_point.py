@@ -56,9 +56,9 @@ def _phase_flags(told_rad: float, moved: Mapping[str, complex]) -> Iterator[Flag
         return
     off_rad = cmath.phase(fore / aft * cmath.exp(-1j * told_rad))
     if abs(off_rad) > _STRUT_PHASE_RAD:
-        found, told = math.degrees(told_rad + off_rad), math.degrees(told_rad)
+        actual, told = math.degrees(told_rad + off_rad), math.degrees(told_rad)
         text = (
-            f"the set-point's strut phase is {told:.4g} deg, found are {found:.5g} deg (limit "
+            f"the set-point's strut phase is {told:.4g} deg, found are {actual:.5g} deg (limit "
             f"{math.degrees(_STRUT_PHASE_RAD):.2g} deg off): is this the recording of that run, "
             "and has each displacement its sign?"
         )
@@ -97,11 +97,11 @@ def _resolved(recording: Recording, reference: PhaseReference, gate: PeriodSums)
 
 
 def _flag(
-    what: str, told: float, found: float, unit: str, limit: float, channel: str | None
+    what: str, told: float, actual: float, unit: str, limit: float, channel: str | None
 ) -> Flag:
-    away = "" if not told else f", {100.0 * (found / told - 1.0):+.1f} %"
+    away = "" if not told else f", {100.0 * (actual / told - 1.0):+.1f} %"
     message = (
-        f"the set-point's {what} is {told:.4g} {unit}, found are {found:.5g} {unit}{away} (limit "
+        f"the set-point's {what} is {told:.4g} {unit}, found are {actual:.5g} {unit}{away} (limit "
         f"{100.0 * limit:g} %): is this the recording of that run, and are unit and scale right?"
     )
     return Flag("set_point_differs", Severity.WARNING, message, channel)

@@ -46,10 +46,10 @@ def from_signal(recording: Recording, name: str, holds_s: float | None = None) -
     """
     signal, flags = without_gaps(recording.select([name]), name, holds_s)
     try:
-        found = _in_whole(signal, name)
+        phase = _in_whole(signal, name)
     except DataError as error:
         raise NoReferenceError(f"{error}{gap_in_words(flags)}") from None
-    return replace(found, flags=flags + found.flags)
+    return replace(phase, flags=flags + phase.flags)
 
 
 def _in_whole(signal: Recording, name: str) -> PhaseReference:
@@ -97,10 +97,10 @@ def _no_time_kept(frequency_hz: float, duration_s: float) -> str:
     )
 
 
-def _no_reference(recording: Recording, name: str, found: str) -> NoReferenceError:
+def _no_reference(recording: Recording, name: str, available: str) -> NoReferenceError:
     return NoReferenceError(
-        f"{recording.name}: no reference found in channel {name!r}: {found}; name another channel, "
-        "or give the frequency"
+        f"{recording.name}: no reference found in channel {name!r}: {available}; name another "
+        "channel, or give the frequency"
     )
 
 

@@ -48,8 +48,8 @@ class SpikeWatch:
             bends = curvature_of_chunks(values)
             for row, bend in enumerate(bends):
                 taken += self._of_channel(values, row, bend, first)
-        for one in taken:
-            values[one.row, one.spike.start : one.spike.stop] = one.spike.instead
+        for spike in taken:
+            values[spike.row, spike.spike.start : spike.spike.stop] = spike.spike.instead
         return taken
 
     def _of_channel(
@@ -58,14 +58,14 @@ class SpikeWatch:
         known, numbers = self._known[row], self._numbers[row]
         if not bend.max(initial=0.0) > known.rest:
             return []
-        found = find_pulses(values, row, bend, most_of(first + values.shape[1]))
-        new = [one for one in found.found if one.start + first not in numbers]
-        numbers += [one.start + first for one in new]
-        pulses = tuple(one.moved(first) for one in new)
-        now = Pulses(known.found + pulses, max(known.rest, found.rest))
+        pulses_now = find_pulses(values, row, bend, most_of(first + values.shape[1]))
+        new = [pulse for pulse in pulses_now.found if pulse.start + first not in numbers]
+        numbers += [pulse.start + first for pulse in new]
+        pulses = tuple(pulse.moved(first) for pulse in new)
+        now = Pulses(known.found + pulses, max(known.rest, pulses_now.rest))
         if np.isfinite(now.rest):
             self._known[row] = now
-        spikes = [one for one in now.spikes() if one in pulses]
+        spikes = [spike for spike in now.spikes() if spike in pulses]
         if not spikes or switches(values, row):
             return []
-        return [LiveSpike(row, one.start, one.moved(-first)) for one in spikes]
+        return [LiveSpike(row, spike.start, spike.moved(-first)) for spike in spikes]

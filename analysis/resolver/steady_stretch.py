@@ -95,7 +95,7 @@ def limits(values: PeriodValues, stretch: Stretch, tolerance: float) -> list[Lim
         Those with which :func:`find_steady` found the stretch.
     """
     judged = _judge(values, tolerance)
-    found = []
+    limits_met = []
     for period in (stretch.start - 1, stretch.stop):
         if not 0 <= period < len(judged.phasors):
             continue
@@ -105,8 +105,8 @@ def limits(values: PeriodValues, stretch: Stretch, tolerance: float) -> list[Lim
         if out.sum() == 1:
             channel = int(np.argmax(out))
             spread = float(half_range[channel] / max(judged.size[channel], 1e-300))
-            found.append(Limit(period, channel, spread))
-    return found
+            limits_met.append(Limit(period, channel, spread))
+    return limits_met
 
 
 def _judge(values: PeriodValues, tolerance: float) -> _Judged:

@@ -64,9 +64,9 @@ class Acquisition:
     @cached_property
     def lines(self) -> tuple[RecordedChannel, ...]:
         """The channels that are recorded, in their order."""
-        found = ((channel, getattr(self, channel.name)) for channel in _SOURCES)
+        lines = ((channel, getattr(self, channel.name)) for channel in _SOURCES)
         return tuple(
-            RecordedChannel(channel, _SOURCES[channel], how) for channel, how in found if how
+            RecordedChannel(channel, _SOURCES[channel], how) for channel, how in lines if how
         )
 
     @cached_property

@@ -20,11 +20,11 @@ _FULL: Final = {datatypes.INTEGER16: 2**15 - 1, datatypes.INTEGER32: 2**31 - 1}
 class _Line:
     """One channel: where its value comes from and which objects show it."""
 
-    def __init__(self, one: AmplifierChannel, source: Source, full: int | None) -> None:
+    def __init__(self, channel: AmplifierChannel, source: Source, full: int | None) -> None:
         self.source = source
-        self.at = entry(one.object)
-        self.status = entry(one.status) if one.status else None
-        self.scale, self.offset, self.full_scale = one.scale, one.offset, one.full_scale
+        self.at = entry(channel.object)
+        self.status = entry(channel.status) if channel.status else None
+        self.scale, self.offset, self.full_scale = channel.scale, channel.offset, channel.full_scale
         self.full = full  # of a whole number; None for REAL32
         self.push = 0.0
         self.stuck = self.broken = False
@@ -63,7 +63,8 @@ class SimulatedAmplifier(SimulatedNode):
     ) -> None:
         super().__init__(wire, name, settings.node, settings.eds, sample_rate_hz)
         self.lines = {
-            one.name: _Line(one, source(one.name), self._full(one)) for one in settings.channels
+            channel.name: _Line(channel, source(channel.name), self._full(channel))
+            for channel in settings.channels
         }
         self.tick()
 
@@ -82,15 +83,15 @@ class SimulatedAmplifier(SimulatedNode):
         super().boot()
         self.tick()
 
-    def _full(self, one: AmplifierChannel) -> int | None:
-        at: Entry = entry(one.object)
-        found = variable(self.dictionary, at)
-        kind = None if found is None else found.data_type
+    def _full(self, channel: AmplifierChannel) -> int | None:
+        at: Entry = entry(channel.object)
+        variable_at = variable(self.dictionary, at)
+        kind = None if variable_at is None else variable_at.data_type
         if kind == datatypes.REAL32:
             return None
         if kind not in _FULL:
             raise ConfigurationError(
-                f"{self.name}: channel {one.name}: object {at} is neither I16, I32 nor REAL32; "
+                f"{self.name}: channel {channel.name}: object {at} is neither I16, I32 nor REAL32; "
                 "the simulated amplifier has no other process values"
             )
         return _FULL[kind]

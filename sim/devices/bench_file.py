@@ -89,7 +89,7 @@ def read_bench(path: Path) -> Bench:
         raise ConfigurationError(f"{path}: rig = {rig!r} has to be a table or the path of a file")
     own = {key: tables.pop(key) for key in TABLES if key in tables}
     settings = read_settings(BenchSettings, tables, str(path))
-    configuration = read_rig({key: one for key, one in rig.items() if key in DEVICES}, DRIVERS)
+    configuration = read_rig({key: table for key, table in rig.items() if key in DEVICES}, DRIVERS)
     simulated = stated_rig(rig, own, folder, str(path))
     scene = Scene(
         simulated.rig,

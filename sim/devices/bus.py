@@ -104,6 +104,6 @@ class SimulatedBus(can.BusABC):
         super().shutdown()
 
 
-def _remove(outlets: list[deque[can.Message]], one: deque[can.Message]) -> None:
+def _remove(outlets: list[deque[can.Message]], outlet: deque[can.Message]) -> None:
     """Remove a queue by identity: two empty ones are equal."""
-    outlets[:] = [other for other in outlets if other is not one]
+    outlets[:] = [other for other in outlets if other is not outlet]

@@ -143,18 +143,18 @@ def _channel(world: World, channel: str, change: Callable[[SimulatedAmplifier], 
 
 def _stuck(world: World, channel: str) -> None:
     """A force channel repeats its value."""
-    _channel(world, channel, lambda one: setattr(one.lines[channel], "stuck", True))
+    _channel(world, channel, lambda amplifier: setattr(amplifier.lines[channel], "stuck", True))
 
 
 def _broken(world: World, channel: str) -> None:
     """A force channel's bridge is broken: the amplifier says that it is not valid."""
-    _channel(world, channel, lambda one: setattr(one.lines[channel], "broken", True))
+    _channel(world, channel, lambda amplifier: setattr(amplifier.lines[channel], "broken", True))
 
 
 def _push(world: World, channel: str, force: str) -> None:
     """Somebody pushes a gauge, by so much in the channel's unit, until another push."""
     value = float(force)
-    _channel(world, channel, lambda one: setattr(one.lines[channel], "push", value))
+    _channel(world, channel, lambda amplifier: setattr(amplifier.lines[channel], "push", value))
 
 
 def _tilt(world: World, part: str, angle_rad: str) -> None:

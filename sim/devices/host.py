@@ -67,7 +67,7 @@ class Host:
     @property
     def ports(self) -> dict[str, str]:
         """The device of each serial line."""
-        return {name: one.path for name, one in self._terminals.items()}
+        return {name: terminal.path for name, terminal in self._terminals.items()}
 
     def serve(self) -> None:
         """Serve until ``quit``, or until the commands end."""
@@ -83,8 +83,8 @@ class Host:
 
     def close(self) -> None:
         """Hang up the serial lines; the carrier is the caller's."""
-        for one in self._terminals.values():
-            one.close()
+        for terminal in self._terminals.values():
+            terminal.close()
 
     def _reset(self) -> None:
         self.world = self._bench.world()

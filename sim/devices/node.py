@@ -73,8 +73,8 @@ class SimulatedNode:
     def number(self, at: Entry) -> Number:
         """Return an object's value, or its default in the EDS, or 0."""
         if at not in self.values:
-            found = variable(self.dictionary, at)
-            default = None if found is None else found.default
+            variable_at = variable(self.dictionary, at)
+            default = None if variable_at is None else variable_at.default
             self.values[at] = default if isinstance(default, int | float) else 0
         return self.values[at]
 
@@ -112,7 +112,7 @@ class SimulatedNode:
         """Forget the communication's objects, and say so as after power-on; the device goes on."""
         self.disconnected()
         self._enter(_STATES[_PRE_OPERATIONAL])
-        for at in [one for one in self.values if one[0] in _COMMUNICATION]:
+        for at in [address for address in self.values if address[0] in _COMMUNICATION]:
             del self.values[at]
             self._local.data_store.get(at[0], {}).pop(at[1], None)
         self._beat_every = 0
@@ -143,26 +143,28 @@ class SimulatedNode:
 
     def _enter(self, state: int) -> None:
         self._state, self.operational = state, state == _STATES[_START]
-        for cob_id in [one for one in self.wire.rpdos if one & 0x7F == self.node_id]:
+        for cob_id in [
+            cob_id_used for cob_id_used in self.wire.rpdos if cob_id_used & 0x7F == self.node_id
+        ]:
             del self.wire.rpdos[cob_id]
         if self.operational:
             self._packed = tuple(
-                (one.cob_id, one.code.pack, one.entries) for one in self._mapped(0x1800, 0x1A00)
+                (pdo.cob_id, pdo.code.pack, pdo.entries) for pdo in self._mapped(0x1800, 0x1A00)
             )
             for pdo in self._mapped(0x1400, 0x1600):
                 self.wire.rpdos[pdo.cob_id] = self._taker(pdo)
 
     def _mapped(self, record: int, mapping: int) -> list[PdoLayout]:
-        found = []
+        pdos = []
         for n in range(4):
             cob_id = int(self.number(Entry(record + n, 1)))
             count = int(self.number(Entry(mapping + n, 0)))
             words = [int(self.number(Entry(mapping + n, sub + 1))) for sub in range(count)]
             if words and cob_id and not cob_id & _NOT_VALID:
-                found.append(self._layout(words, cob_id & 0x7FF))
-        for at in (at for one in found for at in one.entries):
+                pdos.append(self._layout(words, cob_id & 0x7FF))
+        for at in (at for pdo in pdos for at in pdo.entries):
             self.number(at)  # from now on it has a value
-        return found
+        return pdos
 
     def _layout(self, words: list[int], cob_id: int = 0) -> PdoLayout:
         entries = tuple(Entry(word >> 16, word >> 8 & 0xFF) for word in words)

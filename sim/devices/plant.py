@@ -118,7 +118,7 @@ class Plant:
     @property
     def recorded(self) -> list[str]:
         """Names of the recorded channels."""
-        names = (one for one in self._stretch.columns if one.startswith("recorded_"))
+        names = (column for column in self._stretch.columns if column.startswith("recorded_"))
         return [name.removeprefix("recorded_") for name in names]
 
     def turn(self, target_rad_s: float, acceleration_rad_s2: float) -> None:
@@ -154,14 +154,14 @@ class Plant:
         drift_rad: float | None = None,
     ) -> None:
         """Change speed, medium or the model's heading on the carriage, from the next sample on."""
-        before, one = self._around, self._around
+        before, now = self._around, self._around
         self._around = replace(
-            one,
+            now,
             carriage_speed_m_s=(
-                one.carriage_speed_m_s if carriage_speed_m_s is None else carriage_speed_m_s
+                now.carriage_speed_m_s if carriage_speed_m_s is None else carriage_speed_m_s
             ),
-            medium=one.medium if medium is None else medium,
-            drift_rad=one.drift_rad if drift_rad is None else drift_rad,
+            medium=now.medium if medium is None else medium,
+            drift_rad=now.drift_rad if drift_rad is None else drift_rad,
         )
         self._changed = self._changed or self._around != before
 
@@ -220,17 +220,19 @@ class Plant:
         after, run = chain.run(state, count)
         self.blocks += 1
         self._due = carried + _edges(run)
-        columns = {one.name: run[one.name].tolist() for one in chain.signals if one.sampled}
+        columns = {
+            signal.name: run[signal.name].tolist() for signal in chain.signals if signal.sampled
+        }
         return _Stretch(chain, state, after, columns, carried)
 
     def _state_after_present(self) -> ChainState:
         """Return the state after the present sample, and forget what lies beyond it."""
-        one = self._stretch
-        if self.number + 1 == one.end:
-            return one.after
-        after, run = one.chain.run(one.before, self.number + 1 - one.first)
-        found = one.carried + _edges(run)
-        self._due = tuple(edge for edge in found if edge > self.time_s)
+        stretch = self._stretch
+        if self.number + 1 == stretch.end:
+            return stretch.after
+        after, run = stretch.chain.run(stretch.before, self.number + 1 - stretch.first)
+        passages = stretch.carried + _edges(run)
+        self._due = tuple(edge for edge in passages if edge > self.time_s)
         return after
 
 

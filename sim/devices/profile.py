@@ -129,5 +129,5 @@ class ProfiledDrive(DriveSettings):
 
 def following(settings: DriveSettings, profile: SpeedProfile) -> ProfiledDrive:
     """Return a drive as it is in ``settings``, but told by a profile."""
-    kept = {one.name: getattr(settings, one.name) for one in fields(DriveSettings)}
+    kept = {item.name: getattr(settings, item.name) for item in fields(DriveSettings)}
     return ProfiledDrive(**kept, profile=profile)

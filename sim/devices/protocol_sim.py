@@ -35,7 +35,7 @@ class Serial(serial.SerialBase):
         talkers = self._world.talkers
         if part not in talkers or not talkers[part].cable.plugged:
             give_back(self._rig)
-            known = ", ".join(name for name, one in talkers.items() if one.cable.plugged)
+            known = ", ".join(name for name, talker in talkers.items() if talker.cable.plugged)
             raise serial.SerialException(
                 f"{self._rig} has no serial device {part!r}; plugged in: {known or 'none'}"
             )

@@ -72,9 +72,9 @@ class Timestamper(_Sayer):
 
     def tick(self, time_s: float, passages: tuple[Passage, ...]) -> None:
         """Say the pulses, and once a second the time."""
-        for one in passages:
+        for passage in passages:
             self._pulses += 1
-            self.say(LineKind.PULSE, self._ticks(one.time_s), self._pulses)
+            self.say(LineKind.PULSE, self._ticks(passage.time_s), self._pulses)
         if time_s >= self._marked_s + _MARK_EVERY_S:
             self._marked_s = time_s
             self.say(LineKind.TIME, self._ticks(time_s), self._pulses)

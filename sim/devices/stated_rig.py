@@ -29,7 +29,7 @@ _RENAMED: Final[Mapping[str, tuple[str, type]]] = {
     "hull": ("water", HullCoefficients),
 }
 _OWN_NAMES: Final = {key: name for name, (key, _) in _RENAMED.items()}
-TABLES: Final = tuple(_OWN_NAMES.get(one.name, one.name) for one in fields(SimulatedRig))
+TABLES: Final = tuple(_OWN_NAMES.get(field.name, field.name) for field in fields(SimulatedRig))
 _BY_SENSOR: Final = ("acquisition", "dynamometers")
 _CONVERTER_STEPS: Final = 2**16  # of the nominal rig's 16 bit converters, from end to end
 
@@ -63,7 +63,7 @@ def stated_rig(
     ConfigurationError
         If a key or a value is wrong.
     """
-    stated = {key: one for key, one in simulation_tables(rig_file).items() if key in TABLES}
+    stated = {key: table for key, table in simulation_tables(rig_file).items() if key in TABLES}
     own = dict(own)
     if "oscillator" in own:
         own["oscillator"] = with_preset(own["oscillator"])
@@ -90,7 +90,7 @@ def _nominal(plane: str, rig_file: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_tables(rig: SimulatedRig) -> dict[str, Any]:
-    return {_OWN_NAMES.get(key, key): one for key, one in asdict(rig).items()}
+    return {_OWN_NAMES.get(key, key): value for key, value in asdict(rig).items()}
 
 
 def _built(tables: dict[str, Any], folder: Path, where: str) -> SimulatedRig:
@@ -110,7 +110,9 @@ def _built(tables: dict[str, Any], folder: Path, where: str) -> SimulatedRig:
 
 def _none_for_false(tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return tables in which ``false`` says that there is no such thing."""
-    found = {key: None if one is False else one for key, one in tables.items()}
+    stated = {key: None if value is False else value for key, value in tables.items()}
     sensors = tables["acquisition"]
-    found["acquisition"] = {key: None if one is False else one for key, one in sensors.items()}
-    return found
+    stated["acquisition"] = {
+        key: None if sensor is False else sensor for key, sensor in sensors.items()
+    }
+    return stated

@@ -107,8 +107,8 @@ class World:
             node.tick()
         passages = self._passages()
         if self._shaft is not None:
-            for one in passages:
-                self._shaft.pulse(one)
+            for passage in passages:
+                self._shaft.pulse(passage)
         for talker in self.talkers.values():
             talker.tick(plant.time_s, passages)
 

@@ -63,9 +63,9 @@ class Carriage:
     def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
         """Return the carriage speed over the block."""
         speed = np.full(block.count, self.mean_m_s)
-        for one in self.settings.fluctuations:
-            turned = 2.0 * math.pi * one.frequency_hz * block.time_s + one.phase_rad
-            speed += self.mean_m_s * one.relative * np.sin(turned)
+        for fluctuation in self.settings.fluctuations:
+            turned = 2.0 * math.pi * fluctuation.frequency_hz * block.time_s + fluctuation.phase_rad
+            speed += self.mean_m_s * fluctuation.relative * np.sin(turned)
         return state, {signals.CARRIAGE_SPEED.name: speed}
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:

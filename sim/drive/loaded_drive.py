@@ -152,10 +152,13 @@ class LoadedDrive:
             self._inertia - self.reflected_inertia_kg_m2,
             self.reflected_inertia_kg_m2,
             (
-                sum(one.coulomb_n for one in self.guides),
-                sum(one.viscous_n_s_m for one in self.guides),
+                sum(guide.coulomb_n for guide in self.guides),
+                sum(guide.viscous_n_s_m for guide in self.guides),
             ),
-            tuple((float(one.order), one.torque_n_m, one.phase_rad) for one in self.cogging),
+            tuple(
+                (float(harmonic.order), harmonic.torque_n_m, harmonic.phase_rad)
+                for harmonic in self.cogging
+            ),
             (0.0, 0.0) if gear is None else (gear.stiffness_n_m_rad, gear.backlash_rad / 2.0),
         )
 

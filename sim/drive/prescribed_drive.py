@@ -147,7 +147,8 @@ def shaft_over(period: Period, beyond: np.ndarray) -> Spectra:
     acceleration = period.s * speed
     speed = speed + period.constant(period.omega_rad_s)
     return {
-        one.name: values for one, values in zip(SHAFT, (beyond, speed, acceleration), strict=True)
+        signal.name: values
+        for signal, values in zip(SHAFT, (beyond, speed, acceleration), strict=True)
     }
 
 

@@ -43,11 +43,11 @@ class AmplifierLag(Effect):
         kind = FilterKind.RC if self.order == 1 else FilterKind.BUTTERWORTH
         own = LowPass(self.cutoff_hz, kind, self.order)
 
-        def late(one: Digitiser, _: int) -> Digitiser:
-            if one.low_pass is None:
-                return replace(one, low_pass=own)
-            cutoff = 1.0 / (1.0 / one.low_pass.cutoff_hz + 1.0 / self.cutoff_hz)
-            return replace(one, low_pass=replace(one.low_pass, cutoff_hz=cutoff))
+        def late(digitiser: Digitiser, _: int) -> Digitiser:
+            if digitiser.low_pass is None:
+                return replace(digitiser, low_pass=own)
+            cutoff = 1.0 / (1.0 / digitiser.low_pass.cutoff_hz + 1.0 / self.cutoff_hz)
+            return replace(digitiser, low_pass=replace(digitiser.low_pass, cutoff_hz=cutoff))
 
         return with_force_channels(rig, late)
 

@@ -33,9 +33,10 @@ class ChannelSkew(Effect):
         """Return the rig with these delays on top of what the channels have."""
         delays = (self.aft_s, self.fore_s)
         # No sample shows what is yet to come: where a force is ahead, all others are later.
-        ahead_s = max(0.0, *(-one for one in delays))
+        ahead_s = max(0.0, *(-delay for delay in delays))
         return with_force_channels(
-            later(rig, ahead_s), lambda one, i: replace(one, delay_s=one.delay_s + delays[i])
+            later(rig, ahead_s),
+            lambda digitiser, i: replace(digitiser, delay_s=digitiser.delay_s + delays[i]),
         )
 
     def signature(self, situation: Situation) -> Signature:

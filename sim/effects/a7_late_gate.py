@@ -88,5 +88,5 @@ def _windowed(wave: ComplexArray, order: int, end: float) -> complex:
 def _mean_turn(steps: np.ndarray, end: float) -> ComplexArray:
     """Return the mean of exp(i k th) over 0 to end."""
     angle = steps * end / 2.0
-    found: ComplexArray = np.exp(1j * angle) * np.sinc(angle / np.pi)
-    return found
+    mean_turn: ComplexArray = np.exp(1j * angle) * np.sinc(angle / np.pi)
+    return mean_turn

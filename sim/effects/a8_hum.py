@@ -69,17 +69,17 @@ class Hum(Effect):
             If a channel hums at another frequency already.
         """
 
-        def humming(one: Digitiser, _: int) -> Digitiser:
+        def humming(digitiser: Digitiser, _: int) -> Digitiser:
             own = self.amplitude_n * np.exp(1j * self.phase_rad)
-            if one.hum:
-                if one.hum_hz != self.frequency_hz:
+            if digitiser.hum:
+                if digitiser.hum_hz != self.frequency_hz:
                     raise ConfigurationError(
-                        f"a force channel hums at {one.hum_hz:g} Hz already, and can have no "
+                        f"a force channel hums at {digitiser.hum_hz:g} Hz already, and can have no "
                         f"second line at frequency_hz = {self.frequency_hz:g}; give them the same"
                     )
-                own += one.hum * np.exp(1j * one.hum_phase_rad)
+                own += digitiser.hum * np.exp(1j * digitiser.hum_phase_rad)
             size, phase = float(abs(own)), float(np.angle(own))
-            return replace(one, hum=size, hum_hz=self.frequency_hz, hum_phase_rad=phase)
+            return replace(digitiser, hum=size, hum_hz=self.frequency_hz, hum_phase_rad=phase)
 
         return with_force_channels(rig, humming)
 

@@ -19,16 +19,18 @@ def catalogue() -> dict[str, type[Effect]]:
     """Return every effect of the package by name, in the order of their codes."""
     for module in pkgutil.iter_modules(sim.effects.__path__):
         import_module(f"sim.effects.{module.name}")
-    found = {one.name: one for one in _concrete() if one.__module__.startswith("sim.")}
-    return dict(sorted(found.items(), key=lambda item: _order(item[1].code)))
+    effects = {
+        effect.name: effect for effect in _concrete() if effect.__module__.startswith("sim.")
+    }
+    return dict(sorted(effects.items(), key=lambda item: _order(item[1].code)))
 
 
 def _concrete(kind: Any = Effect) -> Iterator[type[Effect]]:
     """Yield every subclass, however deep, that is no mere base of others."""
-    for one in kind.__subclasses__():
-        if not getattr(one, "__abstractmethods__", None):
-            yield one
-        yield from _concrete(one)
+    for effect in kind.__subclasses__():
+        if not getattr(effect, "__abstractmethods__", None):
+            yield effect
+        yield from _concrete(effect)
 
 
 def _order(code: str) -> tuple[str, int, str]:
@@ -82,7 +84,7 @@ def build_from(
 
 
 def _setting(kind: type[Effect], key: str, value: str | float) -> float:
-    known = [one.name for one in kind.parameters()]
+    known = [parameter.name for parameter in kind.parameters()]
     if key not in known:
         near = get_close_matches(key, known, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'none'}"
@@ -102,12 +104,14 @@ def load_file(path: Path) -> dict[str, type[Effect]]:
         If the file cannot be imported or defines no effect.
     """
     module = import_file(path)
-    found = {one.name: one for one in _concrete() if one.__module__ == module.__name__}
-    if not found:
+    effects = {
+        effect.name: effect for effect in _concrete() if effect.__module__ == module.__name__
+    }
+    if not effects:
         raise ConfigurationError(
             f"{path}: defines no effect (a subclass of sim.effects.effect.Effect)"
         )
-    return found
+    return effects
 
 
 def user_effects(path: str | Path | None) -> dict[str, type[Effect]]:
@@ -118,6 +122,6 @@ def user_effects(path: str | Path | None) -> dict[str, type[Effect]]:
     ConfigurationError
         If the file defines none, or one whose name the catalogue has already.
     """
-    found = {} if path is None else load_file(Path(path))
-    refuse_taken(path or "", found, catalogue())
-    return found
+    effects = {} if path is None else load_file(Path(path))
+    refuse_taken(path or "", effects, catalogue())
+    return effects

@@ -57,6 +57,6 @@ def linkage_signature(
     ahead = np.exp(1j * np.array(turned_rad))
     changes: dict[int, ComplexArray] = {}
     for order in {*as_set, *real[0]}:
-        moved = np.array([one.get(order, 0.0) for one in real]) * ahead**order
+        moved = np.array([phasors.get(order, 0.0) for phasors in real]) * ahead**order
         changes[order] = (moved - as_set.get(order, 0.0)) * situation.turn**order
     return situation.moved(changes)

@@ -124,8 +124,8 @@ class OneSign(StrEnum):
     TIME = "time goes one way"
 
 
-def _unit(one: Parameter) -> str:
-    return "" if one.unit == "1" else f" {one.unit}"
+def _unit(declared: Parameter) -> str:
+    return "" if declared.unit == "1" else f" {declared.unit}"
 
 
 def parameter(
@@ -148,10 +148,10 @@ def parameter(
     ConfigurationError
         If a start lies outside the plausible range.
     """
-    for one in starts:
-        if not low <= one <= high:
+    for start in starts:
+        if not low <= start <= high:
             raise ConfigurationError(
-                f"parameter {meaning!r}: its start {one:g} is outside the plausible range "
+                f"parameter {meaning!r}: its start {start:g} is outside the plausible range "
                 f"{low:g} to {high:g}"
             )
     told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
@@ -215,20 +215,20 @@ class Effect(ABC):
     taken_up: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        for one in self.parameters():
-            value = getattr(self, one.name)
-            if not one.low <= value <= one.high or abs(value) < one.least:
+        for declared in self.parameters():
+            value = getattr(self, declared.name)
+            if not declared.low <= value <= declared.high or abs(value) < declared.least:
                 raise ConfigurationError(
-                    f"effect {self.name}: {one.name} = {value:g}{_unit(one)} is outside the "
-                    f"plausible range {one.plausible}"
+                    f"effect {self.name}: {declared.name} = {value:g}{_unit(declared)} is outside "
+                    f"the plausible range {declared.plausible}"
                 )
 
     @classmethod
     def parameters(cls) -> tuple[Parameter, ...]:
         """Return the parameters, in order."""
         return tuple(
-            Parameter(name=one.name, typical=float(one.default), **one.metadata)  # type: ignore[arg-type]
-            for one in fields(cls)
+            Parameter(name=item.name, typical=float(item.default), **item.metadata)  # type: ignore[arg-type]
+            for item in fields(cls)
         )
 
     @abstractmethod

@@ -55,18 +55,18 @@ class Clearances:
         heavy = inertia[among] + step_s * self.damping[among]
         self.rates[flying] -= step_s * np.linalg.solve(heavy, load[flying])
         self.places[flying] += step_s * self.rates[flying]
-        for one in flying:
-            if not -self.length < self.places[one] < 0.0:
-                self._meet(int(one), inertia, flying)
+        for joint in flying:
+            if not -self.length < self.places[joint] < 0.0:
+                self._meet(int(joint), inertia, flying)
 
-    def _meet(self, one: int, inertia: FloatArray, flying: NDArray[np.intp]) -> None:
+    def _meet(self, joint: int, inertia: FloatArray, flying: NDArray[np.intp]) -> None:
         """Stop one at its side; its impulse changes the rates of those that still fly."""
-        others = np.array([i for i in flying if i != one and self.rates[i] != 0.0], dtype=int)
+        others = np.array([i for i in flying if i != joint and self.rates[i] != 0.0], dtype=int)
         if others.size:
             block = inertia[np.ix_(others, others)]
-            self.rates[others] += np.linalg.solve(block, inertia[others, one] * self.rates[one])
-        self.places[one] = min(max(self.places[one], -self.length), 0.0)
-        self.rates[one] = 0.0
+            self.rates[others] += np.linalg.solve(block, inertia[others, joint] * self.rates[joint])
+        self.places[joint] = min(max(self.places[joint], -self.length), 0.0)
+        self.rates[joint] = 0.0
 
 
 def flight_harmonics(
@@ -91,6 +91,6 @@ def flight_harmonics(
         for k in range(POINTS):
             places[k] = clearances.places
             clearances.step(pull[k], inertia[k], step_s)
-    found: ComplexArray = np.fft.rfft(places, axis=0) * (2.0 / POINTS)
-    found[0] /= 2.0
-    return found
+    harmonics: ComplexArray = np.fft.rfft(places, axis=0) * (2.0 / POINTS)
+    harmonics[0] /= 2.0
+    return harmonics

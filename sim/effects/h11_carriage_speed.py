@@ -34,8 +34,8 @@ class CarriageSpeedError(Effect):
 
     def signature(self, situation: Situation) -> Signature:
         """Return the linear loads of the additional speed, and the speed's record."""
-        found = dict(faster(situation, situation.flow_m_s * self.relative))
+        changes = dict(faster(situation, situation.flow_m_s * self.relative))
         recorded = signals.recorded(channels.CARRIAGE_SPEED).name
         if situation.rig.acquisition.carriage_speed is not None:
-            found[recorded, 0] = situation.phasor(recorded, 0) * self.relative
-        return found
+            changes[recorded, 0] = situation.phasor(recorded, 0) * self.relative
+        return changes

@@ -62,14 +62,14 @@ class CarriageFluctuation(Effect):
 
     def lines(self, situation: Situation) -> Lines:
         """Return both sidebands of each strut's force, of the struts' first harmonic."""
-        found: dict[tuple[str, float], complex] = {}
+        amplitudes: dict[tuple[str, float], complex] = {}
         wave = self.relative * np.exp(1j * self.phase_rad)
         if situation.rig.acquisition.carriage_speed is not None:
             recorded = signals.recorded(channels.CARRIAGE_SPEED).name
             speed = situation.phasor(recorded, 0).real
-            found[recorded, self.frequency_hz] = complex(speed * wave)
+            amplitudes[recorded, self.frequency_hz] = complex(speed * wave)
         if not situation.in_water:
-            return found
+            return amplitudes
         start = np.exp(1j * situation.rig.drive.initial_angle_rad)
         motion = situation.displacement() * start
         s = 1j * situation.omega
@@ -80,8 +80,8 @@ class CarriageFluctuation(Effect):
             product = -side * 0.5j * motion * turning
             force = situation.flow_m_s * per_speed(situation, s, at) @ product
             for name, value in zip(STRUT_FORCES, force, strict=True):
-                found[name, abs(beside)] = _forwards(complex(value), beside)
-        return found
+                amplitudes[name, abs(beside)] = _forwards(complex(value), beside)
+        return amplitudes
 
 
 def _forwards(phasor: complex, frequency_hz: float) -> complex:

@@ -68,10 +68,10 @@ class TankWalls(Effect):
 
         def walls(s: complex) -> ComplexArray:
             total = np.zeros((2, 2), dtype=np.complex128)
-            for one in modes:
-                radiated = damping_at(rig, one)
-                half_width = 2.0 * self.damping_ratio * one
-                peak = half_width * s / (s * s + half_width * s + one**2)
+            for mode in modes:
+                radiated = damping_at(rig, mode)
+                half_width = 2.0 * self.damping_ratio * mode
+                peak = half_width * s / (s * s + half_width * s + mode**2)
                 total += self.strength * peak * (radiated + radiated.T) / 2.0
             return total
 

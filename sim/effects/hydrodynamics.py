@@ -55,14 +55,16 @@ def radiation_of(rig: SimulatedRig) -> Radiation:
 
 def added_mass_at(rig: SimulatedRig, omega_rad_s: float) -> FloatArray:
     """Return the whole added mass at a frequency, shape ``(2, 2)``."""
-    found: FloatArray = np.array(rig.water.added_mass) + radiation_of(rig).added_mass(omega_rad_s)
-    return found
+    added_mass: FloatArray = np.array(rig.water.added_mass) + radiation_of(rig).added_mass(
+        omega_rad_s
+    )
+    return added_mass
 
 
 def damping_at(rig: SimulatedRig, omega_rad_s: float) -> FloatArray:
     """Return the whole damping at a frequency, shape ``(2, 2)``."""
-    found: FloatArray = np.array(rig.water.damping) + radiation_of(rig).damping(omega_rad_s)
-    return found
+    damping: FloatArray = np.array(rig.water.damping) + radiation_of(rig).damping(omega_rad_s)
+    return damping
 
 
 def with_more(
@@ -101,14 +103,14 @@ def load(situation: Situation, per_velocity: Callable[[complex], ComplexArray]) 
 
     ``per_velocity`` gives the matrix at a Laplace variable s; added mass A is s A. Empty in air.
     """
-    found: dict[tuple[str, int], complex] = {}
+    changes: dict[tuple[str, int], complex] = {}
     if not situation.in_water:
-        return found
+        return changes
     for order in range(HIGHEST + 1):
         matrix = per_velocity(1j * order * situation.omega)
         force = situation.system.to_motion.T @ matrix @ through_water(situation, order)
-        found |= at_struts_of(force, order)
-    return found
+        changes |= at_struts_of(force, order)
+    return changes
 
 
 def of_law(
@@ -133,10 +135,10 @@ def of_law(
         along, motion = _at(situation, point)
         size, phase = abs(motion), float(np.angle(motion))
         total += np.outer([wave(order, size, phase, point) for order in range(highest + 1)], along)
-    found: dict[tuple[str, int], complex] = {}
+    changes: dict[tuple[str, int], complex] = {}
     for order in range(highest + 1):
-        found |= at_struts_of(total[order], order)
-    return found
+        changes |= at_struts_of(total[order], order)
+    return changes
 
 
 def of_hull_law(
@@ -158,14 +160,14 @@ def of_hull_law(
         return {}
     ends, middle = np.eye(2), situation.system.to_motion[0]
     places = [(end, at_struts / 2.0) for end in ends] + [(middle, 1.0 - at_struts)]
-    found: dict[tuple[str, int], complex] = {}
+    changes: dict[tuple[str, int], complex] = {}
     for order in range(highest + 1):
         force = np.zeros(2, dtype=np.complex128)
         for along, share in places:
             motion = complex(along @ situation.displacement())
             force += share * wave(order, abs(motion), float(np.angle(motion))) * along
-        found |= at_struts_of(force, order)
-    return found
+        changes |= at_struts_of(force, order)
+    return changes
 
 
 def _at(situation: Situation, point: Point) -> tuple[FloatArray, complex]:
@@ -182,13 +184,13 @@ def faster(situation: Situation, flow_m_s: float) -> Signature:
 
     Exact: the load is linear in the speed. Memory and added mass answer to that velocity as well.
     """
-    found: dict[tuple[str, int], complex] = {}
+    changes: dict[tuple[str, int], complex] = {}
     if not situation.in_water:
-        return found
+        return changes
     for order in range(HIGHEST + 1):
         force = per_speed(situation, 1j * order * situation.omega) @ situation.displacement(order)
-        found |= at_struts_of(flow_m_s * force, order)
-    return found
+        changes |= at_struts_of(flow_m_s * force, order)
+    return changes
 
 
 def per_speed(situation: Situation, s: complex, s_memory: complex | None = None) -> ComplexArray:
@@ -206,5 +208,5 @@ def per_speed(situation: Situation, s: complex, s_memory: complex | None = None)
         np.array(rig.water.added_mass) + radiation.added_mass_infinite
     )
     loads = constant_part + radiation.output_matrix @ answer
-    found: ComplexArray = system.to_motion.T @ loads @ system.turn
-    return found
+    slope: ComplexArray = system.to_motion.T @ loads @ system.turn
+    return slope

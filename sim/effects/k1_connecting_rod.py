@@ -43,8 +43,8 @@ class ConnectingRod(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this rod on both cranks."""
         aft, fore = (
-            replace(one, rod_offset_m=one.rod_offset_m + self.rod_offset_m)
-            for one in (rig.linkage_aft, rig.linkage_fore)
+            replace(setting, rod_offset_m=setting.rod_offset_m + self.rod_offset_m)
+            for setting in (rig.linkage_aft, rig.linkage_fore)
         )
         oscillator = replace(rig.oscillator, rod_length_m=self.rod_length_m)
         return replace(rig, oscillator=oscillator, linkage_aft=aft, linkage_fore=fore)

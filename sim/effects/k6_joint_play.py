@@ -35,8 +35,8 @@ class JointPlay(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both struts."""
         aft, fore = (
-            replace(one, half_play_m=one.half_play_m + self.half_play_m)
-            for one in (rig.linkage_aft, rig.linkage_fore)
+            replace(setting, half_play_m=setting.half_play_m + self.half_play_m)
+            for setting in (rig.linkage_aft, rig.linkage_fore)
         )
         return replace(rig, linkage_aft=aft, linkage_fore=fore)
 

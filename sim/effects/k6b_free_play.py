@@ -74,13 +74,13 @@ class FreePlay(Effect):
     def signature(self, situation: Situation) -> Signature:
         """Return flights and impacts of a model on rigid sides, then on the gauges' springs."""
         crossed = self._crossed(situation)
-        found: dict[tuple[str, int], complex] = {}
+        changes: dict[tuple[str, int], complex] = {}
         for order in range(HIGHEST + 1):
             change = crossed[order]
             displacement = situation.displacement(order) + change
             force = self._on_gauges(situation, order) @ displacement
-            found |= at_struts(force - situation.force(order), order)
-        return found
+            changes |= at_struts(force - situation.force(order), order)
+        return changes
 
     def _on_gauges(self, situation: Situation, order: int) -> ComplexArray:
         """Return force per displacement behind the joints, with the gauges in a row with it."""
@@ -88,8 +88,8 @@ class FreePlay(Effect):
         s = 1j * order * situation.omega
         spring = (gauges.gauge_stiffness_n_m or 0.0) + s * gauges.gauge_damping_n_s_m
         impedance = situation.impedance(order)
-        found = np.linalg.solve(np.eye(2) + impedance / spring, impedance)
-        return np.asarray(found, dtype=np.complex128)
+        force = np.linalg.solve(np.eye(2) + impedance / spring, impedance)
+        return np.asarray(force, dtype=np.complex128)
 
     def _crossed(self, situation: Situation) -> ComplexArray:
         """Return phasors ``S + i C`` of what the joints take off the displacement, by order."""

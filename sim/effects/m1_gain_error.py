@@ -30,7 +30,9 @@ class GainError(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these gains on top of what the gauges have."""
         errors = (self.aft, self.fore)
-        return with_gauges(rig, lambda one, i: replace(one, gain=one.gain * (1.0 + errors[i])))
+        return with_gauges(
+            rig, lambda gauge, i: replace(gauge, gain=gauge.gain * (1.0 + errors[i]))
+        )
 
     def signature(self, situation: Situation) -> Signature:
         """Return ``g F_n`` of each strut."""

@@ -41,8 +41,8 @@ class CrossTalk(Effect):
         )
         felt = self._felt_drag(set_point)
 
-        def loaded(one: Dynamometer, _: int) -> Dynamometer:
-            return replace(one, offset_n=one.offset_n + one.gain * felt)
+        def loaded(dynamometer: Dynamometer, _: int) -> Dynamometer:
+            return replace(dynamometer, offset_n=dynamometer.offset_n + dynamometer.gain * felt)
 
         return with_gauges(replace(rig, dynamometers=dynamometers), loaded)
 

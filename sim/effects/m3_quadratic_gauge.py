@@ -30,7 +30,8 @@ class QuadraticGauge(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this curvature on top of what the gauges have."""
         return with_gauges(
-            rig, lambda one, _: replace(one, curvature_1_n=one.curvature_1_n + self.curvature_1_n)
+            rig,
+            lambda gauge, _: replace(gauge, curvature_1_n=gauge.curvature_1_n + self.curvature_1_n),
         )
 
     def signature(self, situation: Situation) -> Signature:

@@ -39,7 +39,8 @@ class GaugeHysteresis(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this loop on top of what the gauges have."""
         return with_gauges(
-            rig, lambda one, _: replace(one, hysteresis_1_n=one.hysteresis_1_n + self.beta_1_n)
+            rig,
+            lambda gauge, _: replace(gauge, hysteresis_1_n=gauge.hysteresis_1_n + self.beta_1_n),
         )
 
     def signature(self, situation: Situation) -> Signature:

@@ -31,7 +31,9 @@ class ZeroOffset(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these offsets on top of what the gauges have."""
         offsets = (self.aft_n, self.fore_n)
-        return with_gauges(rig, lambda one, i: replace(one, offset_n=one.offset_n + offsets[i]))
+        return with_gauges(
+            rig, lambda gauge, i: replace(gauge, offset_n=gauge.offset_n + offsets[i])
+        )
 
     def signature(self, situation: Situation) -> Signature:
         """Return the offsets as means."""

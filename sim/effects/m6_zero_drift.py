@@ -44,7 +44,7 @@ class ZeroDrift(Effect):
         """Return the rig with these drifts on top of what the gauges have."""
         drifts = (self.aft_n_s, self.fore_n_s)
         return with_gauges(
-            rig, lambda one, i: replace(one, zero_drift_n_s=one.zero_drift_n_s + drifts[i])
+            rig, lambda gauge, i: replace(gauge, zero_drift_n_s=gauge.zero_drift_n_s + drifts[i])
         )
 
     def signature(self, situation: Situation) -> Signature:

@@ -54,7 +54,7 @@ class CampaignDrift(Effect):
         """Return the rig with the zeros as they are when the run begins, and as they go on."""
         zeros = [drift * self.since_zero_s for drift in (self.aft_n_s, self.fore_n_s)]
         drifted = with_gauges(
-            rig, lambda one, i: replace(one, zero_drifted_n=one.zero_drifted_n + zeros[i])
+            rig, lambda gauge, i: replace(gauge, zero_drifted_n=gauge.zero_drifted_n + zeros[i])
         )
         return self._within_run.change(drifted, set_point)
 

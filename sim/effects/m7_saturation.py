@@ -46,11 +46,11 @@ class Saturation(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these limits, or the narrower ones that the gauges have."""
 
-        def limited(one: Dynamometer, _: int) -> Dynamometer:
-            lowest = -np.inf if one.lowest_n is None else one.lowest_n
-            highest = np.inf if one.highest_n is None else one.highest_n
+        def limited(dynamometer: Dynamometer, _: int) -> Dynamometer:
+            lowest = -np.inf if dynamometer.lowest_n is None else dynamometer.lowest_n
+            highest = np.inf if dynamometer.highest_n is None else dynamometer.highest_n
             return replace(
-                one,
+                dynamometer,
                 lowest_n=float(max(lowest, -self.lower_n)),
                 highest_n=float(min(highest, self.upper_n)),
             )
@@ -80,8 +80,8 @@ def _excess(size: FloatArray, limit: FloatArray, order: int) -> FloatArray:
     half = np.arccos(np.clip(limit / size, -1.0, 1.0))
 
     def wave(k: int) -> FloatArray:
-        found: FloatArray = half if k == 0 else np.sin(k * half) / k
-        return found
+        integral: FloatArray = half if k == 0 else np.sin(k * half) / k
+        return integral
 
     both = wave(order - 1) + wave(order + 1) - 2.0 * np.cos(half) * wave(order)
     return size / np.pi * both * (0.5 if order == 0 else 1.0)

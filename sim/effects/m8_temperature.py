@@ -71,8 +71,10 @@ class Temperature(Effect):
         """Return the rig as it is when warm."""
         gain, zero = 1.0 + self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
 
-        def warm(one: Dynamometer, _: int) -> Dynamometer:
-            return replace(one, gain=one.gain * gain, offset_n=one.offset_n + zero)
+        def warm(dynamometer: Dynamometer, _: int) -> Dynamometer:
+            return replace(
+                dynamometer, gain=dynamometer.gain * gain, offset_n=dynamometer.offset_n + zero
+            )
 
         dense, viscous = self._factors
         water = replace(
@@ -89,7 +91,8 @@ class Temperature(Effect):
                 output_matrix=radiation.output_matrix * dense,
             )
         forces = tuple(
-            replace(one, law=one.law.scaled(dense)) if one.in_water else one for one in rig.forces
+            replace(force, law=force.law.scaled(dense)) if force.in_water else force
+            for force in rig.forces
         )
         cross_flow = None if rig.cross_flow is None else rig.cross_flow.scaled(dense)
         warmer = replace(
@@ -103,8 +106,8 @@ class Temperature(Effect):
 
         def change(order: int, force: ComplexArray) -> ComplexArray:
             more = self._more(situation, order) if situation.in_water else np.zeros(2)
-            found: ComplexArray = gain * force + (1.0 + gain) * more
-            return found + zero if order == 0 else found
+            total: ComplexArray = gain * force + (1.0 + gain) * more
+            return total + zero if order == 0 else total
 
         return of_forces(situation, change)
 

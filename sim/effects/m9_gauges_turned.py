@@ -50,12 +50,12 @@ class GaugesTurned(Effect):
         readings = np.stack(read)
         changed = period.harmonics((_turned(readings, line, given.pivot, given.gauges, on_rig)
                                     - readings).T)  # fmt: skip
-        found: dict[tuple[str, int], complex] = {}
+        changes: dict[tuple[str, int], complex] = {}
         for k, name in enumerate(_READINGS):
-            found[name, 0] = complex(changed[0, k])
+            changes[name, 0] = complex(changed[0, k])
             for order in range(1, _ORDERS + 1):
-                found[name, order] = complex(-changed[order, k].imag, changed[order, k].real)
-        return found
+                changes[name, order] = complex(-changed[order, k].imag, changed[order, k].real)
+        return changes
 
 
 def _turned(
@@ -65,9 +65,9 @@ def _turned(
     fixed = 0 if pivot is Pivot.AFT else 1
     turn = line if gauges is Gauges.MODEL else -line
     cosine, sine = np.cos(turn), np.sin(turn)
-    found = readings.copy()
-    found[fixed] = readings[fixed] * cosine + readings[2] * sine
-    found[2] = readings[2] * cosine - readings[fixed] * sine
+    turned = readings.copy()
+    turned[fixed] = readings[fixed] * cosine + readings[2] * sine
+    turned[2] = readings[2] * cosine - readings[fixed] * sine
     grows = on_rig is (gauges is Gauges.MODEL)
-    found[1 - fixed] = readings[1 - fixed] / cosine if grows else readings[1 - fixed] * cosine
-    return found
+    turned[1 - fixed] = readings[1 - fixed] / cosine if grows else readings[1 - fixed] * cosine
+    return turned

@@ -60,10 +60,10 @@ def of_forces(
 
     ``change`` is given an order and the nominal phasors of both struts.
     """
-    found: dict[tuple[str, int], complex] = {}
+    changes: dict[tuple[str, int], complex] = {}
     for order in range(HIGHEST + 1):
-        found |= at_struts(change(order, situation.force(order)), order, RECORDED_FORCES)
-    return found
+        changes |= at_struts(change(order, situation.force(order)), order, RECORDED_FORCES)
+    return changes
 
 
 def of_waves(situation: Situation, change: Callable[[str, int], complex]) -> Signature:
@@ -90,6 +90,6 @@ def _square(phasors: ComplexArray) -> ComplexArray:
     mean, waves = phasors[:1].real, -1j * phasors[1:] / 2.0
     both_sides = np.concatenate([np.conj(waves[::-1]), mean, waves])
     product = np.convolve(both_sides, both_sides)[2 * (phasors.size - 1) :][: phasors.size]
-    found: ComplexArray = 2j * product
-    found[0] = product[0].real
-    return found
+    harmonics: ComplexArray = 2j * product
+    harmonics[0] = product[0].real
+    return harmonics

@@ -47,7 +47,7 @@ class LoadDependentFriction(Effect):
         force = situation.force() / situation.turn
         predicted: dict[tuple[str, int], complex] = {}
         for order in range(HIGHEST + 1):
-            shares = [_share(self.side_load_n, complex(one), order) for one in force]
+            shares = [_share(self.side_load_n, complex(phasor), order) for phasor in force]
             values = self.friction * np.array(shares) * situation.turn**order
             predicted |= at_struts(values.real if order == 0 else values, order)
         return predicted

@@ -85,7 +85,7 @@ class Situation:
         beside = (channels.SHAFT_ANGLE, channels.CARRIAGE_SPEED)
         lines = self.rig.acquisition.lines
         return tuple(
-            signals.recorded(one.channel).name for one in lines if one.channel not in beside
+            signals.recorded(line.channel).name for line in lines if line.channel not in beside
         )
 
     def impedance(self, order: float) -> ComplexArray:
@@ -119,16 +119,16 @@ class Situation:
             displacement = spectra[motions[0].name].copy()
             for order, change in changes.items():
                 displacement[order] += (-1j if order else 1.0) * change[strut]
-            for power, one in enumerate(motions):
-                spectra[one.name] = displacement * real.s**power
+            for power, motion in enumerate(motions):
+                spectra[motion.name] = displacement * real.s**power
         _, forces = steady_of(self._hull, real, spectra)
-        found: dict[tuple[str, int], complex] = {}
+        moved_phasors: dict[tuple[str, int], complex] = {}
         for order in range(highest + 1):
             after = np.array([_phasor(forces[name][order], order) for name in STRUT_FORCES])
-            found |= at_struts(after - self.force(order), order)
+            moved_phasors |= at_struts(after - self.force(order), order)
         for order, change in changes.items():
-            found |= at_struts(np.asarray(change), order, STRUT_DISPLACEMENTS)
-        return found
+            moved_phasors |= at_struts(np.asarray(change), order, STRUT_DISPLACEMENTS)
+        return moved_phasors
 
     @property
     def _hull(self) -> Stage[Any]:

@@ -29,6 +29,6 @@ def switch_on(
     run_index = 0 if run is None else run.index
     for effect in effects:
         set_point = effect.change_set_point(set_point, run_index)
-    for effect in sorted(effects, key=lambda one: one.changes_others):
+    for effect in sorted(effects, key=lambda item: item.changes_others):
         rig = effect.change(rig, set_point)
     return rig, set_point

@@ -125,7 +125,7 @@ class Mechanism:
                     after[i], motion, strut[0].half_play_m, 1.0 / block.sample_rate_hz
                 )
                 values = (*behind[:3], slope * behind.contact)
-            written |= {one.name: v for one, v in zip(names, values, strict=True)}
+            written |= {name.name: v for name, v in zip(names, values, strict=True)}
         return None if after == [None, None] else (after[0], after[1]), written
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
@@ -139,12 +139,12 @@ class Mechanism:
                 speed = period.values(inputs[signals.SHAFT_SPEED.name])
                 gained = period.values(inputs[signals.SHAFT_ACCELERATION.name])
                 in_front = (d, slope * speed, curvature * speed**2 + slope * gained)
-                twice = JointMotion(*(np.tile(one, 2) for one in in_front))
+                twice = JointMotion(*(np.tile(signal, 2) for signal in in_front))
                 _, behind = follow_with_play(None, twice, strut[0].half_play_m, period.step_s)
                 d, slope = behind.position[period.points :], slope * behind.contact[period.points :]
             motion, lever = period.harmonics(np.column_stack([d, slope])).T
             values = (motion, period.s * motion, period.s**2 * motion, lever)
-            written |= {one.name: v for one, v in zip(names, values, strict=True)}
+            written |= {name.name: v for name, v in zip(names, values, strict=True)}
         return period, written
 
     @property

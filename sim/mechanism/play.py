@@ -100,9 +100,9 @@ def _contact(
 
 def _held(start: float, extremes: FloatArray, ends: FloatArray, half_play_m: float) -> FloatArray:
     """Return where what is behind the joint is, after each extreme and the end that follows it."""
-    position, found = start, []
+    position, positions = start, []
     for extreme, end in zip(extremes.tolist(), ends.tolist(), strict=True):
         position = min(max(position, extreme - half_play_m), extreme + half_play_m)
         position = min(max(position, end - half_play_m), end + half_play_m)
-        found.append(position)
-    return np.array(found)
+        positions.append(position)
+    return np.array(positions)

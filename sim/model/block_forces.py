@@ -118,7 +118,7 @@ class BlockForces:
     ) -> tuple[HullState, FloatArray] | None:
         """Solve sample by sample; laws that the march does not know are swept around it."""
         course = self.course(state, struts, known)
-        rest = tuple(one for one in self.laws if not has_number(one.law))
+        rest = tuple(acting for acting in self.laws if not has_number(acting.law))
         alone = geometry_only(self.system.numbers)
         outputs = march_model(marching, course)
 
@@ -128,8 +128,8 @@ class BlockForces:
             outputs = march_model(marching, course)
             return loads if outputs is None else swept(outputs)
 
-        def swept(found: FloatArray) -> FloatArray:
-            return self._forces(rest, alone, found[:, :6], found[:, 6:8])[:, :2]
+        def swept(feedback: FloatArray) -> FloatArray:
+            return self._forces(rest, alone, feedback[:, :6], feedback[:, 6:8])[:, :2]
 
         if rest and outputs is not None:
             relax(respond, swept(outputs), "hull", self.scale(struts)[:2])

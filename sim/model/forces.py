@@ -106,13 +106,13 @@ def law_harmonics(
         Harmonics of h, h', h'' and the load of the linear parts at the struts,
         ``(orders + 1, 8)``.
     """
-    laws = tuple(one for one in laws if one.law.periodic)
-    smooth = tuple(one for one in laws if not one.law.corners)
+    laws = tuple(acting for acting in laws if acting.law.periodic)
+    smooth = tuple(acting for acting in laws if not acting.law.corners)
     values = period.values(waves)
     at_points = ModelMotion(*np.split(values, 4, axis=1))
     instants = Instants(period.time_s, period.step_s, np.full(period.points, speed_m_s))
     numbers = system.numbers
-    found = period.harmonics(
+    harmonics = period.harmonics(
         law_forces(smooth, without_corners(numbers), system, at_points, instants)
     )
     at = moving(numbers, values[:, :6], instants.speed_m_s)
@@ -125,8 +125,8 @@ def law_harmonics(
         force = law_forces(own, part, system, motion, instants)
         added = 2.0 * (turned.conj() * weight[:, np.newaxis]).T @ force
         added[0] = added[0].real / 2.0
-        found += added
-    return found
+        harmonics += added
+    return harmonics
 
 
 def _cornered(
@@ -141,11 +141,11 @@ def _cornered(
     waves
         With those of the velocities v and r and the acceleration v' as the last three columns.
     """
-    for one in laws:
-        if one.law.corners:
-            signals = arguments_of(one, system) @ waves.T
-            corners = np.array(one.law.corners, dtype=float)
-            yield (one,), geometry_only(system.numbers), signals, corners
+    for acting in laws:
+        if acting.law.corners:
+            signals = arguments_of(acting, system) @ waves.T
+            corners = np.array(acting.law.corners, dtype=float)
+            yield (acting,), geometry_only(system.numbers), signals, corners
     if has_corners(system.numbers):
         corners = np.array([[0.0, 0.0], [1.0, 0.0]])
         yield (), corners_only(system.numbers), waves[:, 8:10].T, corners
@@ -158,10 +158,10 @@ def arguments_of(acting: Acting, system: HullSystem) -> FloatArray:
     columns h, h', h'' and the linear load at both struts, then v, r and v' through the water.
     """
     along, share = direction(acting.point, system.to_motion)
-    found = np.zeros((4, 11))
-    found[0, :2], found[3, 6:8] = along, share
+    arguments = np.zeros((4, 11))
+    arguments[0, :2], arguments[3, 6:8] = along, share
     if acting.point is Point.THROUGH_WATER:
-        found[1, 8] = found[2, 10] = 1.0
+        arguments[1, 8] = arguments[2, 10] = 1.0
     else:
-        found[1, 2:4] = found[2, 4:6] = along
-    return found
+        arguments[1, 2:4] = arguments[2, 4:6] = along
+    return arguments

@@ -80,7 +80,7 @@ class Hull(ModelParameters):
         return state, self._written(np.ascontiguousarray(force.T))
 
     def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
-        return {one.name: row for one, row in zip(self.writes, rows, strict=True)}
+        return {signal.name: row for signal, row in zip(self.writes, rows, strict=True)}
 
     def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
         """Return the model in the water as it is at the first of some samples, and for how many.
@@ -99,7 +99,7 @@ class Hull(ModelParameters):
     @property
     def repeating(self) -> "Hull":
         """The model as it is long after the start, with the laws that repeat."""
-        laws = tuple(one for one in self.laws if one.law.periodic)
+        laws = tuple(acting for acting in self.laws if acting.law.periodic)
         radiation = self.radiation
         if radiation is not None:
             radiation = replace(radiation, onset_s=np.zeros(radiation.states))
@@ -151,15 +151,15 @@ class Hull(ModelParameters):
     def _settled(self, period: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of the forces after as many periods as it takes."""
         hull, fine = self.repeating, fine_enough(period, self.system.state_matrix)
-        given = {one.name: fine.values(inputs[one.name]) for one in self.reads}
+        given = {signal.name: fine.values(inputs[signal.name]) for signal in self.reads}
 
         def run(state: HullState, turn: int) -> tuple[HullState, Signals]:
             rate_hz = fine.points * fine.frequency_hz
             return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
 
-        names = tuple(one.name for one in self.writes)
-        found = last_period(run, HullState(), names)
-        return {name: fine.harmonics(found[name]) for name in names}
+        names = tuple(signal.name for signal in self.writes)
+        period_of_signals = last_period(run, HullState(), names)
+        return {name: fine.harmonics(period_of_signals[name]) for name in names}
 
 
 @lru_cache(maxsize=256)

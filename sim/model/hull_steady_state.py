@@ -44,9 +44,9 @@ class HullSteady:
     def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return the forces where the laws ask for ``laws``."""
         h = self._model(y, laws)
-        found = laws.copy()
-        found[:, :2] += _apply(self.impedance, h)
-        return found
+        force = laws.copy()
+        force[:, :2] += _apply(self.impedance, h)
+        return force
 
     def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return what the laws ask for where the model gives way to ``laws``."""
@@ -59,9 +59,9 @@ class HullSteady:
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
         """Return what the laws ask for, in balance with what the mounting gives way."""
-        found = None if self._compiled is None else self._compiled.balanced(y)
-        if found is not None:
-            return found
+        balanced = None if self._compiled is None else self._compiled.balanced(y)
+        if balanced is not None:
+            return balanced
         start = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
         if self.give is None:
             return start

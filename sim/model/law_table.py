@@ -75,16 +75,16 @@ def has_number(law: ForceLaw) -> bool:
 def table_of(laws: tuple[Acting, ...], system: HullSystem) -> LawTable:
     """Return the table of laws that all have a number, and of the hull."""
     rows = np.full((len(laws), 10), math.nan)
-    arguments = [arguments_of(one, system) for one in laws]
+    arguments = [arguments_of(law, system) for law in laws]
     corners: list[tuple[int, int, float]] = []
     for item, acting in enumerate(laws):
         row = rows[item]
         values = astuple(acting.law)  # type: ignore[arg-type]  # every numbered law is a dataclass
         row[0] = LAWS.index(type(acting.law))
-        row[1 : 1 + len(values)] = [math.nan if one is None else one for one in values]
+        row[1 : 1 + len(values)] = [math.nan if value is None else value for value in values]
         row[5:7], row[7:9] = direction(acting.point, system.to_motion)
         row[9] = acting.point is Point.THROUGH_WATER
-        corners += [(item, one.argument, one.level) for one in acting.law.corners]
+        corners += [(item, corner.argument, corner.level) for corner in acting.law.corners]
     if has_corners(system.numbers):
         velocities = np.zeros((4, 11))
         velocities[0, 8] = velocities[1, 9] = 1.0

@@ -106,5 +106,5 @@ class Mounting:
         if self.frame_stiffness_n_m is not None:
             shapes += [(1.0, 1.0)]
             properties += [(self.frame_mass_kg, self.frame_damping_n_s_m, self.frame_stiffness_n_m)]
-        diagonal = [np.diag([one[i] for one in properties]) for i in range(3)]
+        diagonal = [np.diag([triple[i] for triple in properties]) for i in range(3)]
         return Elastic(np.array(shapes).reshape(-1, 2).T, *diagonal)

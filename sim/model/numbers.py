@@ -25,14 +25,14 @@ def numbers_of(hull: ModelParameters, added_mass: FloatArray, linear: FloatArray
     linear
         What the linear system has for the struts' forces already, per (h, h', h''): ``(2, 6)``.
     """
-    found = np.zeros((geometry.ROWS, geometry.COLUMNS))
-    found[geometry.GEOMETRY] = _geometry(hull)
-    _fill_body(found, hull)
-    _fill_water(found, hull, added_mass)
-    still = moving(found, np.zeros((1, 6)), np.zeros(1))
-    found[geometry.AT_REST, :3] = readings(found, still)[0]
-    found[geometry.LINEAR : geometry.LINEAR + 2, :6] = linear
-    return found
+    numbers = np.zeros((geometry.ROWS, geometry.COLUMNS))
+    numbers[geometry.GEOMETRY] = _geometry(hull)
+    _fill_body(numbers, hull)
+    _fill_water(numbers, hull, added_mass)
+    still = moving(numbers, np.zeros((1, 6)), np.zeros(1))
+    numbers[geometry.AT_REST, :3] = readings(numbers, still)[0]
+    numbers[geometry.LINEAR : geometry.LINEAR + 2, :6] = linear
+    return numbers
 
 
 def moving(numbers: FloatArray, motion: FloatArray, speed_m_s: FloatArray) -> BodyMotion:
@@ -52,29 +52,29 @@ def readings(
         Force that the struts have to exert besides, across the model at its reference point.
     """
     ahead, across, about = body_loads(numbers, at)
-    found = gauge_readings(numbers, at.cosine, at.sine, ahead, across + more_across, about)
-    return np.stack(found, axis=1)
+    readings = gauge_readings(numbers, at.cosine, at.sine, ahead, across + more_across, about)
+    return np.stack(readings, axis=1)
 
 
 def without_corners(numbers: FloatArray) -> FloatArray:
     """Return the numbers of the same hull without the loads that bend where a velocity turns."""
-    found = numbers.copy()
-    found[_BENDING] = 0.0
-    return found
+    smooth = numbers.copy()
+    smooth[_BENDING] = 0.0
+    return smooth
 
 
 def corners_only(numbers: FloatArray) -> FloatArray:
     """Return the numbers of a hull that has these loads alone."""
-    found = geometry_only(numbers)
-    found[_BENDING] = numbers[_BENDING]
-    return found
+    bent = geometry_only(numbers)
+    bent[_BENDING] = numbers[_BENDING]
+    return bent
 
 
 def geometry_only(numbers: FloatArray) -> FloatArray:
     """Return the numbers of a hull that asks for nothing."""
-    found = np.zeros_like(numbers)
-    found[geometry.GEOMETRY] = numbers[geometry.GEOMETRY]
-    return found
+    rigid = np.zeros_like(numbers)
+    rigid[geometry.GEOMETRY] = numbers[geometry.GEOMETRY]
+    return rigid
 
 
 def has_corners(numbers: FloatArray) -> bool:
@@ -104,31 +104,37 @@ def _geometry(hull: ModelParameters) -> tuple[float, ...]:
     )
 
 
-def _fill_body(found: FloatArray, hull: ModelParameters) -> None:
+def _fill_body(numbers: FloatArray, hull: ModelParameters) -> None:
     body, vertical = hull.body, hull.plane is Plane.VERTICAL
     below = body.cg_z_m if vertical else 0.0
-    found[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
+    numbers[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
     if vertical:
         # Buoyancy carries the model in water, at the height of the struts' attachments.
         hanging = 0.0 if hull.afloat else body.mass_kg
         weights = np.array([hanging, hanging * body.cg_x_m, body.mass_kg * below])
-        found[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * weights
+        numbers[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * weights
 
 
-def _fill_water(found: FloatArray, hull: ModelParameters, added_mass: FloatArray) -> None:
+def _fill_water(numbers: FloatArray, hull: ModelParameters, added_mass: FloatArray) -> None:
     side = turns_with(hull.plane)
     turned = np.array([[1.0, side], [side, 1.0]])
     matrices = (added_mass, hull.water.damping, hull.water.restoring)
     for row, matrix in enumerate(matrices, geometry.ADDED):
-        found[row, :4] = (turned * np.array(matrix)).ravel()
+        numbers[row, :4] = (turned * np.array(matrix)).ravel()
     if hull.surge is not None:
-        one = hull.surge
-        found[geometry.SURGE, :5] = one.x_u, one.x_uu, one.x_vv, side * one.x_vr, one.x_rr
+        surge = hull.surge
+        numbers[geometry.SURGE, :5] = (
+            surge.x_u,
+            surge.x_uu,
+            surge.x_vv,
+            side * surge.x_vr,
+            surge.x_rr,
+        )
     if hull.cross_flow is not None:
-        _fill_cross_flow(found, hull, side)
+        _fill_cross_flow(numbers, hull, side)
 
 
-def _fill_cross_flow(found: FloatArray, hull: ModelParameters, side: float) -> None:
+def _fill_cross_flow(numbers: FloatArray, hull: ModelParameters, side: float) -> None:
     given = hull.cross_flow
     kinds = (
         (geometry.CUBIC, None if given is None else given.cubic, (1.0, side, 1.0, side)),
@@ -137,4 +143,4 @@ def _fill_cross_flow(found: FloatArray, hull: ModelParameters, side: float) -> N
     for row, rows, signs in kinds:
         if rows is not None:
             moment = np.array([[1.0], [side]])
-            found[row : row + 2, :4] = moment * np.array(signs) * np.array(rows)
+            numbers[row : row + 2, :4] = moment * np.array(signs) * np.array(rows)

@@ -153,7 +153,9 @@ class HullSystem:
         loads[:, 4:] = self.load_input[rows].T @ shape
         struts = np.eye(6)
         struts[:, 4:] += np.hstack(self.motion_inputs)[rows].T @ shape
-        with_force = [np.hstack([one, one @ self.per_motion.T]) for one in (struts, states, loads)]
+        with_force = [
+            np.hstack([rows, rows @ self.per_motion.T]) for rows in (struts, states, loads)
+        ]
         with_force[1][2 * r :, 6:] += self.memory_load.T
         return with_force[0], with_force[1], with_force[2]
 
@@ -193,7 +195,7 @@ class HullSystem:
         """Return M_e s^2 + C_e s + K_e, shape ``(k, r, r)``."""
         column = s[:, np.newaxis, np.newaxis]
         elastic = self.elastic
-        found: ComplexArray = (
+        impedance: ComplexArray = (
             elastic.mass * column**2 + elastic.damping * column + elastic.stiffness
         )
-        return found
+        return impedance

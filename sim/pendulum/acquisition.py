@@ -42,7 +42,7 @@ class SampledSensors:
 
     def start(self, sample_rate_hz: float, seed: int) -> tuple[NoiseState, ...]:
         """Return the beginning of each channel's own noise."""
-        return tuple(start_stream(seed, self.name, one.channel.name) for one in self.sensors)
+        return tuple(start_stream(seed, self.name, sensor.channel.name) for sensor in self.sensors)
 
     def run(
         self, state: tuple[NoiseState, ...], block: Block, inputs: Signals

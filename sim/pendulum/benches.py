@@ -101,7 +101,7 @@ def double_pendulum_bench(
     body: Suspension, *, surge_m: float = 0.02, pitch_rad: float = 0.0, sway_m: float = 0.0
 ) -> PendulumBench:
     """Return a surge and pitch test with motion capture and a rate gyro; sway gives T_s."""
-    captured = tuple(motion_capture(one) for one in (SURGE, PITCH, SWAY))
+    captured = tuple(motion_capture(coordinate) for coordinate in (SURGE, PITCH, SWAY))
     return _bench(body, (surge_m, sway_m, 0.0, pitch_rad), (*captured, rate_gyro(PITCH)))
 
 

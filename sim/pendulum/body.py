@@ -97,15 +97,17 @@ class FreeBody:
     @property
     def reads(self) -> tuple[Signal, ...]:
         """What the release hands over."""
-        held = tuple(one.held for one in self.body.coordinates)
-        return (RELEASE_HOLD, *held, *(one.kick for one in self.body.coordinates))
+        held = tuple(coordinate.held for coordinate in self.body.coordinates)
+        return (RELEASE_HOLD, *held, *(coordinate.kick for coordinate in self.body.coordinates))
 
     @property
     def writes(self) -> tuple[Signal, ...]:
         """Displacements, rates and accelerations of all coordinates."""
         every = self.body.coordinates
-        moved = tuple(one.displacement for one in every) + tuple(one.rate for one in every)
-        return moved + tuple(one.acceleration for one in every)
+        moved = tuple(coordinate.displacement for coordinate in every) + tuple(
+            coordinate.rate for coordinate in every
+        )
+        return moved + tuple(coordinate.acceleration for coordinate in every)
 
     def start(self, sample_rate_hz: float, seed: int) -> BodyState:
         """Return a body at rest, not yet let go."""
@@ -130,22 +132,22 @@ class FreeBody:
     def _prepared(self, sample_rate_hz: float) -> tuple[object, object, int]:
         """Return model, tables and steps a sample, as the compiled loop takes them."""
         body = self.body
-        rows = np.array([one.row for one in body.resistances])
+        rows = np.array([resistance.row for resistance in body.resistances])
         damping = np.diag(rows[:, 0])
         steps = steps_per_sample(body, sample_rate_hz)
-        rubbing = tuple(one.coulomb > 0.0 for one in body.resistances)
-        found = propagators(
+        rubbing = tuple(resistance.coulomb > 0.0 for resistance in body.resistances)
+        propagation = propagators(
             as_rows(body.mass),
             as_rows(damping),
             as_rows(body.stiffness),
             rubbing,
             1.0 / (sample_rate_hz * steps),
         )
-        plain = body.kind == LINEAR and all(one.linear for one in body.resistances)
+        plain = body.kind == LINEAR and all(resistance.linear for resistance in body.resistances)
         beyond = not plain or bool(np.any(body.parameters))
         inverse = np.linalg.inv(body.mass)
         model = (body.kind, body.parameters, inverse, body.stiffness, rows, beyond, any(rubbing))
-        return model, found.arrays, steps
+        return model, propagation.arrays, steps
 
 
 def natural_frequencies_rad_s(body: SwingingBody) -> FloatArray:

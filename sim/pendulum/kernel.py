@@ -243,21 +243,21 @@ def interval(
         return advance(model, tables, t, step, 0, x, sign)
     deepest = tables[3].shape[1] - 2
     whole = 1 << deepest
-    done, level = 0, 0
-    while done < whole:
-        while (whole >> level) > whole - done:
+    steps, level = 0, 0
+    while steps < whole:
+        while (whole >> level) > whole - steps:
             level += 1
-        now = t + step * done / whole
+        now = t + step * steps / whole
         after = advance(model, tables, now, step, level, x, sign)
         new = turned(model, now + step / 2.0**level, after, sign)
         if new and level < deepest:
             level += 1
             continue
-        done += whole >> level
+        steps += whole >> level
         x = after
         if new:
             x[n:] = np.where(x[n:] * sign < 0.0, 0.0, x[n:])
-            settle(model, t + step * done / whole, x, sign)
+            settle(model, t + step * steps / whole, x, sign)
             level = 0
     return x
 

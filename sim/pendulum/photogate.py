@@ -129,12 +129,12 @@ class Photogate:
     def _edges(self, flag: FloatArray, sample_rate_hz: float) -> tuple[FloatArray, FloatArray]:
         """Return where the flag's ends cross the beam, in samples, and what the gate is then."""
         half = 0.5 * self.flag_width_m
-        found, states = [], []
+        times, states = [], []
         for level, inside_above in ((-half, True), (half, False)):
             at, rising = crossings(flag, self.beam_offset_m + level, sample_rate_hz)
-            found.append(at)
+            times.append(at)
             states.append((rising == inside_above).astype(np.float64))
-        edges, blocked = np.concatenate(found), np.concatenate(states)
+        edges, blocked = np.concatenate(times), np.concatenate(states)
         order = np.argsort(edges, kind="stable")
         return edges[order], blocked[order]
 

@@ -123,7 +123,7 @@ class Pendulum:
     @property
     def tilting_n_m(self) -> float:
         """H."""
-        hanging = sum(one.mass_kg * one.lever_m for one in self.weights)
+        hanging = sum(weight.mass_kg * weight.lever_m for weight in self.weights)
         return self.gravity_m_s2 * hanging + self.restoring_n_m * math.tan(self.offset_rad)
 
     @property
@@ -140,7 +140,7 @@ class Pendulum:
     @property
     def mass(self) -> FloatArray:
         """Inertia with hanging weights and the air that moves along."""
-        hung = sum(one.mass_kg * one.lever_m**2 for one in self.weights)
+        hung = sum(weight.mass_kg * weight.lever_m**2 for weight in self.weights)
         own = self.inertia_kg_m2 * (1.0 + self.air.added_inertia_ratio)
         return np.array([[own + hung]])
 

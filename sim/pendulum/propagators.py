@@ -60,7 +60,10 @@ def propagators(
     for stuck in product(*((False, True) if rubs else (False,) for rubs in rubbing)):
         index[sum(1 << i for i, held in enumerate(stuck) if held)] = len(sets)
         sets.append(_first_order(mass, damping, stiffness, np.array(stuck)))
-    A, B = np.array([one[0] for one in sets]), np.array([one[1] for one in sets])
+    A, B = (
+        np.array([matrices[0] for matrices in sets]),
+        np.array([matrices[1] for matrices in sets]),
+    )
     steps: FloatArray = np.ldexp(step_s, -np.arange(levels))
     E, G = _steps(A, B, steps)
     return Propagators(index, A, B, E, G)

@@ -115,7 +115,7 @@ def record(
     count = math.floor(duration_s * sample_rate_hz + 1e-9) + 1
     true_rate_hz = sample_rate_hz * (1.0 + bench.clock_error)
     _, run = chain.run(chain.start(true_rate_hz, seed), count)
-    gates = tuple(_gate(one, run, bench.clock_error) for one in bench.photogates)
+    gates = tuple(_gate(photogate, run, bench.clock_error) for photogate in bench.photogates)
     truth = bench.body.truth
     provenance = {
         "origin": "simulated",
@@ -157,7 +157,7 @@ def _gate(gate: "Photogate", run: Signals, clock_error: float) -> GateEdges:
 
 def _flags(bench: PendulumBench, run: Signals) -> tuple[Flag, ...]:
     """Flag each sensor that reaches the end of its range."""
-    found = []
+    flags = []
     for sensor in bench.sensors:
         limit = sensor.channel.full_scale
         beyond = 0
@@ -169,8 +169,8 @@ def _flags(bench: PendulumBench, run: Signals) -> tuple[Flag, ...]:
                 f"{channel.name}: {beyond} samples at the end of its range of {limit:.4g} "
                 f"{channel.unit}; let the body go from a smaller displacement"
             )
-            found.append(Flag("saturated", Severity.WARNING, message, channel.name))
-    return tuple(found)
+            flags.append(Flag("saturated", Severity.WARNING, message, channel.name))
+    return tuple(flags)
 
 
 def _dataset(

@@ -47,7 +47,7 @@ class Release:
         for key in ("displacement", "rate", "displacement_scatter", "rate_scatter"):
             values = getattr(self, key)
             if len(values) not in ({n} if key == "displacement" else {0, n}):
-                names = ", ".join(one.name for one in self.coordinates)
+                names = ", ".join(coordinate.name for coordinate in self.coordinates)
                 raise ConfigurationError(
                     f"release: {key} has {len(values)} values for the {n} coordinates {names}"
                 )
@@ -57,8 +57,8 @@ class Release:
     @property
     def writes(self) -> tuple[Signal, ...]:
         """Whether it is held, where, and with what rate it is let go."""
-        held = tuple(one.held for one in self.coordinates)
-        return (RELEASE_HOLD, *held, *(one.kick for one in self.coordinates))
+        held = tuple(coordinate.held for coordinate in self.coordinates)
+        return (RELEASE_HOLD, *held, *(coordinate.kick for coordinate in self.coordinates))
 
     def start(self, sample_rate_hz: float, seed: int) -> tuple[float, ...]:
         """Return this run's displacements and rates."""

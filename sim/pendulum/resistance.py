@@ -61,4 +61,4 @@ class Resistance:
     @property
     def row(self) -> FloatArray:
         """The attributes in their order."""
-        return np.array([float(getattr(self, one.name)) for one in fields(self)])
+        return np.array([float(getattr(self, field.name)) for field in fields(self)])

@@ -96,7 +96,9 @@ class Sensors:
 
     def start(self, sample_rate_hz: float, seed: int) -> tuple[SensorState, ...]:
         """Return settled instruments with this run's zeros."""
-        return tuple(SensorState(_zero(one, self.name, seed), 0.0, None) for one in self.sensors)
+        return tuple(
+            SensorState(_zero(sensor, self.name, seed), 0.0, None) for sensor in self.sensors
+        )
 
     def run(
         self, state: tuple[SensorState, ...], block: Block, inputs: Signals
@@ -106,7 +108,9 @@ class Sensors:
             _read(sensor, before, block, inputs)
             for sensor, before in zip(self.sensors, state, strict=True)
         ]
-        readings = {one.signal.name: out for one, (_, out) in zip(self.sensors, pairs, strict=True)}
+        readings = {
+            sensor.signal.name: out for sensor, (_, out) in zip(self.sensors, pairs, strict=True)
+        }
         return tuple(after for after, _ in pairs), readings
 
 
@@ -176,8 +180,8 @@ def _lag(lag_s: float, state: SensorState, block: Block, felt: FloatArray) -> Fl
     first = felt[0] if state.last is None else state.last
     before = felt[0] if state.last is None else state.lagged
     rate = np.array([[1.0 / lag_s]])
-    one = np.ones((1, 1))
-    hold = causal_hold(LinearSystem(-rate, rate, one, 0.0 * one), 1.0 / block.sample_rate_hz, 1)
+    unity = np.ones((1, 1))
+    hold = causal_hold(LinearSystem(-rate, rate, unity, 0.0 * unity), 1.0 / block.sample_rate_hz, 1)
     lagged = hold.run(np.array([before]), np.concatenate([[first], felt])[:, np.newaxis])
     return np.ascontiguousarray(lagged[:, 0])
 

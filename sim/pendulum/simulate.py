@@ -64,13 +64,13 @@ def simulate_swing_static(
     test
         Arguments of :func:`~sim.pendulum.benches.swing_bench`.
     """
-    found = []
+    records = []
     for number, mass_kg in enumerate(weights_kg):
         hung = (HangingWeight(mass_kg, lever_m),) if mass_kg else ()
         bench = swing_bench(**{**test, "weights": hung, "release_rad": 0.0})
         bench = bench.with_effects(effects)
         release = replace(bench.release, displacement_scatter=(residual_rad,))
-        found.append(
+        records.append(
             record(
                 replace(bench, release=release),
                 duration_s=duration_s,
@@ -80,7 +80,7 @@ def simulate_swing_static(
                 test="swing_static",
             )
         )
-    return tuple(found)
+    return tuple(records)
 
 
 def simulate_bifilar(
@@ -181,7 +181,7 @@ def simulate_stopwatch(
     """
     if swings < 1 or readings < 1:
         raise ConfigurationError(f"swings = {swings}, readings = {readings}: both must be >= 1")
-    names = {one.name: one for one in bench.body.coordinates}
+    names = {coordinate.name: coordinate for coordinate in bench.body.coordinates}
     chosen = names.get(coordinate or next(iter(names)))
     if chosen is None:
         raise ConfigurationError(f"no coordinate {coordinate!r} (known: {', '.join(names)})")
@@ -194,7 +194,7 @@ def simulate_stopwatch(
         first = state.next_sample - last.shape[1]
         state, run = chain.run(state, block)
         rows = (chosen.displacement, chosen.rate, chosen.acceleration)
-        moved = np.hstack([last, np.stack([run[one.name] for one in rows])])
+        moved = np.hstack([last, np.stack([run[row.name] for row in rows])])
         at, upwards = crossings(moved, 0.0, sample_rate_hz)
         passages = np.concatenate([passages, (first + at[upwards]) / sample_rate_hz])
         last = moved[:, -1:]

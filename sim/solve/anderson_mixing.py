@@ -23,7 +23,7 @@ def _weights(gram: FloatArray, right: FloatArray) -> FloatArray:
     """Return the solution of ``gram x = right``, directions that depend on others left out."""
     size = right.size
     left, rest = gram.copy(), right.copy()
-    order, found = np.zeros(size, dtype=np.int64), np.zeros(size)
+    order, weights = np.zeros(size, dtype=np.int64), np.zeros(size)
     free = np.ones(size, dtype=np.bool_)
     rank = 0
     for _ in range(size):
@@ -42,9 +42,9 @@ def _weights(gram: FloatArray, right: FloatArray) -> FloatArray:
         i = order[place]
         total = rest[i]
         for later in range(place + 1, rank):
-            total -= left[i, order[later]] * found[order[later]]
-        found[i] = total / left[i, i]
-    return found
+            total -= left[i, order[later]] * weights[order[later]]
+        weights[i] = total / left[i, i]
+    return weights
 
 
 @compile_loop

@@ -52,17 +52,17 @@ class LawBalance:
         laws
             Of the laws at the struts and along the model, ``(orders + 1, 3)``.
         """
-        found = np.stack([laws.real, laws.imag], axis=1)
-        answer = np.empty_like(found)
-        respond(*self._given(y, found, answer))
+        harmonics_given = np.stack([laws.real, laws.imag], axis=1)
+        answer = np.empty_like(harmonics_given)
+        respond(*self._given(y, harmonics_given, answer))
         harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
         return harmonics
 
     def balanced(self, y: ComplexArray) -> ComplexArray | None:
         """Return what the laws ask for once nothing changes; ``None`` if they do not settle."""
-        found = np.zeros((self.period.s.size, 2, 3))
-        settled = _balance(*self._given(y, self.give is not None, found))
-        harmonics: ComplexArray = found[:, 0] + 1j * found[:, 1]
+        harmonics_found = np.zeros((self.period.s.size, 2, 3))
+        settled = _balance(*self._given(y, self.give is not None, harmonics_found))
+        harmonics: ComplexArray = harmonics_found[:, 0] + 1j * harmonics_found[:, 1]
         return harmonics if settled else None
 
     def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
@@ -127,22 +127,22 @@ def _balance(
     step_s: float,
     speed_m_s: float,
     acts_back: bool,
-    found: FloatArray,
+    laws_found: FloatArray,
 ) -> bool:
     """Fill in the harmonics that come back unchanged; tell whether there are any."""
-    answer, flat = np.zeros_like(found), found.reshape(-1)
+    answer, flat = np.zeros_like(laws_found), laws_found.reshape(-1)
     laws_given = (laws, arguments, corners, smooth, smooth_hull, parts)
     given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
-    respond(*given, found, answer)
-    found[:] = answer
+    respond(*given, laws_found, answer)
+    laws_found[:] = answer
     if not acts_back:
         return True
     answers, changes = np.zeros((_DEPTH + 1, flat.size)), np.zeros((_DEPTH + 1, flat.size))
     # Relative to the linear force too, by whose rounding all of what is beyond it is off.
-    allowed = TOLERANCE * max(np.abs(found).max(), np.abs(free[:, 6:]).max(), 1e-300)
+    allowed = TOLERANCE * max(np.abs(laws_found).max(), np.abs(free[:, 6:]).max(), 1e-300)
     best, stalled, count = np.inf, 0, 0
     for _ in range(MOST_SWEEPS):
-        respond(*given, found, answer)
+        respond(*given, laws_found, answer)
         if count > _DEPTH:
             count = _DEPTH
             for i in range(_DEPTH):

@@ -35,9 +35,9 @@ def gauss(orders: int) -> FloatArray:
         Highest harmonic that is kept.
     """
     places, weights = np.polynomial.legendre.leggauss(orders + _MORE)
-    found: FloatArray = np.stack([(places + 1.0) / 2.0, weights / 2.0])
-    found.setflags(write=False)
-    return found
+    nodes: FloatArray = np.stack([(places + 1.0) / 2.0, weights / 2.0])
+    nodes.setflags(write=False)
+    return nodes
 
 
 @compile_loop
@@ -96,7 +96,7 @@ def find_corners(
     corners: FloatArray,
     cosine: FloatArray,
     sine: FloatArray,
-    found: FloatArray,
+    phases: FloatArray,
 ) -> int:
     """Fill in the phases, 0 to 2 pi in order, at which signals pass levels; return how many.
 
@@ -109,7 +109,7 @@ def find_corners(
     cosine, sine
         Of each harmonic at evenly spaced points over the period, ``(points, orders + 1)``. Two
         corners of a signal between neighbouring points are not seen.
-    found
+    phases
         Room for one phase a point and row of ``corners``.
     """
     points, count = cosine.shape[0], 0
@@ -125,9 +125,9 @@ def find_corners(
             after = values[(k + 1) % points]
             if (values[k] >= 0.0) != (after >= 0.0):
                 low, high = (k * step, values[k]), ((k + 1) * step, after)
-                found[count] = _root(real, imaginary, row, level, low, high)
+                phases[count] = _root(real, imaginary, row, level, low, high)
                 count += 1
-    found[:count].sort()
+    phases[:count].sort()
     return count
 
 

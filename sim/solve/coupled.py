@@ -136,13 +136,13 @@ class Coupled:
 
     def _balanced(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         parts = CoupledSteady(self.drive, self.mechanism, self.hull, period, inputs)
-        real, found = parts.solve()
-        return real, {one.name: found[one.name] for one in self.writes}
+        real, balanced = parts.solve()
+        return real, {signal.name: balanced[signal.name] for signal in self.writes}
 
     def _settled(self, real: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of all parts after as many periods as it takes."""
         old = self.drive.settings
-        whole = tuple(one for one in old.ripple if float(one.order).is_integer())
+        whole = tuple(tone for tone in old.ripple if float(tone.order).is_integer())
         steady = replace(old, initial_angle_rad=0.0, start_ramp_s=0.0, stop_at_s=None, ripple=whole)
         stage = replace(self, drive=replace(self.drive, settings=steady))
         hull: Any = self.hull
@@ -160,11 +160,11 @@ class Coupled:
             beyond = out[signals.SHAFT_ANGLE.name] - turned
             return state, {**out, signals.SHAFT_ANGLE.name: beyond}
 
-        found = last_period(run, stage.start(1.0, 0), ("force_aft", "force_fore"))
+        forces = last_period(run, stage.start(1.0, 0), ("force_aft", "force_fore"))
         # Time counts from where the mean angle is 0.
-        late = fine.harmonics(found[signals.SHAFT_ANGLE.name])[0].real / fine.omega_rad_s
+        late = fine.harmonics(forces[signals.SHAFT_ANGLE.name])[0].real / fine.omega_rad_s
         spectra = {
-            name: fine.harmonics(one) * np.exp(-fine.s * late) for name, one in found.items()
+            name: fine.harmonics(force) * np.exp(-fine.s * late) for name, force in forces.items()
         }
         spectra[signals.SHAFT_ANGLE.name][0] = 0.0
         return spectra
@@ -202,14 +202,16 @@ class _Stretch:
         march = coupled_march(self.stage.drive.shaft, self.stage.parts, self.block, self.inputs)
         if swept or march is None:
             return None
-        found = march.run(before.states, before.torques, self.state[2])
-        if found is None:
+        marched = march.run(before.states, before.torques, self.state[2])
+        if marched is None:
             return None
-        shaft, _, hull, run = found
+        shaft, _, hull, run = marched
         run[signals.LOAD_TORQUE.name] = self.stage.drive.load(run)
         tail = tuple(tuple(row) for row in shaft.torques[-TORQUE_DEGREE:].tolist())
         drive = LoadedState(tuple(shaft.states[-1].tolist()), tail)
-        return (drive, self.state[1], hull), {one.name: run[one.name] for one in self.stage.writes}
+        return (drive, self.state[1], hull), {
+            signal.name: run[signal.name] for signal in self.stage.writes
+        }
 
     def _sweep(self) -> tuple[tuple[Any, Any, Any], Signals]:
         at_start = np.zeros(self.block.count)

@@ -131,7 +131,7 @@ class CoupledMarch:
 
     def _struts(self, told: ShaftMotion) -> FloatArray:
         _, motion = self.mechanism.run(None, self.block, told.signals)
-        return np.column_stack([motion[one.name] for one in self.hull.reads[:6]])
+        return np.column_stack([motion[signal.name] for signal in self.hull.reads[:6]])
 
     def _levers(self, told: ShaftMotion) -> FloatArray:
         _, motion = self.mechanism.run(None, self.block, told.signals)
@@ -140,13 +140,13 @@ class CoupledMarch:
     def _shaft_loop(self, told: ShaftMotion) -> "ShaftLoop":
         from sim.drive.shaft_loop import ShaftLoop
 
-        one, count = self.shaft, self.block.count
-        hold = _hold(one.system, 1.0 / self.block.sample_rate_hz)
-        n, inputs = one.system.B.shape
+        shaft, count = self.shaft, self.block.count
+        hold = _hold(shaft.system, 1.0 / self.block.sample_rate_hz)
+        n, inputs = shaft.system.B.shape
         to_outputs = np.zeros((n, 4))
-        to_outputs[:, : len(one.system.C)] = one.system.C.T
+        to_outputs[:, : len(shaft.system.C)] = shaft.system.C.T
         by_torque = np.zeros((inputs, 4))
-        by_torque[:, : len(one.system.D)] = one.system.D.T
+        by_torque[:, : len(shaft.system.D)] = shaft.system.D.T
         at_once = by_torque + 0.0
         by_torque += hold[1][-1].T @ to_outputs
         return ShaftLoop(
@@ -160,16 +160,16 @@ class CoupledMarch:
             np.zeros((count + TORQUE_DEGREE, n)),
             np.zeros((count + TORQUE_DEGREE, inputs)),
             np.empty((count, 5)),
-            np.array([one.inertia_kg_m2, one.reflected_inertia_kg_m2, *one.friction[::-1]]),
-            np.array(one.cogging, dtype=np.float64).reshape(-1, 3),
-            np.array([*one.gap, 0.0]),
+            np.array([shaft.inertia_kg_m2, shaft.reflected_inertia_kg_m2, *shaft.friction[::-1]]),
+            np.array(shaft.cogging, dtype=np.float64).reshape(-1, 3),
+            np.array([*shaft.gap, 0.0]),
         )
 
     def _signals(
         self, motion: FloatArray, struts: FloatArray, force: FloatArray
     ) -> dict[str, FloatArray]:
-        names = [one.name for one in (*SHAFT, signals.LEVER_AFT, signals.LEVER_FORE)]
-        names += [one.name for one in (*self.hull.reads[:6], *self.hull.writes)]
+        names = [signal.name for signal in (*SHAFT, signals.LEVER_AFT, signals.LEVER_FORE)]
+        names += [signal.name for signal in (*self.hull.reads[:6], *self.hull.writes)]
         columns = np.hstack([motion, struts, force])
         return dict(zip(names, np.ascontiguousarray(columns.T), strict=True))
 
@@ -186,7 +186,7 @@ def coupled_march(
     if not (type(mechanism) is Mechanism and type(hull) is Hull):
         return None
     play = mechanism.aft.half_play_m or mechanism.fore.half_play_m
-    numbered = all(has_number(one.law) for one in hull.laws)
+    numbered = all(has_number(acting.law) for acting in hull.laws)
     if play or not numbered or inputs.keys() != {signals.CARRIAGE_SPEED.name}:
         return None
     model = marching_of(hull.laws, hull.system, 1.0 / block.sample_rate_hz, shaft.gap[1] > 0.0)

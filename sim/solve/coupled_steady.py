@@ -55,43 +55,43 @@ class CoupledSteady:
         inputs = self.inputs
         torque = {signals.LOAD_TORQUE.name: at[:, 0]}
         self._real, shaft = self.drive.steady(self.period, torque)
-        found: dict[str, ComplexArray] = {**inputs, **shaft}
-        motion = steady_of(self.mechanism, self._real, {**found, **inputs})[1]
-        found = {**found, **motion, **inputs}
+        spectra: dict[str, ComplexArray] = {**inputs, **shaft}
+        motion = steady_of(self.mechanism, self._real, {**spectra, **inputs})[1]
+        spectra = {**spectra, **motion, **inputs}
         laws = at[:, 1:]
         if self._swept is None:
-            forces = steady_of(self.hull, self._real, found)[1]
+            forces = steady_of(self.hull, self._real, spectra)[1]
         else:
-            forces, laws = self._forces(self._swept, found, laws)
-        found = {**found, **forces, **inputs}
+            forces, laws = self._forces(self._swept, spectra, laws)
+        spectra = {**spectra, **forces, **inputs}
         names = list(_LOADING)
-        values = self._real.values(np.stack([found[name] for name in names], axis=1)).T
+        values = self._real.values(np.stack([spectra[name] for name in names], axis=1)).T
         load = self.drive.load(
             dict(zip(names, values, strict=True)), self._real.omega_rad_s * self._real.time_s
         )
         torque_now = self._real.harmonics(load)
-        self._found = {**found, signals.LOAD_TORQUE.name: torque_now}
+        self._found = {**spectra, signals.LOAD_TORQUE.name: torque_now}
         inertia = self.drive.reflected_inertia_kg_m2
-        rest = torque_now - inertia * found[signals.SHAFT_ACCELERATION.name]
+        rest = torque_now - inertia * spectra[signals.SHAFT_ACCELERATION.name]
         return np.column_stack([rest, laws])
 
     def _forces(
-        self, hull: Hull, found: Spectra, laws: ComplexArray
+        self, hull: Hull, spectra: Spectra, laws: ComplexArray
     ) -> tuple[Spectra, ComplexArray]:
         """Return the struts' forces and what the laws ask for, after one sweep."""
         model = self._model
         if model is None or model.period != self._real:
-            at = hull.at_speed(found)
+            at = hull.at_speed(spectra)
             steady = HullSteady(at.laws, at.system, at.carriage_speed_m_s, self._real)
             model = self._model = steady
-        y = _struts(found)
+        y = _struts(spectra)
         laws = model.laws(y, laws)
-        names = (one.name for one in hull.writes)
+        names = (signal.name for signal in hull.writes)
         return dict(zip(names, model.force(y, laws).T, strict=True)), laws
 
 
-def _struts(found: Spectra) -> ComplexArray:
-    return np.stack([found["displacement_aft"], found["displacement_fore"]], axis=1)
+def _struts(spectra: Spectra) -> ComplexArray:
+    return np.stack([spectra["displacement_aft"], spectra["displacement_fore"]], axis=1)
 
 
 def _with_swept_laws(hull: Stage[Any]) -> Hull | None:

@@ -172,8 +172,8 @@ def _ask(
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
         x, v = value_at(own[0], own[1], 0, way), value_at(own[0], own[1], 1, way)
         load = value_at(own[0], own[1], 3, way)
-        one = law_value(laws, item, (x, v, load), CREEP_M_S, time_s, speed_m_s)
-        asked[0, 0], asked[0, 1] = one * laws[item, 5], one * laws[item, 6]
+        asked_force = law_value(laws, item, (x, v, load), CREEP_M_S, time_s, speed_m_s)
+        asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
         return
     value = np.empty((1, 8))
     for j in range(8):

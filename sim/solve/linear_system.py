@@ -38,10 +38,10 @@ class LinearSystem:
     def response(self, s: ComplexArray) -> ComplexArray:
         """Return the transfer matrices at the Laplace variables ``s``, shape ``(k, q, p)``."""
         resolvent = s[:, np.newaxis, np.newaxis] * np.eye(len(self.A)) - self.A
-        found: ComplexArray = self.C @ np.linalg.solve(
+        response: ComplexArray = self.C @ np.linalg.solve(
             resolvent, np.broadcast_to(self.B.astype(complex), (s.size, *self.B.shape))
         )
-        return found + self.D
+        return response + self.D
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,8 +37,8 @@ def periodic_laws(given: tuple[Acting, ...], system: HullSystem) -> LawTable | N
 
     That is without numba, and where a law has no number.
     """
-    laws = tuple(one for one in given if one.law.periodic)
-    if not (available() and all(has_number(one.law) for one in laws)):
+    laws = tuple(acting for acting in given if acting.law.periodic)
+    if not (available() and all(has_number(acting.law) for acting in laws)):
         return None
     return table_of(laws, system)
 
@@ -59,7 +59,7 @@ def marching_of(
     """
     if not (available() or needed or system.joint):
         return None
-    laws = tuple(one for one in given if has_number(one.law))
+    laws = tuple(acting for acting in given if has_number(acting.law))
     table = table_of(laws, system)
     return Marching(_model(system, step_s), table)
 
@@ -91,7 +91,7 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
         system.turn,
         gap,
     )
-    return ModelLoop(*(np.array(one, dtype=np.float64, order="C") for one in arrays))
+    return ModelLoop(*(np.array(array, dtype=np.float64, order="C") for array in arrays))
 
 
 def course_of(

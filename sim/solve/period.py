@@ -73,12 +73,12 @@ class Period:
     def harmonics(self, values: FloatArray) -> ComplexArray:
         """Return the harmonics of values at the points, along the first axis."""
         spectrum = np.fft.rfft(values, axis=0)[: self.orders + 1]
-        found: ComplexArray = spectrum.astype(np.complex128) * (2.0 / self.points)
-        found[0] /= 2.0
-        return found
+        harmonics: ComplexArray = spectrum.astype(np.complex128) * (2.0 / self.points)
+        harmonics[0] /= 2.0
+        return harmonics
 
     def constant(self, value: float) -> ComplexArray:
         """Return the harmonics of a constant."""
-        found = np.zeros(self.orders + 1, dtype=np.complex128)
-        found[0] = value
-        return found
+        harmonics = np.zeros(self.orders + 1, dtype=np.complex128)
+        harmonics[0] = value
+        return harmonics

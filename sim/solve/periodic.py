@@ -71,10 +71,10 @@ def steady_state(
         chain is missing, or the points do not resolve the orders.
     """
     given = _checked(chain, period, substitute or {})
-    spectra: dict[str, ComplexArray] = {one.name: given[one.name] for one in chain.inputs}
+    spectra: dict[str, ComplexArray] = {signal.name: given[signal.name] for signal in chain.inputs}
     for stage in chain.stages:
-        fed = {one.name: spectra[one.name] for one in stage.reads}
-        fed |= {one.name: given[one.name] for one in stage.writes if one.name in given}
+        fed = {signal.name: spectra[signal.name] for signal in stage.reads}
+        fed |= {signal.name: given[signal.name] for signal in stage.writes if signal.name in given}
         period, written = steady_of(stage, period, fed)
         spectra |= {name: given.get(name, values) for name, values in written.items()}
     return SteadyState(period, spectra)

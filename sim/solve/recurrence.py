@@ -43,8 +43,10 @@ def substeps(rates: FloatArray, step_s: float) -> int:
     What the clearance gives back goes on between samples by the polynomial of those before. With a
     vibration that the samples do not follow and that hardly decays, that feeds it.
     """
-    found = np.linalg.eigvals(rates)
-    ringing = found[(found.imag > 0.0) & (-found.real < _DAMPED * np.abs(found))]
+    eigenvalues = np.linalg.eigvals(rates)
+    ringing = eigenvalues[
+        (eigenvalues.imag > 0.0) & (-eigenvalues.real < _DAMPED * np.abs(eigenvalues))
+    ]
     return max(math.ceil(step_s * float(ringing.imag.max(initial=0.0)) / _SUBSTEP_RAD), 1)
 
 
@@ -67,13 +69,13 @@ def last_period(
     """
     state, before, kept = start, None, []
     for turn in range(_MOST_PERIODS):
-        state, found = run(state, turn)
-        now = np.array([found[name] for name in watched])
+        state, values = run(state, turn)
+        now = np.array([values[name] for name in watched])
         if before is not None:
             size = np.abs(now).max(axis=1, keepdims=True)
             if (np.abs(now - before) <= _SETTLED * size).all():
-                return dict(found)
+                return dict(values)
         before = now
         if turn >= _MOST_PERIODS - _AVERAGED:
-            kept.append(found)
-    return {name: np.mean([one[name] for one in kept], axis=0) for name in kept[0]}
+            kept.append(values)
+    return {name: np.mean([period[name] for period in kept], axis=0) for name in kept[0]}

@@ -21,12 +21,12 @@ def steady_by_samples(
     """
     rate = period.points * period.frequency_hz
     ramp = period.omega_rad_s * period.time_s
-    one: dict[str, np.ndarray] = {
+    inputs_once: dict[str, np.ndarray] = {
         signal.name: period.values(inputs[signal.name]) for signal in stage.reads if signal.sampled
     }
     state, written = stage.start(rate, 0), dict[str, np.ndarray]()
     for turn in range(settling + 1):
-        fed = _with_angle(one, ramp + 2.0 * np.pi * turn)
+        fed = _with_angle(inputs_once, ramp + 2.0 * np.pi * turn)
         block = Block(turn * period.points, period.points, rate)
         state, out = stage.run(state, block, fed)
         written = dict(out)

@@ -57,12 +57,12 @@ class MemoryTarget:
         aim = self.damping + 1j * self.omega[:, None, None] * self.added_mass
 
         def deviation(numbers: FloatArray) -> FloatArray:
-            found = ladder.response(np.append(numbers, start[free:]), self.omega)
-            return self.weighted(found - aim)
+            response = ladder.response(np.append(numbers, start[free:]), self.omega)
+            return self.weighted(response - aim)
 
         def slope(numbers: FloatArray) -> FloatArray:
-            found = ladder.slope(np.append(numbers, start[free:]), self.omega)
-            return self.weighted(found).T[:, :free]
+            slopes = ladder.slope(np.append(numbers, start[free:]), self.omega)
+            return self.weighted(slopes).T[:, :free]
 
         least = least_squares(deviation, start[:free], slope, max_nfev=_EVALUATIONS)
         mean_square = 2.0 * float(least.cost) / least.fun.size
@@ -93,7 +93,7 @@ def best_joint_ladder(
     spread = generator.normal(0.0, _SPREAD, (max(starts // 3, 1), pair.size))
     spread[0] = 0.0
     size = np.sqrt(np.mean(pair**2))
-    return ladder, _best(target, ladder, (pair + size * one for one in spread))
+    return ladder, _best(target, ladder, (pair + size * offset for offset in spread))
 
 
 def _best(target: MemoryTarget, ladder: Ladder, candidates: Iterable[FloatArray]) -> FloatArray:
@@ -127,9 +127,9 @@ def joint_ladder(
     n = ladder.states
     skew, lower, inner = np.zeros((n, n)), np.zeros((n, 2)), np.zeros((n, 2))
     added = np.zeros((2, 2))
-    for i, (one, numbers) in enumerate((first, second)):
+    for i, (chain, numbers) in enumerate((first, second)):
         own = slice(i, n, 2)
-        skew[own, own], low, x, a = one.split(numbers)
+        skew[own, own], low, x, a = chain.split(numbers)
         lower[own, i], inner[own, i], added[i, i] = low[:, 0], x[:, 0], a[0, 0]
     return ladder, ladder.join(skew, lower, inner, added)
 

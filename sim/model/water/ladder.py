@@ -97,16 +97,16 @@ class Ladder:
 
     def response(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
         """Return B + i w A = K + i w A_inf, shape ``(k, m, m)``."""
-        found = self.matrices(numbers)
-        right = _solve(omega, found.state, found.input)
-        return found.input.T @ right + 1j * omega[:, None, None] * found.added_mass
+        matrices = self.matrices(numbers)
+        right = _solve(omega, matrices.state, matrices.input)
+        return matrices.input.T @ right + 1j * omega[:, None, None] * matrices.added_mass
 
     def slope(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
         """Return the derivative of :meth:`response` to each number, shape ``(p, k, m, m)``."""
         skew, lower, inner, _ = self.split(numbers)
-        found = self.matrices(numbers)
-        right = _solve(omega, found.state, found.input)
-        left = _solve(omega, found.state.T, found.input).swapaxes(1, 2)
+        matrices = self.matrices(numbers)
+        right = _solve(omega, matrices.state, matrices.input)
+        left = _solve(omega, matrices.state.T, matrices.input).swapaxes(1, 2)
         base_j, base_l, base_x, base_a = self.bases
 
         def through_state(change: FloatArray) -> ComplexArray:

@@ -164,13 +164,13 @@ class _Targets:
         added = np.array(self.table.added_mass[-1] if infinite is None else infinite)
         radiation = constant(added)
         for dofs, ladder, numbers in fits:
-            found = ladder.matrices(numbers)
+            matrices = ladder.matrices(numbers)
             added[np.ix_(dofs, dofs)] = (
-                found.added_mass * np.outer(self.mass, self.mass)[np.ix_(dofs, dofs)]
+                matrices.added_mass * np.outer(self.mass, self.mass)[np.ix_(dofs, dofs)]
             )
             gain = np.zeros((ladder.states, 2))
-            gain[:, dofs] = self.middle * found.input * self.mass[list(dofs)]
-            radiation = radiation.joined(self.middle * found.state, gain, gain.T)
+            gain[:, dofs] = self.middle * matrices.input * self.mass[list(dofs)]
+            radiation = radiation.joined(self.middle * matrices.state, gain, gain.T)
         radiation = Radiation(
             added, radiation.state_matrix, radiation.input_matrix, radiation.output_matrix
         )

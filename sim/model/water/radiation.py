@@ -104,7 +104,7 @@ class Radiation:
 
     def _key(self) -> tuple[bytes, ...]:
         # Adding 0.0 makes -0.0 the same bytes as 0.0.
-        return tuple((getattr(self, one.name) + 0.0).tobytes() for one in fields(self))
+        return tuple((getattr(self, item.name) + 0.0).tobytes() for item in fields(self))
 
     @property
     def states(self) -> int:

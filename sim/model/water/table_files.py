@@ -95,21 +95,21 @@ def read_hull_csv(
         body = bodies[0]
     if body not in bodies:
         raise DataError(f"{path}: body {body!r} is not one of {', '.join(bodies)}; name one")
-    found: dict[tuple[float, str, str], tuple[float, float]] = {}
+    pairs: dict[tuple[float, str, str], tuple[float, float]] = {}
     dofs = DEGREES_OF_FREEDOM[plane]
     for line, row in rows:
         motion, force = row["radiating_dof"], row["influenced_dof"]
         if row["body"] != body or motion not in dofs or force not in dofs:
             continue
         key = (_number(path, line, row, "omega_rad_s"), force, motion)
-        if key in found:
+        if key in pairs:
             raise DataError(
                 f"{path}, line {line}: {motion}, {force} at {key[0]:g} rad/s is there twice"
             )
         a, b = (_number(path, line, row, name) for name in _HULL_COLUMNS[-2:])
-        found[key] = (a, b)
-    omega = sorted({key[0] for key in found})
-    values = np.array([[[_pair(path, found, w, f, m) for m in dofs] for f in dofs] for w in omega])
+        pairs[key] = (a, b)
+    omega = sorted({key[0] for key in pairs})
+    values = np.array([[[_pair(path, pairs, w, f, m) for m in dofs] for f in dofs] for w in omega])
     values = values.reshape(len(omega), 2, 2, 2) * _signs(rotation_sign)[..., None]
     name = f"{path.name} ({body})"
     return RadiationTable(plane, np.array(omega), values[..., 0], values[..., 1], name=name)
@@ -195,13 +195,13 @@ def _signs(rotation_sign: int) -> FloatArray:
 
 def _pair(
     path: Path,
-    found: Mapping[tuple[float, str, str], tuple[float, float]],
+    pairs: Mapping[tuple[float, str, str], tuple[float, float]],
     omega: float,
     force: str,
     motion: str,
 ) -> tuple[float, float]:
     try:
-        return found[omega, force, motion]
+        return pairs[omega, force, motion]
     except KeyError:
         raise DataError(
             f"{path}: {motion} (radiating) and {force} (influenced) miss at {omega:g} rad/s; "

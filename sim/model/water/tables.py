@@ -135,12 +135,12 @@ class RadiationTable:
             If :meth:`asymmetry` exceeds ``tolerance``: the file mixes signs, points of reference
             or speeds.
         """
-        found = self.asymmetry()
-        if found > tolerance:
+        asymmetry = self.asymmetry()
+        if asymmetry > tolerance:
             raise DataError(
                 f"{self.name}: force due to rotation and moment due to translation differ by "
-                f"{found:.2%} of the diagonal (limit {tolerance:.2%}); at zero speed they are the "
-                f"same: check the signs, the point of reference and the speed"
+                f"{asymmetry:.2%} of the diagonal (limit {tolerance:.2%}); at zero speed they are "
+                f"the same: check the signs, the point of reference and the speed"
             )
         infinite = self.added_mass_infinite
         return replace(

@@ -93,11 +93,11 @@ def with_walls(
     """
     omega = tank.mode_frequencies_rad_s(plane)
     radiated = radiation.damping(omega) + np.asarray(constant_damping)
-    for one, damping in zip(omega, radiated, strict=True):
+    for omega_k, damping in zip(omega, radiated, strict=True):
         shapes = _factor(tank.strength * damping)
-        gain = math.sqrt(2.0 * tank.damping_ratio * one)
+        gain = math.sqrt(2.0 * tank.damping_ratio * omega_k)
         for shape in shapes:
-            state = np.array([[0.0, one], [-one, -2.0 * tank.damping_ratio * one]])
+            state = np.array([[0.0, omega_k], [-omega_k, -2.0 * tank.damping_ratio * omega_k]])
             inputs = np.array([[0.0, 0.0], gain * shape])
             radiation = radiation.joined(state, inputs, inputs.T, onset_s)
     return radiation

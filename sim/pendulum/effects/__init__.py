@@ -60,7 +60,7 @@ def find(name: str, more: Mapping[str, type[Any]] | None = None) -> type[Any]:
 
 def by_name() -> dict[str, type[Any]]:
     """Return the catalogue by the effects' names."""
-    return {one.name: one for one in CATALOGUE}
+    return {effect.name: effect for effect in CATALOGUE}
 
 
 def make_effect(
@@ -105,20 +105,22 @@ def user_effects(path: str | Path) -> dict[str, type[Any]]:
     """
     module = import_file(Path(path))
     own = [
-        one for one in vars(module).values() if getattr(one, "__module__", "") == module.__name__
+        value
+        for value in vars(module).values()
+        if getattr(value, "__module__", "") == module.__name__
     ]
-    found = {str(one.name): one for one in own if _is_effect(one)}
-    if not found:
+    effects = {str(effect.name): effect for effect in own if _is_effect(effect)}
+    if not effects:
         raise ConfigurationError(
             f"{path}: defines no effect (a dataclass with a name, called with a test)"
         )
-    refuse_taken(path, found, by_name())
-    return found
+    refuse_taken(path, effects, by_name())
+    return effects
 
 
-def _is_effect(one: Any) -> bool:
-    called = isinstance(one, type) and any("__call__" in vars(base) for base in one.__mro__)
-    return called and is_dataclass(one) and isinstance(getattr(one, "name", None), str)
+def _is_effect(value: Any) -> bool:
+    called = isinstance(value, type) and any("__call__" in vars(base) for base in value.__mro__)
+    return called and is_dataclass(value) and isinstance(getattr(value, "name", None), str)
 
 
 def effects_table() -> str:
@@ -127,9 +129,15 @@ def effects_table() -> str:
         "| effect | stage | parameters: plausible range (typical) | what it does | signature |",
         "|---|---|---|---|---|",
     ]
-    for one in CATALOGUE:
-        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(one).items()]
-        cells = (f"`{one.name}`", one.stage, "; ".join(known) or "none", one.summary, one.signature)
+    for effect in CATALOGUE:
+        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(effect).items()]
+        cells = (
+            f"`{effect.name}`",
+            effect.stage,
+            "; ".join(known) or "none",
+            effect.summary,
+            effect.signature,
+        )
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(rows) + "\n"
 

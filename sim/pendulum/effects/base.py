@@ -61,8 +61,8 @@ class PendulumEffect(Protocol):
 
 def plausible(effect: type[Any]) -> dict[str, Plausible]:
     """Return what is known of each parameter of an effect, by name."""
-    found = {one.name: one.metadata.get("plausible") for one in fields(effect)}
-    return {name: known for name, known in found.items() if known is not None}
+    ranges = {item.name: item.metadata.get("plausible") for item in fields(effect)}
+    return {name: known for name, known in ranges.items() if known is not None}
 
 
 def check_plausible(effect: PendulumEffect) -> None:
@@ -95,7 +95,7 @@ def resist(bench: PendulumBench, coordinate: str, **added: float) -> PendulumBen
 
 def _resistance_of(body: SwingingBody, coordinate: str) -> str:
     """Return the field that holds a coordinate's resistance; an empty name is the only one's."""
-    names = [one.name for one in body.coordinates]
+    names = [coordinate.name for coordinate in body.coordinates]
     if coordinate not in names and not (not coordinate and len(names) == 1):
         raise ConfigurationError(
             f"coordinate {coordinate!r} is none of the body's: {', '.join(names)}; state one"
@@ -121,7 +121,7 @@ def suspension_of(bench: PendulumBench, effect: str) -> Suspension:
 
 def small_swing(bench: PendulumBench, coordinate: str) -> tuple[float, float]:
     """Return inertia and restoring of one coordinate by itself, from the linear matrices."""
-    names = [one.name for one in bench.body.coordinates]
+    names = [coordinate.name for coordinate in bench.body.coordinates]
     at = names.index(coordinate) if coordinate else 0
     return float(bench.body.mass[at, at]), float(bench.body.stiffness[at, at])
 

@@ -59,7 +59,9 @@ class SensorLag:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _sensors(bench, self.channel, lambda one: replace(one, lag_s=one.lag_s + self.lag_s))
+        return _sensors(
+            bench, self.channel, lambda sensor: replace(sensor, lag_s=sensor.lag_s + self.lag_s)
+        )
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class SensorOffset:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         return _sensors(
-            bench, self.channel, lambda one: replace(one, offset=one.offset + self.offset)
+            bench, self.channel, lambda sensor: replace(sensor, offset=sensor.offset + self.offset)
         )
 
 
@@ -108,7 +110,9 @@ class SensorGain:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         gain = 1.0 + self.gain_error
-        return _sensors(bench, self.channel, lambda one: replace(one, gain=one.gain * gain))
+        return _sensors(
+            bench, self.channel, lambda sensor: replace(sensor, gain=sensor.gain * gain)
+        )
 
 
 @dataclass(frozen=True)
@@ -141,8 +145,8 @@ class SensorNoise:
             return replace(how, noise_rms=noise, drift_per_s=how.drift_per_s + self.drift_per_s)
 
         changed = tuple(
-            noisy(how) if one in chosen else how
-            for one, how in zip(bench.sensors, bench.digitisers, strict=True)
+            noisy(how) if sensor in chosen else how
+            for sensor, how in zip(bench.sensors, bench.digitisers, strict=True)
         )
         return replace(bench, digitisers=changed)
 
@@ -166,7 +170,7 @@ class FlagWidth:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda one: replace(one, flag_width_m=self.flag_width_m))
+        return _gates(bench, self.name, lambda gate: replace(gate, flag_width_m=self.flag_width_m))
 
 
 @dataclass(frozen=True)
@@ -188,7 +192,9 @@ class GateOffset:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda one: replace(one, beam_offset_m=self.beam_offset_m))
+        return _gates(
+            bench, self.name, lambda gate: replace(gate, beam_offset_m=self.beam_offset_m)
+        )
 
 
 @dataclass(frozen=True)
@@ -210,7 +216,7 @@ class MissedPassages:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda one: replace(one, missed_share=self.missed_share))
+        return _gates(bench, self.name, lambda gate: replace(gate, missed_share=self.missed_share))
 
 
 @dataclass(frozen=True)
@@ -232,14 +238,14 @@ class GateJitter:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda one: replace(one, jitter_rms_s=self.jitter_rms_s))
+        return _gates(bench, self.name, lambda gate: replace(gate, jitter_rms_s=self.jitter_rms_s))
 
 
 def _chosen(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:
     """Return the sensors of that channel, or all."""
-    chosen = tuple(one for one in bench.sensors if channel in ("", one.channel.name))
+    chosen = tuple(sensor for sensor in bench.sensors if channel in ("", sensor.channel.name))
     if not chosen:
-        names = ", ".join(one.channel.name for one in bench.sensors)
+        names = ", ".join(sensor.channel.name for sensor in bench.sensors)
         raise ConfigurationError(f"no sensor {channel!r} in this test (sensors: {names})")
     return chosen
 
@@ -248,7 +254,7 @@ def _sensors(
     bench: PendulumBench, channel: str, change: Callable[[Sensor], Sensor]
 ) -> PendulumBench:
     chosen = _chosen(bench, channel)
-    return bench.change_sensors(lambda one: change(one) if one in chosen else one)
+    return bench.change_sensors(lambda sensor: change(sensor) if sensor in chosen else sensor)
 
 
 def _gates(
@@ -256,4 +262,4 @@ def _gates(
 ) -> PendulumBench:
     if not bench.photogates:
         raise ConfigurationError(f"{effect}: this test has no photogate; add one, or leave it out")
-    return replace(bench, photogates=tuple(change(one) for one in bench.photogates))
+    return replace(bench, photogates=tuple(change(photogate) for photogate in bench.photogates))

@@ -171,7 +171,7 @@ class ReleaseError:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        names = [one.name for one in bench.body.coordinates]
+        names = [coordinate.name for coordinate in bench.body.coordinates]
         at = names.index(self.coordinate) if self.coordinate else 0
         held = list(bench.release.displacement)
         rates = list(bench.release.rate) or [0.0] * len(held)
