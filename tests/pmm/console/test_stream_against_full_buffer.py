@@ -34,7 +34,7 @@ def test_a_full_stream_is_ended_unless_something_is_taken(
     monkeypatch.setattr(connections, "SLOW_S", 0.01)
 
     async def act() -> bool:
-        one = connections.Stream(config=Config(_app), server_state=ServerState(), app_state={})
+        one = connections.PageStream(config=Config(_app), server_state=ServerState(), app_state={})
         transport = Transport()
         one.connection_made(transport)  # type: ignore[arg-type]
         one.pause_writing()
