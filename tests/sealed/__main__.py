@@ -165,6 +165,39 @@ def score_command(
     shown(board, json_file, page, docs, workers if carry_out else None)
 
 
+@main.command("limits")
+@BOARD
+@click.option("--json", "json_file", type=FILE, help="Write it there.")
+def limits_command(board: Path, json_file: Path | None) -> None:
+    """Hold BOARD's figures from SNR 10 on to the limits of its world, intervals and n beside."""
+    from tests.sealed.steps_of_worlds import held
+
+    held(board, json_file)
+
+
+@main.command("vary")
+@BOARD
+@click.option("--cases", default=100, show_default=True, type=click.IntRange(1))
+@click.option("--output", required=True, type=click.Path(path_type=Path))
+def vary_command(board: Path, cases: int, output: Path) -> None:
+    """Write BOARD's first cases thinned, resampled and cut; ``answer`` answers them too."""
+    from tests.sealed.variations import varied
+
+    click.echo(f"{sum(1 for _ in varied(board, output, cases))} written to {output / 'cases'}")
+
+
+@main.command("invariance")
+@BOARD
+@click.argument("variations", type=click.Path(exists=True, file_okay=False, path_type=Path))
+def invariance_command(board: Path, variations: Path) -> None:
+    """Tell how often VARIATIONS of BOARD's cases are answered as the cases are."""
+    from tests.sealed.variations import agreements
+
+    for one in agreements(board, variations):
+        click.echo(f"{one.name}: {one.count} cases, the same class in {one.same_class:.2f}, "
+                   f"its probability within 0.1 in {one.near:.2f}")  # fmt: skip
+
+
 @main.command("whole")
 @_OPTIONS[0]
 @_OPTIONS[1]
@@ -194,19 +227,22 @@ def whole_command(
 ) -> None:
     """Make a board, answer it by all, and score it; begun again, it goes on where it was.
 
-    A score with --commit is kept in the documentation, once; with --seed all stays in the board.
+    A score with --commit is kept in the documentation, once for each world: of other worlds than A
+    the figures of ``limits``. With --seed all stays in the board.
     """
     from tests.sealed import steps
+    from tests.sealed.steps_of_worlds import held
 
     _refuse_beside(scheduler, "limit_s")
     number = _number(seed, commit)
     if commit is not None:
-        steps.refuse(number, cases, nulls, docs)
+        steps.refuse(number, cases, nulls, docs, where)
     steps.generated(output, number, cases, nulls, workers, where)
     steps.answered(output, workers, limit_s, scheduler)
     steps.others(output, workers, limit_s, (), scheduler)
     steps.left_out_answered(output, workers, limit_s, most, scheduler)
-    steps.scored(output, None if commit is None else docs, workers)
+    steps.scored(output, docs if commit is not None and where == "A" else None, workers)
+    held(output, steps.limits_file(docs, number, where) if commit else output / "limits.json")
 
 
 @main.command("page")

@@ -15,7 +15,15 @@ LEAST: Final = 300
 """Cases, and as many nulls, that a kept score is made of."""
 
 
-def refuse(seed: int, cases: int, nulls: int, docs: Path) -> None:
+def limits_file(docs: Path, seed: int, where: str) -> Path:
+    """Return where the figures of a seed that have limits are kept, world by world."""
+    folder = docs / "scores" / "worlds"
+    folder.mkdir(parents=True, exist_ok=True)
+    name = f"{seed:040x}"
+    return folder / f"{name[:7]}-{where}.json"
+
+
+def refuse(seed: int, cases: int, nulls: int, docs: Path, where: str = "A") -> None:
     """Refuse to begin a score that could not be kept.
 
     Raises
@@ -28,8 +36,11 @@ def refuse(seed: int, cases: int, nulls: int, docs: Path) -> None:
     from tests.sealed.scores import refuse_another
 
     name, here = f"{seed:040x}", commit()
+    if where != "A" and (there := limits_file(docs, seed, where)).exists():
+        raise click.UsageError(f"world {where} of seed {name[:7]} was scored: {there}")
     try:
-        refuse_another(docs, name)
+        if where == "A":
+            refuse_another(docs, name)
     except DataError as error:
         raise click.UsageError(str(error)) from None
     if min(cases, nulls) < LEAST:

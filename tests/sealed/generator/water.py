@@ -112,7 +112,7 @@ def varied(p: FloatArray, run: Run) -> None:
 def table_of(p: FloatArray, world: World, rng: np.random.Generator) -> Believed:
     """Return a table that is off in level and slope; the damping that no memory has is left out."""
     off = rng.uniform(-1.0, 1.0, (2, 2))
-    octaves = np.clip(np.log2(_GRID / (2.0 * np.pi * p[P.MIDDLE_HZ])), -2.0, 2.0)
+    octaves = 2.0 * np.tanh(0.5 * np.log2(_GRID / (2.0 * np.pi * p[P.MIDDLE_HZ])))
     level, slope = world.share("table_level"), world.share("table_slope")
     wrong = 1.0 + level * off[0] + slope * octaves[:, None] * off[1]
     added, damping = coefficients(p, _GRID)

@@ -42,8 +42,8 @@ def score(board: Board, carry_out: CarryOut | None = None) -> Score:
         Makes further runs in the sealed reality; without it the value of the proposed runs is left
         out.
     """
-    floors = _floors(board)
-    rows = [_entries(board.truths, row, floors, carry_out) for row in board.rows]
+    floors = floors_of(board)
+    rows = [(row, entries_of(board.truths, row, floors, carry_out)) for row in board.rows]
     scored = [(row.name, entries, binned(entries)) for row, entries in rows]
     shown = {key for _, _, bins in scored for key in bins[-1].figures}
     return Score(
@@ -56,7 +56,7 @@ def score(board: Board, carry_out: CarryOut | None = None) -> Score:
     )
 
 
-def _floors(board: Board) -> list[float]:
+def floors_of(board: Board) -> list[float]:
     """Return for each case the smallest gap that any row foretells without an effect."""
     return [
         min((gap(a.before, truth) for a in answers if a.before), default=0.0)
@@ -64,9 +64,10 @@ def _floors(board: Board) -> list[float]:
     ]
 
 
-def _entries(
-    truths: Sequence[Truth], row: Row, floors: Sequence[float], carry_out: CarryOut | None
-) -> tuple[Row, list[Entry]]:
+def entries_of(
+    truths: Sequence[Truth], row: Row, floors: Sequence[float], carry_out: CarryOut | None = None
+) -> list[Entry]:
+    """Return a row's answers beside their keys."""
     wanted = [
         (truth.case, answer.next_run)
         for truth, answer in zip(truths, row.answers, strict=True)
@@ -74,7 +75,7 @@ def _entries(
     ]
     proposes = any(run is not None for _, run in wanted)
     gains = carry_out(wanted) if carry_out is not None and proposes else {}
-    return row, [
+    return [
         Entry(answer, truth, shrunk(answer, truth, floor), _own_share(answer, truth),
               gains.get(truth.case))
         for truth, answer, floor in zip(truths, row.answers, floors, strict=True)

@@ -1,0 +1,176 @@
+"""A board's figures by the limits of its world: SNR from 10, bootstrap intervals.
+
+The oracle is a row of the board, ``answers-oracle/``: the same engine, told the key's tolerances
+and forms. Without it the paired figures are left out; docs/sealed.md says what each figure is.
+"""
+
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.sealed.scoring.answers import Answer
+from tests.sealed.scoring.board import DIAGNOSIS, Board
+from tests.sealed.scoring.columns import COLUMNS, Entry
+from tests.sealed.scoring.right import by_class, named, stated
+from tests.sealed.scoring.score import entries_of, floors_of, score
+
+FloatArray = NDArray[np.float64]
+
+TABLE: Final = Path(__file__).parents[1] / "worlds.toml"
+ORACLE: Final = "oracle"
+CLEAR_SNR: Final = 10.0
+SURE: Final = 0.9
+_BINS, _DRAWS, _PERFECT, _SEED = 10, 1000, 400, 20262
+_COLUMNS: Final = {column.key: column for column in COLUMNS}
+_OWN: Final = {
+    "false_alarms": "false_alarms",
+    "class": "top_1_by_class",
+    "stage": "stage",
+    "shrinkage_covered": "shrinkage_covered",
+}
+_PAIRED: Final = {
+    "class_below_oracle": "top_1_by_class",
+    "stage_below_oracle": "stage",
+    "unknown_below_oracle": "unknown",
+}
+
+
+@dataclass(frozen=True)
+class Held:
+    """A figure with its 95 % interval, held to its world's limits.
+
+    Attributes
+    ----------
+    word
+        ``met``, ``missed`` (the interval's better end misses it too) or ``close``; empty where the
+        board does not show it.
+    strict
+        Whether the interval's worse end is held to the limit, so that nothing is close.
+    """
+
+    key: str
+    what: str
+    value: float | None
+    low: float | None
+    high: float | None
+    count: int
+    at_most: float | None
+    at_least: float | None
+    strict: bool = False
+
+    @property
+    def word(self) -> str:
+        """How the figure stands to its limits."""
+        if self.value is None or self.low is None or self.high is None:
+            return ""
+        worst = [
+            _held(self.low, self.high, self.at_most),
+            _held(-self.high, -self.low, _less(self.at_least)),
+        ]
+        found = next(word for word in ("missed", "close", "met") if word in worst)
+        return "missed" if self.strict and found == "close" else found
+
+
+def _less(limit: float | None) -> float | None:
+    return None if limit is None else -limit
+
+
+def _held(low: float, high: float, at_most: float | None) -> str:
+    if at_most is None or high <= at_most:
+        return "met"
+    return "missed" if low > at_most else "close"
+
+
+def by_world(board: Board, world: str) -> tuple[Held, ...]:
+    """Return every figure that has a limit, for a board of a world."""
+    limits = tomllib.loads(TABLE.read_text(encoding="utf-8"))["limits"]
+    found = _figures(board)
+    out = []
+    for key, row in limits.items():
+        value, low, high, count = found.get(key, (None, None, None, 0))
+        ends = (row.get(side, {}).get(world) for side in ("at_most", "at_least"))
+        strict = bool(row.get("strict", False))
+        out.append(Held(key, row["what"], value, low, high, count, *ends, strict))
+    return tuple(out)
+
+
+Figure = tuple[float | None, float | None, float | None, int]
+
+
+def _figures(board: Board) -> dict[str, Figure]:
+    floors = floors_of(board)
+    rows = {row.name: entries_of(board.truths, row, floors) for row in board.rows}
+    ours = rows[DIAGNOSIS]
+    out = {key: _mean(_values(ours, column)) for key, column in _OWN.items()}
+    if ORACLE in rows:
+        for key, column in _PAIRED.items():
+            theirs, own = (_values(row, column) for row in (rows[ORACLE], ours))
+            out[key] = _mean(theirs - own)
+    said = _said(ours)
+    out["sure_and_wrong"] = _mean(1.0 - said[said[:, 0] >= SURE, 1])
+    out["calibration_excess"] = _boot(said, _excess, len(said))
+    whole = {row.name: row.mean for row in score(board).rows}
+    others = [mean for name, mean in whole.items() if name not in (DIAGNOSIS, ORACLE)]
+    if others:
+        ahead = whole[DIAGNOSIS] - max(others)
+        out["ahead_of_others"] = (ahead, ahead, ahead, len(ours))
+    return out
+
+
+def _clear(entry: Entry) -> bool:
+    return not entry.has_gap or entry.truth.snr >= CLEAR_SNR
+
+
+def _values(entries: Sequence[Entry], column: str) -> FloatArray:
+    """Return a column's values; a case that it does not apply to is left out in every row alike."""
+    there = [list(_COLUMNS[column].values(entry)) for entry in entries if _clear(entry)]
+    return np.array([value for values in there for value in values])
+
+
+def _said(entries: Sequence[Entry]) -> FloatArray:
+    """Return class probability and whether it is right, ``(answers, 2)``."""
+    rows = [
+        (class_probability(e.answer), float(e.answer.said in by_class(e.truth)))
+        for e in entries
+        if _clear(e) and not e.answer.failed
+    ]
+    return np.array(rows).reshape(-1, 2)
+
+
+def class_probability(answer: Answer) -> float:
+    """Return the probability of what an answer says and of what it calls the same."""
+    names = {answer.said, *(stated(answer) if len(named(answer.said)) == 1 else ())}
+    return float(min(sum(answer.probabilities.get(name, 0.0) for name in names), 1.0))
+
+
+def calibration_error(said: FloatArray, right: FloatArray) -> float:
+    """Return the mean distance of said from right over ten even bins, by their counts."""
+    bins = np.minimum((said * _BINS).astype(int), _BINS - 1)
+    off = [abs(float((said - right)[bins == i].sum())) for i in range(_BINS)]
+    return sum(off) / len(said)
+
+
+def _excess(rows: FloatArray) -> float:
+    """Return the error less that of answers as sure that are right as often as they say."""
+    said, rng = rows[:, 0], np.random.default_rng(_SEED)
+    draws = rng.random((_PERFECT, len(said))) < said
+    perfect = np.mean([calibration_error(said, draw.astype(np.float64)) for draw in draws])
+    return calibration_error(said, rows[:, 1]) - float(perfect)
+
+
+def _mean(values: FloatArray) -> Figure:
+    return _boot(values, lambda drawn: float(drawn.mean()), len(values))
+
+
+def _boot(values: FloatArray, figure: Callable[[FloatArray], float], count: int) -> Figure:
+    if count == 0:
+        return None, None, None, 0
+    rng, draws = np.random.default_rng(_SEED), _DRAWS if values.ndim == 1 else _DRAWS // 10
+    found = [figure(values[rng.integers(0, count, count)]) for _ in range(draws)]
+    low, high = np.quantile(found, (0.025, 0.975))
+    return figure(values), float(low), float(high), count
