@@ -23,7 +23,7 @@ from tests.analysis.resolver.signals import (
     series,
 )
 
-TRIALS = 1500
+TRIALS = 500
 RATE_HZ = 40.0
 FREQUENCY_HZ = 1.037
 PERIODS = 30

@@ -15,6 +15,8 @@ FEW = ("--effects", "coulomb-friction", "--effects", "gain-error")
 # Two frequencies, amplitudes and media: what the tests below take pieces away from.
 RUNS = ("heave-0.50-20", "heave-0.80-20", "heave-1.10-20", "heave-0.80-10", "air-0.80-20")
 
+_MADE: dict[tuple[str, ...], Path] = {}  # pytest keeps its folders until it ends
+
 
 def run(*arguments: str | Path) -> Result:
     """Run ``pmm`` in this process."""
@@ -29,11 +31,14 @@ def short(names: Sequence[str] = RUNS) -> str:
 
 
 def made(folder: Path, *options: str | Path, names: Sequence[str] = RUNS) -> Path:
-    """Simulate it into a folder."""
-    (folder / "short.toml").write_text(short(names))
-    done = run("simulate", folder / "short.toml", "--output", folder / "rig", *options)
-    assert done.exit_code == 0, done.output
-    return folder / "rig"
+    """Simulate it into a folder; what was simulated for another test is copied."""
+    key = (*map(str, options), *names)
+    if key not in _MADE:
+        (folder / "short.toml").write_text(short(names))
+        done = run("simulate", folder / "short.toml", "--output", folder / "made", *options)
+        assert done.exit_code == 0, done.output
+        _MADE[key] = folder / "made"
+    return shutil.copytree(_MADE[key], folder / "rig")
 
 
 def with_friction(folder: Path, names: Sequence[str] = RUNS) -> Path:
