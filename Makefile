@@ -4,11 +4,12 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench sealed clean
+.PHONY: help demo test coverage lint docs bench sealed clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
 	@echo "make test   install and run the tests"
+	@echo "make coverage  run the tests, say which lines they run; .coverage says by which test"
 	@echo "make lint   formatting, types, imports"
 	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
@@ -43,6 +44,11 @@ demo: $(VENV)/.user
 # library's own threads would only get in each other's way.
 test: $(VENV)/.dev
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
+
+# A context for each test: `python -m benchmarks.mutants` asks which tests run a line.
+coverage: $(VENV)/.dev
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile \
+		--cov --cov-context=test --cov-report=term:skip-covered
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check

@@ -1,0 +1,1 @@
+"""Mutations of the product, drawn at random, and whether the tests that cover them notice."""
