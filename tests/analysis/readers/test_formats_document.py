@@ -110,7 +110,7 @@ def test_flag_codes_of_reference_and_gate_are_those_of_the_code() -> None:
     assert len(re.findall(r"\bFlag\(", text)) == len(re.findall(r'\bFlag\(\s*"', text))
     recorded = (ROOT / "pmm" / "run" / "measurement.py").read_text(encoding="utf-8")
     assert "force_far" in re.findall(r'note\("([\w-]+)"', recorded)
-    door = (ROOT / "pmm" / "campaign_recording.py").read_text(encoding="utf-8")
+    door = (ROOT / "pmm" / "campaign" / "recording_source.py").read_text(encoding="utf-8")
     used |= {"force_far", SIMULATED_DIFFERS, OWN_MODEL}
     used |= set(re.findall(r'Flag\(\s*"([\w-]+)"', door))
     assert {row[0].strip("`") for row in cells("Flags of reference and gate", 5)} == used
