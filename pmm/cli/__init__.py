@@ -2,7 +2,6 @@
 
 import os
 import sys
-from importlib import import_module
 from typing import Any
 
 import click
@@ -10,48 +9,17 @@ import click
 from analysis.reading_limits import MEMORY_SETTING
 from hardware.description.errors import DataError, PmmError
 from hardware.description.room import said
-from pmm.cli.group import NamingGroup
+from pmm.cli.group import CommandGroup
 
-# Command -> module with a click command of the same name. These modules import nothing heavy at
-# their top, so that ``pmm --help`` can read their help at once.
-_COMMANDS = {
-    "analyse": "pmm.cli.analyse",
-    "coefficients": "pmm.cli.coefficients",
-    "console": "pmm.cli.console",
-    "demo": "pmm.cli.demo",
-    "completion": "pmm.cli.completion",
-    "devices": "pmm.cli.devices",
-    "doctor": "pmm.cli.doctor",
-    "gap": "pmm.cli.gap",
-    "inertia": "pmm.cli.inertia",
-    "init": "pmm.cli.init",
-    "evaluate": "pmm.cli.run_evaluate",
-    "run": "pmm.cli.run",
-    "effects": "pmm.cli.effects",
-    "plan": "pmm.cli.plan",
-    "recover": "pmm.cli.recover",
-    "replay": "pmm.cli.replay",
-    "report": "pmm.cli.report",
-    "simulate": "pmm.cli.simulate",
-}
+_NAMES = (
+    "analyse", "coefficients", "completion", "console", "demo", "devices", "doctor", "effects",
+    "evaluate", "gap", "inertia", "init", "plan", "recover", "replay", "report", "run", "simulate",
+)  # fmt: skip
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 
 
-class Commands(NamingGroup):
+class Commands(CommandGroup):
     """The group of all commands, which turns our errors into messages and exit statuses."""
-
-    names = _COMMANDS
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the commands' names in the order of the alphabet."""
-        return sorted(self.names)
-
-    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Import a command."""
-        if name not in _COMMANDS:
-            return None
-        command = getattr(import_module(_COMMANDS[name]), name)
-        return command if isinstance(command, click.Command) else None
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what it refuses becomes one clear line and an exit status."""
@@ -96,7 +64,12 @@ def _set_memory(ctx: click.Context, parameter: click.Parameter, gigabytes: float
         os.environ[MEMORY_SETTING] = repr(gigabytes)
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=Commands,
+    package="pmm.cli",
+    names=_NAMES,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @click.option(
     "--version",

@@ -19,7 +19,6 @@ from hardware.description.errors import ConfigurationError
 from hardware.pacing import RealTime
 from hardware.rig import Rig
 from pmm.cli.folders import check_folder
-from pmm.cli.run_console import Interrupts
 from pmm.cli.screen import messages
 from pmm.cli.terminal import Terminal
 from pmm.console.app_settings import ConsoleSettings
@@ -33,6 +32,7 @@ from pmm.console.station import Station
 from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
 from pmm.real_time import Priority, before_others, step_back
 from pmm.run.journal import Taps
+from pmm.run.operator import Interrupts
 from pmm.run.rehearsal import rehearse
 from pmm.run.states import Command, RunStateError
 

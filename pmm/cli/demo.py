@@ -1,20 +1,107 @@
 """``pmm demo``: a small campaign run on the simulated rig, as a table, plots and a page."""
 
+import shutil
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import click
+
+from pmm.cli.folders import check_folder
+from pmm.cli.hints import pasted
+from pmm.cli.screen import busy, output, show_progress
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from analysis.resolver.analysis import Analysis
+
+CAMPAIGNS = ("vertical", "horizontal")
+PAGE = "report.html"
 
 
 @click.command()
 @click.option(
-    "--output", metavar="FOLDER", default="demo", show_default=True, help="Where to write."
+    "--output",
+    "target",
+    metavar="FOLDER",
+    default="demo",
+    show_default=True,
+    help="Where to write.",
 )
 @click.option("--vertical-only", is_flag=True, help="Leave out the horizontal campaign.")
-def demo(output: str, vertical_only: bool) -> None:
+def demo(target: str, vertical_only: bool) -> None:
     """Run a small campaign on the simulated rig and write a report: see what this program does.
 
     Heave and pitch on the vertical oscillator, sway and yaw on the horizontal one, through the same
     run control, recorder and protocols as on a real rig. The folder gets the campaigns with their
     recordings, the plots and one HTML page.
     """
-    from pmm.cli.demonstrating import run
+    folder = Path(target)
+    check_folder(folder, "--output")
+    campaigns = [_campaign(name, folder / name) for name in CAMPAIGNS[: 1 if vertical_only else 2]]
+    found = [analysis for each in campaigns for analysis in each.items()]
+    _print(found)
+    _write_plots([list(each.items())[1] for each in campaigns], folder / "plots")
+    _write_page([analysis for _, analysis in found], folder)
+    rig = folder / f"{CAMPAIGNS[0]}-rig" / "rig.toml"
+    for line in (
+        f"plots   {folder / 'plots'}",
+        f"again   {pasted('analyse', found[0][0])}",
+        f"console {pasted('console', rig, '--output', folder / 'console')}",
+        f"{folder / PAGE}",
+    ):
+        output().print(line, soft_wrap=True)
 
-    run(output, with_horizontal=not vertical_only)
+
+def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":
+    """Run and analyse one of the plans that come with the package; what an earlier demo wrote goes.
+
+    Returns
+    -------
+    dict
+        What was found in each recording.
+    """
+    from analysis.readers import read_recording
+    from analysis.resolver.analysis import analyse
+    from pmm.campaign.campaign_file import read_campaign
+    from pmm.campaign.file_names import CAMPAIGN_FILE
+    from pmm.cli.run_work import RunOptions, work
+
+    if (folder / CAMPAIGN_FILE).exists():
+        shutil.rmtree(folder)
+    rig = folder.with_name(f"{name}-rig")
+    with as_file(files("pmm.cli") / "demo_rigs" / name) as shipped:
+        shutil.copytree(shipped, rig, dirs_exist_ok=True)
+    work(RunOptions(str(rig / "plan.toml"), output=str(folder)))
+    campaign = read_campaign(folder / CAMPAIGN_FILE)
+    paths = [one.recording_path(folder) for one in campaign.runs]
+    return {
+        path: analyse(read_recording(path), campaign.reference, campaign.analysis)
+        for path in show_progress(paths, f"analysing {name}")
+    }
+
+
+def _print(found: "Sequence[tuple[Path, Analysis]]") -> None:
+    from hardware.description.channels import FORCE_AFT, FORCE_FORE
+    from pmm.cli.analyse import DEFAULT_LEVEL
+    from pmm.cli.printing import print_compact
+    from pmm.tables import run_rows
+
+    rows = [run_rows(one, file=str(path), level=DEFAULT_LEVEL) for path, one in found]
+    print_compact(output(), rows, (FORCE_AFT.name, FORCE_FORE.name))
+
+
+def _write_plots(found: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None:
+    from pmm.report.plots import save_figures
+
+    for path, analysis in show_progress(found, "plotting"):
+        save_figures(analysis, folder, path.parent.name)
+
+
+def _write_page(found: "Sequence[Analysis]", folder: Path) -> None:
+    from pmm.report.page import write_page
+
+    title = "Heave, pitch, sway and yaw on the simulated rig"
+    with busy("writing the page"):
+        write_page(found, folder / PAGE, title=title, command=pasted("demo", "--output", folder))

@@ -1,39 +1,66 @@
-"""A group of commands that knows its own names, and the one that a misspelt name may mean."""
+"""A group of commands, each imported when it is asked for, that names the one meant by a slip."""
 
-from collections.abc import Collection
-from typing import ClassVar
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
 import click
 
 
-class NamingGroup(click.Group):
+class CommandGroup(click.Group):
     """A group whose commands are listed in a stated order.
 
-    Attributes
+    A command is the object of its own name in the module of its own name, or is declared where the
+    group is. The module imports what is heavy in the functions that need it, so that help answers
+    at once.
+
+    Parameters
     ----------
+    package
+        Where the modules of the commands lie.
     names
-        The commands, in the order in which the help lists them.
+        The commands that lie there, in the order in which the help lists them; those that are
+        declared where the group is come after them.
     kind
         What one of them is called in messages: ``"command"``, ``"job"``, ``"action"``.
     """
 
-    names: ClassVar[Collection[str]] = ()
-    kind: ClassVar[str] = "command"
+    def __init__(
+        self,
+        *arguments: Any,
+        package: str = "",
+        names: Sequence[str] = (),
+        kind: str = "command",
+        **attributes: Any,
+    ) -> None:
+        super().__init__(*arguments, **attributes)
+        self.package, self.names, self.kind = package, names, kind
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the commands' names."""
-        return list(self.names)
+        return [*self.names, *self.commands]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a command, ``None`` if there is none of that name."""
+        if cmd_name not in self.names:
+            return super().get_command(ctx, cmd_name)
+        word = cmd_name.replace("-", "_")
+        command: click.Command = getattr(import_module(f"{self.package}.{word}"), word)
+        return command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Find the command that is meant, or say which one may be."""
-        if args[0] not in self.names and not args[0].startswith("-"):
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], self.names, n=1, cutoff=0.4)
-            known = f"{self.kind}s: {', '.join(self.names)}"
-            ctx.fail(
-                f"no {self.kind} {args[0]!r}; {f'did you mean {near[0]!r}?' if near else known}"
-            )
+        names = self.list_commands(ctx)
+        if args[0] not in names and not args[0].startswith("-"):
+            ctx.fail(self.unknown(args[0], names))
         return super().resolve_command(ctx, args)
+
+    def unknown(self, word: str, names: Sequence[str]) -> str:
+        """Return what is said of a word that is no command."""
+        from difflib import get_close_matches
+
+        near = get_close_matches(word, names, n=1, cutoff=0.4)
+        known = f"{self.kind}s: {', '.join(names)}"
+        return f"no {self.kind} {word!r}; {f'did you mean {near[0]!r}?' if near else known}"

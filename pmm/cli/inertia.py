@@ -5,19 +5,10 @@ from typing import Any
 
 import click
 
-from pmm.cli.group import NamingGroup
-
-JOBS = ("swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan")
+from pmm.cli.group import CommandGroup
 
 
-class Jobs(NamingGroup):
-    """The group of the jobs, in the order in which they are explained."""
-
-    names = JOBS
-    kind = "job"
-
-
-@click.group(cls=Jobs)
+@click.group(cls=CommandGroup, kind="job")
 def inertia() -> None:
     """Find mass, centre of gravity, inertia and gyradii, with a budget.
 

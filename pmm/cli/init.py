@@ -1,13 +1,34 @@
 """``pmm init``: first files, from a few questions or from options."""
 
 from collections.abc import Callable
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.group import NamingGroup
+from pmm.cli.folders import check_folder
+from pmm.cli.group import CommandGroup
+from pmm.cli.hints import pasted
+from pmm.cli.screen import messages, output
 
-JOBS = ("rig", "campaign", "swing", "bifilar")
+if TYPE_CHECKING:
+    from pmm.start.questions import StartQuestion
+
+# What a job is followed by; {} stands for the folder.
+_NEXT = {
+    "rig": (
+        ("devices", "scan", "{}/rig.toml"),
+        ("plan", "check", "{}/plan.toml"),
+        ("run", "{}/plan.toml"),
+    ),
+    "recordings": (("analyse", "{}"), ("coefficients", "{}")),
+    "campaign": (
+        ("simulate", "{}/campaign.toml", "--output", "{}/simulated"),
+        ("analyse", "{}/simulated"),
+    ),
+    "swing": (("inertia", "swing", "{}/swing.toml"),),
+    "bifilar": (("inertia", "bifilar", "{}/bifilar.toml"),),
+}
 _COMMON = (
     click.option("--output", metavar="FOLDER", default=".", show_default=True,
                  help="Where to write."),
@@ -20,14 +41,7 @@ _PLANE = click.option("--plane", type=click.Choice(("vertical", "horizontal")),
                       help="Heave and pitch, or sway and yaw.")  # fmt: skip
 
 
-class Jobs(NamingGroup):
-    """The group of what can be begun."""
-
-    names = JOBS
-    kind = "job"
-
-
-@click.group(cls=Jobs)
+@click.group(cls=CommandGroup, kind="job")
 def init() -> None:
     """Write first files: commented, and tried by the very commands that read them.
 
@@ -54,12 +68,6 @@ def _job(*options: Callable[[Any], Any]) -> Callable[[Callable[..., None]], clic
     return make
 
 
-def _run(job: str, options: dict[str, Any]) -> None:
-    from pmm.cli.init_work import run
-
-    run(job, options)
-
-
 _SPACING = _number("--half-spacing-m", "M", "Of a strut from the midpoint.")
 _MASS = _number("--mass-kg", "KG", "Of the model with all below the gauges.")
 _INERTIA = _number("--inertia-kg-m2", "KG_M2", "Its inertia about the midpoint.")
@@ -84,7 +92,7 @@ _INERTIA = _number("--inertia-kg-m2", "KG_M2", "Its inertia about the midpoint."
 )  # fmt: skip
 def rig(**options: Any) -> None:
     """Write rig.toml and plan.toml; both pass "pmm plan check"."""
-    _run("rig", options)
+    _write("rig", options)
 
 
 @_job(_FILES, _PLANE, _SPACING, _MASS, _INERTIA)
@@ -94,7 +102,7 @@ def campaign(**options: Any) -> None:
     Which column is what, and each run's frequency, amplitude and phase, are taken from the
     recordings as far as they show.
     """
-    _run("campaign", options)
+    _write("campaign", options)
 
 
 @_job(
@@ -105,7 +113,7 @@ def campaign(**options: Any) -> None:
 )
 def swing(**options: Any) -> None:
     """Write swing.toml: the empty swing, from records or stopwatch periods."""
-    _run("swing", options)
+    _write("swing", options)
 
 
 @_job(
@@ -117,4 +125,37 @@ def swing(**options: Any) -> None:
 )
 def bifilar(**options: Any) -> None:
     """Write bifilar.toml: yaw on two lines, from records or stopwatch periods."""
-    _run("bifilar", options)
+    _write("bifilar", options)
+
+
+def _write(job: str, options: dict[str, Any]) -> None:
+    """Write a job's files and print the commands that come next."""
+    from pmm.start.jobs import FILES, StartTask, write
+    from pmm.start.questions import answers
+    from pmm.start.writing import check_free
+
+    folder = Path(options["output"])
+    recordings = tuple(Path(one) for one in options.get("recordings", ()))
+    check_folder(folder, "--output")
+    check_free(folder, FILES[job], force=options["force"])
+    given = answers(job, options, _default if options["yes"] else _asked)
+    done = write(StartTask(job, given, folder, recordings), force=options["force"])
+    for path in done.paths:
+        messages().print(f"written: {path}")
+    for note in done.notes:
+        messages().print(note, soft_wrap=True, markup=False)
+    kind = "recordings" if job == "campaign" and recordings else job
+    for words in _NEXT[kind]:
+        place = folder.as_posix()
+        command = pasted(*(Path(word.format(place)) if "{}" in word else word for word in words))
+        output().print(f"next: {command}", soft_wrap=True)
+
+
+def _default(question: "StartQuestion") -> str | float:
+    return question.default
+
+
+def _asked(question: "StartQuestion") -> str | float:
+    kind: Any = click.Choice(question.choices) if question.choices else type(question.default)
+    answer: str | float = click.prompt(question.text, default=question.default, type=kind, err=True)
+    return answer

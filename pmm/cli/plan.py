@@ -2,19 +2,10 @@
 
 import click
 
-from pmm.cli.group import NamingGroup
-
-ACTIONS = ("check", "show")
+from pmm.cli.group import CommandGroup
 
 
-class Actions(NamingGroup):
-    """The group of what can be done with a plan."""
-
-    names = ACTIONS
-    kind = "action"
-
-
-@click.group(cls=Actions)
+@click.group(cls=CommandGroup, kind="action")
 def plan() -> None:
     """Check and show a plan of runs, before the rig moves.
 

@@ -21,7 +21,6 @@ from hardware.rig import Rig
 from pmm.cli.findings import finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
-from pmm.cli.run_console import Answers, Interrupts, standard_input
 from pmm.cli.run_view import LiveView, PlainView, outcome_line
 from pmm.cli.screen import messages, output
 from pmm.cli.terminal import Terminal
@@ -44,6 +43,7 @@ from pmm.run.campaign_folder import (
 )
 from pmm.run.identity import change_lines
 from pmm.run.journal import Taps
+from pmm.run.operator import Answers, Interrupts, standard_input
 from pmm.run.recording import RecorderFactory
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl

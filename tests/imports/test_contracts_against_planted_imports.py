@@ -35,7 +35,7 @@ PLANTED = [
     ),
     (
         "Only a controller on the bus meets the simulated devices",
-        "pmm/cli/demonstrating.py",
+        "pmm/cli/demo.py",
         "import sim.devices.bus",
     ),
     (

@@ -6,8 +6,7 @@ from pathlib import Path
 from click.testing import CliRunner
 
 from pmm.cli import cli
-from pmm.cli.devices import JOBS
-from pmm.cli.devices_common import JSON_SCHEMA
+from pmm.cli.devices import JSON_SCHEMA, devices
 from pmm.devices.pulses import EXTRA, MISSED
 from pmm.devices.push_test import ALONE_SHARE, LEAST_SHARE, NOISE_TIMES
 
@@ -16,11 +15,13 @@ PAGE = (Path(__file__).parents[3] / "docs" / "devices.md").read_text(encoding="u
 
 def test_every_job_is_on_the_page_and_no_other() -> None:
     named = set(re.findall(r"pmm devices ([a-z]+)", PAGE))
-    assert named == set(JOBS)
+    assert named == set(devices.names)
 
 
 def test_every_option_on_the_page_is_one_of_a_job() -> None:
-    shown = "".join(CliRunner().invoke(cli, ["devices", job, "--help"]).stdout for job in JOBS)
+    shown = "".join(
+        CliRunner().invoke(cli, ["devices", job, "--help"]).stdout for job in devices.names
+    )
     for option in set(re.findall(r"--[a-z][a-z-]+", PAGE)):
         assert option in shown, option
 

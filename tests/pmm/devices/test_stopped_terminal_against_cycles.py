@@ -8,14 +8,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import click
 import pytest
 
 from hardware.roles import Pulse
-from pmm.cli import devices_read, devices_rig
+from pmm.cli.devices.gauges import gauges
+from pmm.cli.devices.photocell import photocell
+from pmm.cli.devices.read import read
 from pmm.devices.live import DeviceRow
 from pmm.devices.push_test import Push
 from pmm.devices.pushing import Pushed
+from pmm.devices.readings import Shown
 from pmm.devices.watching import PhotocellRecord
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "vertical" / "rig.toml"
@@ -52,21 +54,19 @@ def test_values_are_read_on(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = stopped(monkeypatch)
     looked: list[float] = []
 
-    def look(seconds: float) -> devices_read._Shown:
+    def look(seconds: float) -> Shown:
         looked.append(seconds)
         if len(looked) == 20:
             terminal.goes_on.set()
             raise KeyboardInterrupt
-        return devices_read._Shown((DeviceRow("shaft", "looks", float(len(looked))),))
+        return Shown((DeviceRow("shaft", "looks", float(len(looked))),))
 
     @contextmanager
     def source(*_: object) -> Iterator[Any]:
         yield look
 
-    monkeypatch.setattr(devices_read, "_source", source)
-    devices_read.run(
-        devices_read.DeviceReadOptions(str(EXAMPLE), None, "", 1_000_000, (), None, 115_200, False)
-    )
+    monkeypatch.setattr("pmm.cli.devices.read._source", source)
+    read.main([str(EXAMPLE)], standalone_mode=False)
     assert not terminal.held_up
     assert "19" in terminal.getvalue()
 
@@ -79,9 +79,9 @@ def test_gauges_are_pushed_on(monkeypatch: pytest.MonkeyPatch) -> None:
         yield Pushed("force_fore", None, ("no push",))
         terminal.goes_on.set()
 
-    monkeypatch.setattr(devices_rig, "push_each", pushed)
-    with pytest.raises(click.exceptions.Exit):
-        devices_rig.gauges(str(EXAMPLE), True, False, (), 1.0)
+    monkeypatch.setattr("pmm.devices.pushing.push_each", pushed)
+    words = [str(EXAMPLE), "--free-running", "--within", "1"]
+    assert gauges.main(words, standalone_mode=False) == 1
     assert not terminal.held_up
     assert "force_aft: came in on force_aft, sign +, +10 N" in terminal.getvalue()
     assert "error: force_fore: no push" in terminal.getvalue()
@@ -95,7 +95,8 @@ def test_pulses_are_watched_on(monkeypatch: pytest.MonkeyPatch) -> None:
         terminal.goes_on.set()
         return PhotocellRecord((Pulse(7, 1.0),), (), (), True)
 
-    monkeypatch.setattr(devices_rig, "watch", watched)
-    devices_rig.photocell(str(EXAMPLE), True, False, True, 2, 1.0, None)
+    monkeypatch.setattr("pmm.devices.watching.watch", watched)
+    words = [str(EXAMPLE), "--free-running", "--yes", "--pulses", "2"]
+    photocell.main(words, standalone_mode=False)
     assert not terminal.held_up
     assert "pulse 7 at 1.0000 s" in terminal.getvalue()

@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 
 from analysis.gap.where import CHAIN
 from pmm.cli import cli
-from pmm.cli.gap import Jobs
+from pmm.cli.gap import gap
 from pmm.gap.document import SCHEMA
 from sim.effects.catalogue import catalogue
 
@@ -207,7 +207,7 @@ def test_the_help_lists_what_a_campaign_takes_and_the_jobs() -> None:
         re.findall(r"--[\w-]+", options)
     )
     assert re.findall(r"^  ([\w-]+) ", told.partition("Commands:")[2], re.MULTILINE) == list(
-        Jobs.names
+        gap.names
     )
 
 

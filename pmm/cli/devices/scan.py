@@ -1,17 +1,59 @@
-"""Tables and the document of ``pmm devices scan``."""
+"""``pmm devices scan``: who answers on a bus and on serial ports."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any
 
-from hardware.listening import Heard
-from hardware.scan import FoundNode, Mapping
-from pmm.cli.devices_common import print_json, print_table
+import click
 
-_PROFILES: Final = {401: "input and output", 402: "drive", 404: "measuring device", 406: "encoder"}
+from pmm.cli.devices import ANY, Target, print_json, print_table
+from pmm.cli.screen import busy, error_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from hardware.listening import Heard
+    from hardware.scan import FoundNode, Mapping
+    from pmm.devices.survey import Survey
+
+_PROFILES = {401: "input and output", 402: "drive", 404: "measuring device", 406: "encoder"}
 
 
-def _mapping(one: Mapping) -> str:
+@click.command()
+@ANY
+@click.option("--listen", "listen_s", metavar="S", type=click.FloatRange(min=0.0), default=1.1,
+              show_default=True, help="How long to listen for heartbeats and lines.")  # fmt: skip
+def scan(listen_s: float, as_json: bool, **options: Any) -> None:
+    """List who answers: identity, state, heartbeat, mapping.
+
+    Nothing is changed: no SYNC, no state is commanded. With a rig's file, who is missing is named.
+    """
+    with busy("scanning"):
+        found = _survey(Target(**options), listen_s)
+    silent = [f"{name}: {one.what}" for name, one in found.heard.items() if one.what == "silent"]
+    wrong = found.wrong + silent
+    if as_json:
+        _print_document(found.nodes, found.names, found.heard, wrong)
+    else:
+        _print_nodes(found.nodes, found.names)
+        _print_heard(found.heard)
+        for one in wrong:
+            error_line(one)
+    if wrong:
+        raise click.exceptions.Exit(1)
+
+
+def _survey(target: Target, listen_s: float) -> "Survey":
+    from pmm.devices.survey import survey_bus, survey_port, survey_rig
+
+    tables = target.tables()
+    if tables is not None:
+        return survey_rig(tables, listen_s)
+    if target.interface:
+        return survey_bus(target.bus(), listen_s)
+    return survey_port(target.port_settings(), listen_s)
+
+
+def _mapping(one: "Mapping") -> str:
     objects = " ".join(str(at) for at in one.entries)
     return f"{one.cob_id:03X} {objects} ({_transmission(one.transmission)})"
 
@@ -22,12 +64,12 @@ def _transmission(kind: int) -> str:
     return ("SYNC" if kind == 1 else f"SYNC/{kind}") if kind <= 240 else "event"
 
 
-def _identity(node: FoundNode) -> str:
+def _identity(node: "FoundNode") -> str:
     parts = (node.vendor, node.product, node.revision, node.serial)
     return " ".join("-" if one is None else f"{one:X}" for one in parts)
 
 
-def print_nodes(nodes: Sequence[FoundNode], names: dict[int, str]) -> None:
+def _print_nodes(nodes: "Sequence[FoundNode]", names: dict[int, str]) -> None:
     """Print the nodes that answered; ``names`` are those of the rig's file, by node id."""
     if not nodes:
         return
@@ -50,7 +92,7 @@ def print_nodes(nodes: Sequence[FoundNode], names: dict[int, str]) -> None:
     )
 
 
-def print_heard(heard: dict[str, Heard]) -> None:
+def _print_heard(heard: "dict[str, Heard]") -> None:
     """Print what was heard on each port."""
     if not heard:
         return
@@ -72,17 +114,17 @@ def print_heard(heard: dict[str, Heard]) -> None:
     )
 
 
-def _last(heard: Heard) -> str:
+def _last(heard: "Heard") -> str:
     lines = [f"{kind} {line.value:g}" for kind, line in heard.last.items()]
     return ", ".join(lines) or heard.first_refused
 
 
-def print_document(
-    nodes: Sequence[FoundNode], names: dict[int, str], heard: dict[str, Heard], wrong: list[str]
+def _print_document(
+    nodes: "Sequence[FoundNode]", names: dict[int, str], heard: "dict[str, Heard]", wrong: list[str]
 ) -> None:
     """Print everything as one JSON document."""
 
-    def pdo(one: Mapping) -> dict[str, Any]:
+    def pdo(one: "Mapping") -> dict[str, Any]:
         objects = [str(at) for at in one.entries]
         return {"cob_id": one.cob_id, "transmission": one.transmission, "objects": objects}
 

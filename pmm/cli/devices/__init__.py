@@ -1,0 +1,216 @@
+"""``pmm devices``: look at the devices of a rig one by one, before anything runs by itself."""
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from pmm.cli.documents import without_nan
+from pmm.cli.group import CommandGroup
+from pmm.cli.screen import messages, output
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from hardware.bus import BusConfiguration
+    from hardware.rig import Rig
+    from hardware.rig_configuration import RigConfiguration
+    from hardware.serial_port import PortSettings
+    from pmm.devices.opening import DeviceTables
+
+JSON_SCHEMA = "pmm-devices-1"
+
+
+@click.group(
+    cls=CommandGroup,
+    package="pmm.cli.devices",
+    names=("scan", "read", "move", "photocell", "gauges", "ports"),
+    kind="job",
+)
+def devices() -> None:
+    """Scan a bus or a port, read values live, move an axis, test photocell and gauges.
+
+    A job takes the rig's file; "scan" and "read" also a bus or a port alone. Exit status: 0 all is
+    right, 1 something is missing or wrong, 2 the request or the file is.
+
+    \b
+    pmm devices scan rig.toml
+    pmm devices scan --interface socketcan --channel can0 --bitrate 1000000
+    pmm devices gauges rig.toml
+    """  # noqa: D301
+
+
+def _with(*options: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def add(function: Any) -> Any:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return add
+
+
+JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+YES = click.option("--yes", is_flag=True, help="Do not ask before anything moves.")
+FREE = click.option(
+    "--free-running", is_flag=True, help="A simulated rig only: as fast as it goes, nobody asked."
+)
+RIG = _with(click.argument("rig", metavar="RIG.toml"), FREE, JSON)
+ANY = _with(
+    click.argument("rig", metavar="[RIG.toml]", required=False),
+    click.option("--interface", metavar="NAME", help="A CAN interface of python-can."),
+    click.option("--channel", metavar="NAME", default="", help="Its channel: can0, a device ..."),
+    click.option("--bitrate", metavar="BIT/S", type=click.IntRange(min=1), default=1_000_000,
+                 show_default=True, help="Bits per second."),
+    click.option("--option", "options", metavar="NAME=VALUE", multiple=True,
+                 help="More for the interface, as python-can names it; repeatable."),
+    click.option("--port", metavar="URL", help="A serial port, alone; see \"pmm devices ports\"."),
+    click.option("--baud", metavar="BIT/S", type=click.IntRange(min=1), default=115_200,
+                 show_default=True, help="Of that port."),
+    JSON,
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Target:
+    """What is looked at: a rig, a bus alone or a port alone, by the names of the options."""
+
+    rig: str | None
+    interface: str | None
+    channel: str
+    bitrate: int
+    options: tuple[str, ...]
+    port: str | None
+    baud: int
+
+    def tables(self) -> "DeviceTables | None":
+        """Return the rig's file.
+
+        Raises
+        ------
+        ConfigurationError
+            If nothing to look at is named, or two things are.
+        """
+        named = [one for one in (self.rig, self.interface, self.port) if one]
+        if len(named) != 1:
+            raise ConfigurationError(
+                f"{' and '.join(named) or 'nothing'} to look at: name one of RIG.toml, "
+                "--interface (with --channel), --port"
+            )
+        from pmm.devices.opening import DeviceTables
+
+        return DeviceTables(Path(self.rig)) if self.rig else None
+
+    def bus(self) -> "BusConfiguration":
+        """Return the bus that is named alone."""
+        from pmm.devices.opening import bus_alone
+
+        found = dict(_option(one) for one in self.options)
+        return bus_alone(self.interface or "", self.channel, self.bitrate, found)
+
+    def port_settings(self) -> "PortSettings":
+        """Return the port that is named alone."""
+        from hardware.serial_port import PortSettings
+
+        return PortSettings(self.port or "", self.baud)
+
+
+def _option(text: str) -> tuple[str, int | float | str | bool]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ConfigurationError(f"--option {text!r}: write NAME=VALUE")
+    if value in ("true", "false"):
+        return name, value == "true"
+    for kind in (int, float):
+        try:
+            return name, kind(value)
+        except ValueError:
+            continue
+    return name, value
+
+
+@contextmanager
+def opened(configuration: "RigConfiguration", *, free_running: bool = False) -> "Iterator[Rig]":
+    """Open a rig that keeps to the clock, without touching its devices yet.
+
+    Raises
+    ------
+    ConfigurationError
+        If it is to run free and is not simulated in this process.
+    """
+    from hardware.pacing import FreeRunning, RealTime
+    from hardware.rig import Rig
+    from pmm.devices.opening import SIMULATED
+
+    bus = configuration.bus
+    if free_running and (bus is None or bus.interface != SIMULATED):
+        raise ConfigurationError(
+            f"--free-running is for a simulated rig (interface {SIMULATED!r}); "
+            "a real one keeps to the clock"
+        )
+    period_s = 1.0 / configuration.sample_rate_hz
+    pacer = FreeRunning() if free_running else RealTime(period_s, time.monotonic, time.sleep)
+    with Rig(configuration, time.monotonic, pacer, _asking(absent=free_running)) as rig:
+        yield rig
+
+
+def _asking(*, absent: bool) -> Callable[[str], str | None]:
+    """Return what asks a person on the error stream; where nobody answers, a simulated rig acts."""
+    from pmm.run.operator import Answers
+
+    answers, asked = Answers(sys.stdin), ""
+
+    def ask(question: str) -> str | None:
+        nonlocal asked
+        if question != asked:
+            asked = question
+            messages().print(question)
+        answer = None if absent else answers(question)
+        if answer is not None:
+            asked = ""
+        return answer
+
+    return ask
+
+
+def confirm(question: str, *, yes: bool) -> None:
+    """Ask before something moves.
+
+    Raises
+    ------
+    click.Abort
+        If the answer is no, or there is nobody to give one.
+    """
+    if not yes:
+        click.confirm(question, err=True, abort=True)
+
+
+def print_json(job: str, content: dict[str, Any]) -> None:
+    """Print a job's document; numbers that are not known are ``null``."""
+    click.echo(json.dumps({"schema": JSON_SCHEMA, "job": job, **without_nan(content)}, indent=2))
+
+
+def print_table(headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = "") -> None:
+    """Print a table; headings among ``numbers`` (separated by commas) are aligned to the right."""
+    output().print(plain_table(headings, rows, numbers))
+
+
+def plain_table(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = ""
+) -> "Table":
+    """Return such a table."""
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    right = numbers.split(",")
+    for one in headings:
+        table.add_column(one, justify="right" if one in right else "left", overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    return table

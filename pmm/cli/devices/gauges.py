@@ -1,0 +1,80 @@
+"""``pmm devices gauges``: which gauge is pushed, and which way."""
+
+import sys
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from pmm.cli.devices import RIG, opened, print_json
+from pmm.cli.screen import output
+from pmm.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from pmm.devices.pushing import Pushed
+
+
+@click.command()
+@RIG
+@click.option("--channel", "channels", metavar="NAME", multiple=True,
+              help="Only this gauge; repeatable.")  # fmt: skip
+@click.option("--within", "within_s", metavar="S", type=click.FloatRange(min=1.0), default=30.0,
+              show_default=True, help="Wait so long for each push.")  # fmt: skip
+def gauges(
+    rig: str, free_running: bool, as_json: bool, channels: tuple[str, ...], within_s: float
+) -> None:
+    """Push test: push each gauge as you are asked to; swapped cables and wrong signs are refused.
+
+    You are asked for one gauge after the other; nothing has to be typed, the push itself is seen.
+    """
+    from pmm.devices.opening import DeviceTables
+    from pmm.devices.pushing import GaugeReadings, push_each
+
+    tables = DeviceTables(Path(rig))
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
+        all_gauges = GaugeReadings(opened_rig)
+        names = tuple(one.name for one in all_gauges.channels)
+        for one in channels:
+            if one not in names:
+                raise ConfigurationError(
+                    f"no force channel {one!r}; the rig has {', '.join(names)}"
+                )
+        console = output(sys.stdout)
+        terminal = shown.enter_context(Terminal())
+        opened_rig.prepare()
+        found = []
+        for pushed in push_each(all_gauges, channels or names, tables.plane, within_s):
+            found.append(pushed)
+            if not as_json:
+                _show_push(terminal, console, pushed)
+    if as_json:
+        print_json("gauges", {"gauges": [_push_document(one) for one in found]})
+    if any(one.wrong for one in found):
+        raise click.exceptions.Exit(1)
+
+
+def _show_push(terminal: Terminal, console: "Console", pushed: "Pushed") -> None:
+    push = pushed.push
+    if push is not None:
+        sign = "+" if push.sign > 0 else "-"
+        right = "right" if not pushed.wrong else "WRONG"
+        line = (
+            f"{pushed.asked}: came in on {push.channel}, sign {sign}, {push.change:+.3g} "
+            f"{push.unit} (a push is more than {push.threshold:.2g} {push.unit}): {right}"
+        )
+        terminal.do(lambda: console.print(line))
+    for one in pushed.wrong:
+        terminal.say(f"error: {pushed.asked}: {one}")
+
+
+def _push_document(pushed: "Pushed") -> dict[str, object]:
+    push = None if pushed.push is None else {**asdict(pushed.push)}
+    return {"asked": pushed.asked, "push": push, "wrong": list(pushed.wrong)}

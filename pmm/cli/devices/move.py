@@ -1,0 +1,81 @@
+"""``pmm devices move``: an axis by hand."""
+
+import math
+import re
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from pmm.cli.devices import RIG, YES, confirm, opened, print_json
+from pmm.cli.screen import output
+from pmm.cli.terminal import Terminal
+
+_UNITS = {"m": ("m", 1.0), "mm": ("m", 1e-3), "rad": ("rad", 1.0),
+                 "deg": ("rad", math.pi / 180.0)}  # fmt: skip
+_POSITION = re.compile(r"^\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([a-z]*)\s*$")
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.argument("axis", metavar="AXIS")
+@click.argument("position", metavar="POSITION")
+@RIG
+@YES
+def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, yes: bool) -> None:
+    """Move an axis by hand: eccentricity or phase.
+
+    POSITION is in the axis's unit, or as 20mm, 30deg. It is homed first if it is not. Beyond its
+    limits, or while the shaft turns, it is refused.
+
+    \b
+    pmm devices move eccentricity 20mm rig.toml
+    """  # noqa: D301
+    from hardware.commanded import check_position
+    from pmm.devices.moving import NOTHING_MOVED, axis_of, look
+    from pmm.devices.moving import move as move_axis
+    from pmm.devices.opening import DeviceTables
+
+    tables = DeviceTables(Path(rig))
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
+        one = axis_of(opened_rig, axis)
+        goal = _position(position, one.unit)
+        check_position(one, goal, told=NOTHING_MOVED)
+        there = f"{goal:g} {one.unit}"
+        confirm(f"{axis} will home if it has to, and move to {there}. Is the way clear?", yes=yes)
+        shown.enter_context(Terminal())
+        opened_rig.prepare()
+        look(opened_rig)
+        reading = move_axis(opened_rig, one, goal)
+        unit = one.unit
+    if as_json:
+        print_json("move", {"axis": axis, "wanted": goal, "unit": unit, "reading": asdict(reading)})
+    else:
+        output().print(
+            f"{axis} stands at {reading.value:.6g} ± {reading.standard_uncertainty:.2g} {unit} "
+            f"({reading.source}); wanted {goal:.6g} {unit}"
+        )
+
+
+def _position(text: str, unit: str) -> float:
+    """Return a position in the axis's unit, from ``20mm``, ``30deg`` or a bare number.
+
+    Raises
+    ------
+    ConfigurationError
+        If it is no number, or its unit is not one of the axis's.
+    """
+    found = _POSITION.match(text)
+    allowed = [name for name, (base, _) in _UNITS.items() if base == unit]
+    if not found or (found[2] and found[2] not in allowed):
+        raise ConfigurationError(
+            f"position {text!r}: write a number, with or without a unit ({', '.join(allowed)})"
+        )
+    try:
+        return float(found[1]) * (_UNITS[found[2]][1] if found[2] else 1.0)
+    except ValueError:
+        raise ConfigurationError(f"position {text!r} is no number") from None

@@ -1,0 +1,104 @@
+"""``pmm devices photocell``: its pulses, one by one."""
+
+import math
+from contextlib import ExitStack
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from hardware.description.errors import ConfigurationError
+from pmm.cli.devices import RIG, YES, confirm, opened, print_json, print_table
+from pmm.cli.screen import error_line
+from pmm.cli.terminal import Terminal
+
+if TYPE_CHECKING:
+    from hardware.roles import Pulse
+    from pmm.devices.watching import PhotocellRecord
+
+
+@click.command()
+@RIG
+@YES
+@click.option("--pulses", type=click.IntRange(min=2), default=5, show_default=True,
+              help="End after so many.")  # fmt: skip
+@click.option("--within", "within_s", metavar="S", type=click.FloatRange(min=0.1), default=60.0,
+              show_default=True, help="Wait so long for them.")  # fmt: skip
+@click.option("--turn", "turn_hz", metavar="HZ", type=float,
+              help="Let the drive turn the shaft; else turn it by hand.")  # fmt: skip
+def photocell(
+    rig: str,
+    free_running: bool,
+    as_json: bool,
+    yes: bool,
+    pulses: int,
+    within_s: float,
+    turn_hz: float | None,
+) -> None:
+    """Test the photocell: pulses, intervals, missing and extra ones."""
+    from hardware.commanded import check_speed
+    from pmm.devices.moving import NOTHING_MOVED, look, turn
+    from pmm.devices.opening import DeviceTables
+    from pmm.devices.watching import watch
+
+    tables = DeviceTables(Path(rig))
+    with (
+        ExitStack() as shown,
+        opened(tables.configuration(), free_running=free_running) as opened_rig,
+    ):
+        shaft = opened_rig.shaft
+        if turn_hz is not None:
+            if shaft is None:
+                raise ConfigurationError("--turn: the rig has no shaft; turn it by hand")
+            check_speed(shaft, turn_hz, told=NOTHING_MOVED)
+            confirm(f"the shaft will turn at {turn_hz:g} Hz. Is everything clear of it?", yes=yes)
+        terminal = shown.enter_context(Terminal())
+        opened_rig.prepare()
+        look(opened_rig)
+        if turn_hz is not None and shaft is not None:
+            turn(opened_rig, shaft, turn_hz)
+        else:
+            terminal.say(f"turn the shaft by hand, evenly, until {pulses} pulses have come")
+        tell = (lambda _: None) if as_json else partial(_tell, terminal)
+        watched = watch(opened_rig, pulses, within_s, tell)
+    _print_pulses(watched, as_json=as_json)
+    if not watched.good:
+        raise click.exceptions.Exit(1)
+
+
+def _tell(terminal: Terminal, pulse: "Pulse") -> None:
+    terminal.say(f"pulse {pulse.number} at {pulse.time_s:.4f} s")
+
+
+def _print_pulses(watched: "PhotocellRecord", *, as_json: bool) -> None:
+    if as_json:
+        print_json(
+            "photocell",
+            {
+                "pulses": [asdict(one) for one in watched.pulses],
+                "intervals": [{**asdict(one), "verdict": one.verdict} for one in watched.intervals],
+                "said": list(watched.said),
+                "good": watched.good,
+            },
+        )
+        return
+    print_table(
+        ("pulse", "time [s]", "interval [s]", "turns", "verdict"),
+        [
+            (
+                str(one.number),
+                f"{one.time_s:.4f}",
+                f"{one.seconds:.4f}",
+                "-" if math.isnan(one.turns) else f"{one.turns:.4f}",
+                one.verdict or "ok",
+            )
+            for one in watched.intervals
+        ],
+        "pulse,time [s],interval [s],turns",
+    )
+    for one in watched.said:
+        error_line(one)
+    if not watched.enough:
+        error_line(f"{len(watched.pulses)} pulses in the time; check lamp, slot, cable and input")

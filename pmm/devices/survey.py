@@ -1,0 +1,134 @@
+"""Who answers on a bus and on serial ports, and what of a rig's file is missing there."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hardware.bus import BusConfiguration
+from hardware.errors import HardwareError
+from hardware.listening import Heard, listen
+from hardware.master import Master
+from hardware.scan import Ear, FoundNode, scan
+from hardware.serial_port import PortSettings, SerialPort
+from pmm.devices.opening import DeviceTables
+
+
+@dataclass(frozen=True)
+class _Expected:
+    """What a rig's file wants of the bus."""
+
+    name: str
+    node_id: int
+    profile: int
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Who answers.
+
+    Attributes
+    ----------
+    names
+        Of the nodes that the rig's file names, by node id.
+    wrong
+        What is missing or does not fit, with what to do.
+    """
+
+    nodes: tuple[FoundNode, ...]
+    names: dict[int, str]
+    heard: dict[str, Heard]
+    wrong: list[str]
+
+
+def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
+    """Ask all devices that a rig's file names; nothing is changed.
+
+    Raises
+    ------
+    ConfigurationError, HardwareError
+        If the file is wrong, or its bus cannot be opened.
+    """
+    rig = tables.configuration()
+    expected = _expected(tables)
+    heard: dict[str, Heard] = {}
+    wrong: list[str] = []
+    nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
+    for name, port in tables.ports().items():
+        _hear(name, PortSettings(**port), listen_s, heard, wrong)
+    wrong += _missing(nodes, expected)
+    return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong)
+
+
+def survey_bus(bus: BusConfiguration, listen_s: float) -> Survey:
+    """Ask a bus of which nothing is known."""
+    nodes = _scan(bus, listen_s)
+    wrong = [] if nodes else [
+        f"nobody answers on {bus.interface}:{bus.channel} at {bus.bit_rate} bit/s; "
+        "check power, bit rate and termination"
+    ]  # fmt: skip
+    return Survey(nodes, {}, {}, wrong)
+
+
+def survey_port(settings: PortSettings, listen_s: float) -> Survey:
+    """Listen to a serial port of which nothing is known."""
+    heard: dict[str, Heard] = {}
+    wrong: list[str] = []
+    _hear("port", settings, listen_s, heard, wrong)
+    return Survey((), {}, heard, wrong)
+
+
+def _scan(bus: BusConfiguration, listen_s: float) -> tuple[FoundNode, ...]:
+    ear = Ear()
+    master = Master(bus, time.monotonic, (ear,))
+    try:
+        return scan(master, ear, listen_s)
+    finally:
+        master.close()
+
+
+def _hear(
+    name: str, settings: PortSettings, seconds: float, heard: dict[str, Heard], wrong: list[str]
+) -> None:
+    try:
+        port = SerialPort(name, settings)
+    except HardwareError as error:
+        wrong.append(str(error))
+        return
+    try:
+        heard[name] = listen(port, seconds, time.monotonic, time.sleep)
+    except HardwareError as error:
+        wrong.append(str(error))
+    finally:
+        port.close()
+
+
+def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:
+    from hardware.dictionary import Entry, load, variable
+
+    found = []
+    for part in tables.configuration().parts():
+        for plan in part.nodes():
+            at = variable(load(plan.eds, plan.node_id, plan.name), Entry(0x1000))
+            profile = int(at.default or 0) & 0xFFFF if at is not None else 0
+            found.append(_Expected(plan.name, plan.node_id, profile))
+    return tuple(found)
+
+
+def _missing(nodes: Sequence[FoundNode], expected: Sequence[_Expected]) -> list[str]:
+    """Return what does not fit between the bus and the rig's file."""
+    found = {one.node_id: one for one in nodes}
+    wrong = []
+    for one in expected:
+        node = found.pop(one.node_id, None)
+        if node is None:
+            wrong.append(
+                f"{one.name}: node {one.node_id} does not answer; check its power, its node id and "
+                "the bit rate"
+            )
+        elif one.profile and node.profile != one.profile:
+            wrong.append(
+                f"{one.name}: node {one.node_id} follows profile {node.profile} where its EDS says "
+                f"{one.profile}; check the node ids"
+            )
+    wrong += [f"node {node_id} answers and is not in the rig's file" for node_id in found]
+    return wrong
