@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from analysis.plausibility import CHECKED, Seen
+from analysis.plausibility import CHECKED, RunHarmonics
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.estimate import resolve
@@ -14,7 +14,7 @@ from hardware.description.errors import DataError
 _UNITS = (DISPLACEMENT_AFT.unit, FORCE_AFT.unit)
 
 
-def seen_in(recording: Recording, analysis: Analysis) -> Seen | None:
+def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | None:
     """Return the first harmonics over the first gate, also of the channel that tells the phase.
 
     Parameters
@@ -34,7 +34,7 @@ def seen_in(recording: Recording, analysis: Analysis) -> Seen | None:
     for name in CHECKED:
         if name in recording.channel_names and name not in reading.channel_names:
             first |= _beside(recording, analysis, name)
-    return Seen(recording.name, told, reading.frequency_hz, first)
+    return RunHarmonics(recording.name, told, reading.frequency_hz, first)
 
 
 def _beside(recording: Recording, analysis: Analysis, name: str) -> dict[str, complex]:

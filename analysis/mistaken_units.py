@@ -1,4 +1,4 @@
-"""Which unit was taken for another: by the factor that a recording is off."""
+"""Which unit was taken for another, by the ratio of a recording to its expectation."""
 
 import math
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""Whether the recordings of a campaign can be what they say: units and signs, without a simulator.
+"""Plausibility of a campaign's recordings: units and signs of its channels, without a simulator.
 
 What is known beforehand is little and sure: the set-points, that a model's force is of the order of
 its inertia's, that both struts move one rigid body, and that the struts put work into the water.
@@ -39,8 +39,8 @@ _UNIT: Final = "say its unit in [columns.channels], as in 'F1:kN'"
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What was found in one run.
+class RunHarmonics:
+    """First harmonics of one run, with its set-point.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Seen:
 
 
 def plausibility_flags(
-    runs: Sequence[Seen], body: Body | None = None, half_spacing_m: float | None = None
+    runs: Sequence[RunHarmonics], body: Body | None = None, half_spacing_m: float | None = None
 ) -> tuple[Flag, ...]:
     """Return ``units_implausible`` and ``sign_opposite`` for channels that stand out in all runs.
 
@@ -77,7 +77,7 @@ def plausibility_flags(
     return (*units, *_of_phase_unit(runs), *_of_strut_signs(runs), *_of_force_signs(runs))
 
 
-def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
+def _of_displacements(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     for name in DISPLACEMENTS:
         told = [(abs(run.first[name]), run.set_point.eccentricity_m) for run in _with(runs, name)]
         ratio = _usual([seen / wanted for seen, wanted in told if wanted > 0.0])
@@ -87,7 +87,7 @@ def _of_displacements(runs: Sequence[Seen]) -> Iterator[Flag]:
 
 
 def _of_forces(
-    runs: Sequence[Seen], body: Body | None, half_spacing_m: float | None
+    runs: Sequence[RunHarmonics], body: Body | None, half_spacing_m: float | None
 ) -> Iterator[Flag]:
     units: set[str] = set()
     for name in FORCES if body is not None else ():
@@ -124,7 +124,7 @@ def _meant(ratio: float) -> str:
     return "no unit that is known"
 
 
-def _of_phase_unit(runs: Sequence[Seen]) -> Iterator[Flag]:
+def _of_phase_unit(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     far = [run for run in runs if abs(run.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
     if far:
         told = far[0].set_point.strut_phase_rad
@@ -135,7 +135,7 @@ def _of_phase_unit(runs: Sequence[Seen]) -> Iterator[Flag]:
         yield Flag("units_implausible", Severity.WARNING, message)
 
 
-def _of_strut_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
+def _of_strut_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     """Aft and fore displacement against the strut phase that was set."""
     aft, fore = DISPLACEMENTS
     both = [run for run in runs if {aft, fore} <= set(run.first)]
@@ -147,7 +147,7 @@ def _of_strut_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
         yield _opposite(fore, f"it moves against {aft} turned by the set-points' strut phase")
 
 
-def _of_force_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
+def _of_force_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     """Each gauge's force per displacement of its strut, which one rigid body makes alike."""
     aft, fore = FORCES
     both = [run for run in runs if {aft, fore} <= set(run.first)]
@@ -166,14 +166,14 @@ def _of_force_signs(runs: Sequence[Seen]) -> Iterator[Flag]:
             yield _opposite(name, "the water would drive the model")
 
 
-def _alone(runs: Sequence[Seen], name: str) -> bool:
+def _alone(runs: Sequence[RunHarmonics], name: str) -> bool:
     """Whether the work of all gauges together is negative: a single one's may well be."""
     total = [sum(_stiffness(run, each).imag for each in FORCES if each in run.first)
              for run in _with(runs, name)]  # fmt: skip
     return _in_most([each < 0.0 for each in total])
 
 
-def _stiffness(run: Seen, force: str) -> complex:
+def _stiffness(run: RunHarmonics, force: str) -> complex:
     """Return force over displacement of its strut, as the set-point has it; N/m."""
     phase = run.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
     return run.first[force] / (run.set_point.eccentricity_m * _turned(phase))
@@ -187,7 +187,7 @@ def _angle(phasor: complex, other: complex) -> float:
     return float(np.angle(phasor * other.conjugate()))
 
 
-def _with(runs: Sequence[Seen], name: str) -> list[Seen]:
+def _with(runs: Sequence[RunHarmonics], name: str) -> list[RunHarmonics]:
     return [run for run in runs if name in run.first]
 
 

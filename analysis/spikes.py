@@ -65,25 +65,27 @@ class Pulses:
 
     Attributes
     ----------
-    found
+    candidates
         Short pulses in calm surroundings, in order of time; all bend more than the rest.
     rest
         The largest second difference of all else; infinite where there are more pulses than spikes
         could be.
     """
 
-    found: tuple[Spike, ...]
+    candidates: tuple[Spike, ...]
     rest: float
 
     def spikes(self) -> tuple[Spike, ...]:
         """Return the pulses that are spikes: those that stand out, and do not recur as motion."""
-        tall = [pulse for pulse in self.found if pulse.curvature > STANDS_OUT * self.rest]
+        tall = [pulse for pulse in self.candidates if pulse.curvature > STANDS_OUT * self.rest]
         return tuple(pulse for pulse in tall if not _recur(self._like(pulse)))
 
     def _like(self, spike: Spike) -> FloatArray:
         """Return the places of all pulses that bend an eighth as much or more."""
         like = [
-            pulse.start for pulse in self.found if pulse.curvature * STANDS_OUT >= spike.curvature
+            pulse.start
+            for pulse in self.candidates
+            if pulse.curvature * STANDS_OUT >= spike.curvature
         ]
         return np.array(like, dtype=np.float64)
 

@@ -1,4 +1,4 @@
-"""Numbers whose uncertainties have common causes: values, and what each input adds to them.
+"""Values with correlated uncertainties, kept as each input's contribution to every value.
 
 A budget of one number forgets what it shares with the next. Here every input (a run's scatter, the
 mass, the speed) keeps its own columns through all that follows, so that a difference of two
@@ -19,7 +19,7 @@ from hardware.description.errors import ConfigurationError
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """What one input adds to some of the values.
+    """Contribution of one input to some of the values.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Contribution:
 
 @dataclass(frozen=True, eq=False)
 class UncertainValues:
-    """Values with all that is uncertain in them.
+    """Values with the contributions of all uncertain inputs.
 
     Attributes
     ----------

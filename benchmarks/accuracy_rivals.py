@@ -11,7 +11,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from hardware.description.arrays import FloatArray
 
 _ORDERS = np.arange(1.0, 4.0)
@@ -34,7 +34,7 @@ class Gate:
 def rounded(gate: Gate) -> FloatArray:
     """Average the products from the sample nearest the opening to that before the closing."""
     inside = slice(round(gate.opening), round(gate.closing))
-    basis = template(gate.cycles[inside], _ORDERS)
+    basis = harmonic_basis(gate.cycles[inside], _ORDERS)
     return _doubled(basis @ gate.values[inside] / basis.shape[1])
 
 
@@ -52,7 +52,7 @@ def nearest_bin(gate: Gate) -> FloatArray:
 def least_squares(gate: Gate, *, trend: bool = False) -> FloatArray:
     """Fit the samples inside the gate, all alike; with a straight line in time if asked."""
     inside = slice(int(np.ceil(gate.opening)), int(np.ceil(gate.closing)))
-    basis = template(gate.cycles[inside], _ORDERS)
+    basis = harmonic_basis(gate.cycles[inside], _ORDERS)
     if trend:
         basis = np.vstack((basis, np.linspace(-1.0, 1.0, basis.shape[1])))
     return np.asarray(np.linalg.lstsq(basis.T, gate.values[inside], rcond=None)[0][:7])
@@ -69,7 +69,7 @@ def weighted(gate: Gate, nodes: int, *, solve: bool) -> FloatArray:
         Whether the joint normal equations are solved under these weights.
     """
     weights = edge_weights(gate.opening, gate.closing, nodes, len(gate.values))
-    basis = template(gate.cycles, _ORDERS)
+    basis = harmonic_basis(gate.cycles, _ORDERS)
     moment = basis @ (weights * gate.values)
     if solve:
         return np.asarray(np.linalg.solve((basis * weights) @ basis.T, moment), dtype=np.float64)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
@@ -146,7 +146,7 @@ def _holds(found: Harmonics) -> FloatArray:
 def _naive(batch: _Batch) -> FloatArray:
     """Do the same for least squares whose residual is taken as white."""
     cycles, values = batch.inside
-    basis = np.vstack((template(cycles, _ORDERS), np.linspace(-1.0, 1.0, len(cycles))))
+    basis = np.vstack((harmonic_basis(cycles, _ORDERS), np.linspace(-1.0, 1.0, len(cycles))))
     inverse = np.linalg.inv(basis @ basis.T)
     coefficients = values @ basis.T @ inverse
     residual = values - coefficients @ basis
@@ -186,7 +186,7 @@ def _bounds(batch: _Batch) -> tuple[FloatArray, FloatArray]:
     Time counts from mid-gate, where the mean is stated.
     """
     cycles = batch.inside[0]
-    basis = template(cycles, _ORDERS)
+    basis = harmonic_basis(cycles, _ORDERS)
     with_trend = np.vstack((basis, cycles - batch.edges_cycles.mean()))
     inverses = (np.linalg.inv(rows @ rows.T) for rows in (basis, with_trend))
     plain, trend = (np.diag(inverse)[:7] for inverse in inverses)

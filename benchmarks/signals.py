@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording, Samples
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 
@@ -33,7 +33,7 @@ class Truth:
     def values(self, times_s: FloatArray) -> FloatArray:
         """Return what the channels read, shape ``(channels, samples)``."""
         orders = np.arange(1.0, (self.coefficients.shape[1] - 1) // 2 + 1.0)
-        return np.asarray(self.coefficients @ template(self.cycles(times_s), orders))
+        return np.asarray(self.coefficients @ harmonic_basis(self.cycles(times_s), orders))
 
     def edges_s(self, end_s: float) -> FloatArray:
         """Return the times of the photocell's pulses from 0 to ``end_s``."""

@@ -15,7 +15,7 @@ from sim.stage import Block, Composite, Stage
 
 @dataclass(frozen=True)
 class ChainState:
-    """Everything a run remembers between two blocks: a value, so it can be kept and gone back to.
+    """State of a run between two blocks: an immutable value, so that a run can be taken back to it.
 
     Attributes
     ----------

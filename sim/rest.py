@@ -1,4 +1,4 @@
-"""A rig whose shaft stands: what its gauges read where nothing moves.
+"""A rig at rest: readings of its gauges with a standing shaft.
 
 A zero run is made so, and a diagnosis asks for it. It is an oscillation of no eccentricity whose
 shaft does not turn; the period is only what its length is counted in. What is done to a standing
@@ -28,8 +28,8 @@ _SLOW_HZ = 1e-3  # weights are put on and taken off so slowly that no filter sho
 
 
 @dataclass(frozen=True)
-class Applied:
-    """What is done to a standing rig, over a period of its own.
+class Excitation:
+    """An excitation of the rig at rest, over a period of its own.
 
     Attributes
     ----------
@@ -53,20 +53,20 @@ class Applied:
         return given
 
 
-def check_weight(weight_n: float, fore: bool = False) -> Applied:
+def check_weight(weight_n: float, fore: bool = False) -> Excitation:
     """Return a check weight that is put on one strut's dynamometer, and taken off again."""
     name = (signals.FORCE_FORE if fore else signals.FORCE_AFT).name
-    return Applied(((name, 0.5 * weight_n, -0.5 * weight_n),), _SLOW_HZ, in_place=False)
+    return Excitation(((name, 0.5 * weight_n, -0.5 * weight_n),), _SLOW_HZ, in_place=False)
 
 
-def injection(force_n: float, frequency_hz: float) -> Applied:
+def injection(force_n: float, frequency_hz: float) -> Excitation:
     """Return a sine that is fed into both force amplifiers in place of the bridges."""
     names = (signals.DYNAMOMETER_FORCE_AFT.name, signals.DYNAMOMETER_FORCE_FORE.name)
     forces = tuple((name, 0j, -1j * force_n) for name in names)
-    return Applied(forces, frequency_hz, in_place=True)
+    return Excitation(forces, frequency_hz, in_place=True)
 
 
-def standing(rig: SimulatedRig) -> SimulatedRig:
+def rig_at_rest(rig: SimulatedRig) -> SimulatedRig:
     """Return the rig with a drive that does not turn, at the struts' middle position.
 
     What the drive would do to a turning shaft, and how the linkage turns it into motion, does not
@@ -82,13 +82,13 @@ def standing(rig: SimulatedRig) -> SimulatedRig:
     )
 
 
-def standing_state(
+def state_at_rest(
     rig: SimulatedRig,
     set_point: SetPoint,
     stands_at_m: tuple[float, float] = (0.0, 0.0),
-    applied: Applied | None = None,
+    applied: Excitation | None = None,
 ) -> SteadyState:
-    """Return what every signal is where the struts stand: the means, all harmonics 0.
+    """Return all signals of the rig at rest: the means, all harmonics 0.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def standing_state(
     given = {signal.name: still for motion in signals.STRUT_MOTIONS for signal in motion}
     for (displacement, *_), at_m in zip(signals.STRUT_MOTIONS, stands_at_m, strict=True):
         given[displacement.name] = period.constant(at_m)
-    turning = replace(standing(rig), drive=DriveSettings())  # a period needs a turn
+    turning = replace(rig_at_rest(rig), drive=DriveSettings())  # a period needs a turn
     chain = turning.chain(turn)
     alone = steady_state(chain, period, given)
     return (

@@ -29,7 +29,7 @@ from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
 
 @dataclass(frozen=True)
 class SimulatedRig:
-    """Everything that the simulation believes of a rig, its model and the water.
+    """Parameters of a simulated rig, its model and the water.
 
     Attributes
     ----------

@@ -1,8 +1,9 @@
-"""Whether the recordings bear out how the rig is said to be arranged, and what rests on it.
+"""Whether the recordings support the stated arrangement of the rig, and what depends on it.
 
-A key is doubted where an alternative is :data:`~analysis.coefficients.form_choice.DECIDES` times as
-likely as what is stated. Where neither is, each value that the alternative moves by more than its
-half-width rests on what is stated, and nothing in the recordings bears it out.
+The recordings contradict a key where an alternative is
+:data:`~analysis.coefficients.form_choice.DECIDES` times as likely as what is stated. Where neither
+is, each value that the alternative moves by more than its half-width depends on the statement
+alone; the recordings do not test it.
 """
 
 import math
@@ -35,7 +36,7 @@ def other_arrangement(
     values: FloatArray,
     evidence: float,
 ) -> OtherArrangement:
-    """Return what one alternative says.
+    """Return how likely one alternative is, and which coefficients it changes.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def other_arrangement(
 
 
 def arrangement_flags(several: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
-    """Return a warning for each key that the recordings doubt, a note for each that is open."""
+    """Return a warning for each key that the recordings contradict, a note for each open one."""
     codes = {
         BETTER: ("arrangement_doubted", Severity.WARNING),
         OPEN: ("rests_on_arrangement", Severity.NOTE),

@@ -1,7 +1,8 @@
 """The averaged cycle of a run in body axes: all harmonics of motion and loads, mean included.
 
-Non-linear terms are had from several harmonics at once, and these scatter together: one covariance
-holds all of them. Phasors are named ``force 0``, ``force 1`` ...; order 0 is real.
+Non-linear terms are fitted to several harmonics at once. The scatter of these is correlated, so one
+covariance matrix holds all of them. Phasors are named ``force 0``, ``force 1`` ...; order 0 is
+real.
 """
 
 import math
@@ -113,12 +114,12 @@ class BodyCycle:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """What there are phasors of."""
+        """Names of the channels whose phasors the cycle has."""
         return CHANNELS if self.has_surge else CHANNELS[:-1]
 
     @property
     def motion_is_asked(self) -> bool:
-        """Whether the set-point's motion stands in for one that was not measured."""
+        """Whether the motion is the set-point's, because none was measured."""
         return any(flag.code == "motion_from_set_point" for flag in self.flags)
 
     @property
@@ -128,7 +129,7 @@ class BodyCycle:
 
     @property
     def at_struts(self) -> ComplexArray:
-        """The same with the rotation's as a displacement at the struts, m."""
+        """Translation, and rotation times half the strut spacing, at the fundamental, m."""
         return np.asarray(self.motion * np.array([1.0, self.half_spacing_m]))
 
     @property
@@ -138,7 +139,7 @@ class BodyCycle:
 
     @property
     def taken(self) -> FloatArray:
-        """Sizes of what inertia, weight and restoring ask of the struts at the fundamental.
+        """Magnitudes of the struts' loads from inertia, weight and restoring at the fundamental.
 
         Of each, force and moment about the midpoint; shape ``(3, 2)``.
         """

@@ -125,11 +125,11 @@ def _others(
     blocks: Sequence[GroupCoefficients],
     cycles: Sequence[BodyCycle],
 ) -> Iterator[OtherArrangement]:
-    """Yield what each other arrangement says, where all groups know what was read.
+    """Yield the result under each alternative arrangement, where all groups kept their readings.
 
     Parameters
     ----------
-    found, whole
+    coefficients, whole
         Without and with the values at zero frequency.
     """
     if not all(block.others for block in blocks):
@@ -149,7 +149,7 @@ def _others(
 def _still_missing(
     blocks: Sequence[GroupCoefficients], entries: Sequence[CoefficientEntry]
 ) -> tuple[Missing, ...]:
-    """What no group gave; what another group did give is not missing."""
+    """Return the coefficients that no group determined."""
     names = {entry.name for entry in entries}
     every = dict.fromkeys(missing for block in blocks for missing in block.missing)
     return tuple(missing for missing in every if missing.name not in names)

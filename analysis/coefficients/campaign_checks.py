@@ -1,4 +1,4 @@
-"""Consistency between runs: one quantity from two ways, with what both share cancelled."""
+"""Consistency between runs: one quantity determined in two ways, common uncertainty cancelled."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -42,7 +42,7 @@ def consistency(
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """One quantity from two ways, to be held against each other: texts, and both values."""
+    """One quantity determined in two ways, to be compared: texts, and both values."""
 
     kind: str
     name: str
@@ -52,7 +52,7 @@ class Pair:
 
 
 def checked(pairs: Sequence[Pair], level: float) -> tuple[ConsistencyCheck, ...]:
-    """Hold the first of each pair against the second.
+    """Compare the first value of each pair with the second.
 
     The intervals are so wide that with the probability ``level`` no check of a good campaign fails:
     of sixty at 95 % each, three would.
@@ -112,7 +112,7 @@ def _compared(coefficients: CampaignCoefficients, kind: str, first: int, second:
 
 
 def _check(pair: Pair, level: float) -> ConsistencyCheck:
-    """Hold the first of two values against the second."""
+    """Compare the first of two values with the second."""
     name, unit, texts, both = pair.name, pair.unit, pair.texts, pair.both
     difference = both.mapped(np.array([[1.0, -1.0]]))
     apart, spread = float(difference.values[0]), float(difference.standard_uncertainty[0])

@@ -18,7 +18,7 @@ from analysis.coefficients.cycle_fit import (
     fit_cycles,
 )
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
-from analysis.coefficients.identifiability import moved_of
+from analysis.coefficients.identifiability import fundamental_velocities
 from analysis.coefficients.names import Form
 from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
 from hardware.description.arrays import FloatArray
@@ -36,14 +36,15 @@ _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its t
 
 @dataclass(eq=False)
 class GroupFits:
-    """What a group's runs gave, as far as it is found.
+    """Fits of the runs of one group, collected as they are made.
 
     Attributes
     ----------
     fits
         With the method of each.
     richest
-        Of each load the fit of all runs that leaves the least over, to judge arrangements by.
+        For each load the fit of all runs with the smallest residuals; arrangements are judged by
+        it.
     """
 
     fits: list[tuple[str, CycleFit]] = field(default_factory=list)
@@ -154,7 +155,7 @@ def _try(
     orders: tuple[int, ...],
     request: Request,
 ) -> None:
-    """Fit, or say what cannot be had."""
+    """Fit, or record which coefficients cannot be determined."""
     try:
         fits.append((method, fit_cycles(cycles, names, orders, stated=request.stated)))
     except DataError as error:
@@ -164,7 +165,9 @@ def _try(
 def _motions(cycles: Sequence[BodyCycle]) -> tuple[str, bool]:
     """Return in what the runs move through the water, and whether any moves in both at once."""
     speeds = []
-    for cycle, moved in zip(cycles, np.abs(moved_of(cycles, Form.MANOEUVRING)), strict=True):
+    for cycle, moved in zip(
+        cycles, np.abs(fundamental_velocities(cycles, Form.MANOEUVRING)), strict=True
+    ):
         steady = abs(cycle.speed_m_s * math.sin(cycle.drift_rad))
         speeds.append((moved[0] + steady, moved[1]))
     size = np.array(speeds)

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.identifiability import moved_of, told_apart
+from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
@@ -22,12 +22,12 @@ OWN_MODEL: Final = "own_model"  # flag of a run that was made with another model
 
 @dataclass(frozen=True)
 class Request:
-    """What is wanted of a campaign.
+    """Which coefficients of a campaign are asked for, and how they are to be determined.
 
     Attributes
     ----------
     wanted
-        Coefficients that have to be there.
+        Coefficients that have to be determined; an error names the first that is not.
     level
         Of all intervals.
     trials, seed
@@ -165,7 +165,7 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
 
 def _told(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:
     """Which motions' coefficients these runs determine."""
-    return told_apart(moved_of(cycles, form))
+    return identifiable_motions(fundamental_velocities(cycles, form))
 
 
 def strut_amplitude(cycle: BodyCycle) -> float:

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class CoefficientEntry:
-    """What one value of a campaign's table is, and what it holds for.
+    """One value of a campaign's table: its name, method, and range of validity.
 
     Attributes
     ----------
     name
         Of the coefficient: ``a33``, ``Z_wdot``, ``Y_vvv``, ``X_rr`` ...
     method
-        How it was had: :data:`LINEAR`, :data:`ZERO_FREQUENCY`, or what
+        How it was determined: :data:`LINEAR`, :data:`ZERO_FREQUENCY`, or what
         :mod:`analysis.coefficients.cycle_fit` calls its own.
     frequency_hz
         0 for static runs and for what was extrapolated to zero frequency; NaN where several
@@ -20,8 +20,8 @@ class CoefficientEntry:
     translation_amplitude_m, rotation_amplitude_rad
         Largest of the runs (amplitudes, not strokes).
     retained
-        Part of the load that the coefficient stands for over the largest part that it is left from;
-        below 0.1 digits are lost. NaN where nothing is taken off.
+        Hydrodynamic part of the load over the largest part that was subtracted; below 0.1
+        significant digits are lost. NaN where nothing was subtracted.
     misfit
         Residual over what scatter leads to expect; NaN without any left over.
     """
@@ -45,7 +45,7 @@ ZERO_FREQUENCY = "zero frequency"
 
 @dataclass(frozen=True)
 class ConsistencyCheck:
-    """One quantity from two ways.
+    """Comparison of one quantity determined in two ways.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class ConsistencyCheck:
     first, second
         Where the two values come from.
     difference, standard_uncertainty, degrees_of_freedom
-        First less second, with what both share left out of its uncertainty.
+        First less second; uncertainty that both share cancels.
     agrees
         Whether the difference lies within an interval so wide that all checks of a good campaign
         agree together with the campaign's level.
@@ -76,7 +76,7 @@ class ConsistencyCheck:
 
 @dataclass(frozen=True)
 class Outlier:
-    """A repeat that stands off from its kind.
+    """A repeat that differs from the other runs of the same motion.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class FormChoice:
 
 @dataclass(frozen=True)
 class OtherArrangement:
-    """What another arrangement of the rig would have made of the recordings.
+    """How the coefficients change if the rig was arranged otherwise than stated.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class OtherArrangement:
 
 @dataclass(frozen=True)
 class Missing:
-    """What was asked for, or would be expected, and cannot be had from these runs."""
+    """A coefficient that was asked for or expected, and that these runs do not determine."""
 
     name: str
     message: str

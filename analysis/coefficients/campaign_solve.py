@@ -18,7 +18,7 @@ from analysis.coefficients.campaign_result import TrialColumns, no_trials
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear_fit import lacking_places, linear_fit
-from analysis.coefficients.rearrangement import Otherwise, otherwise
+from analysis.coefficients.rearrangement import Refits, refits
 from analysis.uncertainty import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
@@ -40,7 +40,7 @@ class GroupCoefficients:
     choices: tuple[FormChoice, ...] = ()
     missing: tuple[Missing, ...] = ()
     flags: tuple[Flag, ...] = ()
-    others: tuple[Otherwise, ...] = ()
+    others: tuple[Refits, ...] = ()
 
 
 def solve_group(group: Group, request: Request) -> GroupCoefficients:
@@ -57,7 +57,7 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     try:
         linear = linear_fit(cycles, request.form, request.stated)
     except DataError:
-        others = otherwise(cycles, [], [])
+        others = refits(cycles, [], [])
         return GroupCoefficients(
             (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others
         )
@@ -72,7 +72,7 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
         for k, place in enumerate(linear.places)
     )
     trials = _fits_trials([(LINEAR, fit)], request)
-    others = otherwise(cycles, [fit], [])
+    others = refits(cycles, [fit], [])
     return GroupCoefficients(
         entries, fit.uncertain, trials, missing=missing, flags=linear.flags, others=others
     )
@@ -88,7 +88,7 @@ def _fits_block(
     uncertain = stacked([fit.uncertain for _, fit in fits])
     flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
     trials = _fits_trials(fits, request)
-    others = otherwise(cycles, [fit for _, fit in fits], group.richest)
+    others = refits(cycles, [fit for _, fit in fits], group.richest)
     return GroupCoefficients(
         entries, uncertain, trials, tuple(group.choices), tuple(group.missing), flags, others
     )

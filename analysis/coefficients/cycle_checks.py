@@ -1,4 +1,4 @@
-"""Whether cycles belong together, and whether their terms can be told apart; what is missing."""
+"""Whether cycles can be fitted together, and whether they determine all terms."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -54,7 +54,7 @@ def _unfit(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
 
 
 def check_determined(problem: CycleProblem) -> None:
-    """Refuse terms that the cycles cannot tell apart.
+    """Refuse terms that the cycles do not determine separately.
 
     Raises
     ------

@@ -190,7 +190,7 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
 
 
 def times(ratio: float) -> str:
-    """Words for an evidence ratio; what is beyond any doubt is not counted out."""
+    """Return an evidence ratio in words; very large ones are given as a bound."""
     return f"{ratio:.3g} times" if ratio < BEYOND_DOUBT else f"over {BEYOND_DOUBT:g} times"
 
 

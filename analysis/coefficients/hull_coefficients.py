@@ -10,7 +10,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 
 
-def named(
+def coefficients_by_name(
     added_mass: FloatArray, damping: FloatArray, plane: Plane, form: Form
 ) -> dict[str, FloatArray]:
     """Return the elements of both matrices, ``(..., 2, 2)``, by their names in a form.
@@ -34,7 +34,7 @@ def as_reported(
     speed_m_s: float = 0.0,
     frequency_hz: float = math.inf,
 ) -> dict[str, FloatArray]:
-    """Return what a campaign at one speed and frequency reports, in SI units, by name.
+    """Return the coefficients that a campaign at one speed and frequency reports, in SI units.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ def as_reported(
         turn = speed_m_s * incidence(plane)
         omega = 2.0 * math.pi * frequency_hz
         added, damped = added - damped @ turn / omega**2, damped + added @ turn
-    return named(added, damped, plane, form)
+    return coefficients_by_name(added, damped, plane, form)
 
 
 def point_matrix(ahead_m: float, plane: Plane) -> FloatArray:
-    """Return what turns the midpoint's motion into that of a point ahead of it.
+    """Return the matrix that turns the midpoint's motion into that of a point ahead of it.
 
     Its inverse, transposed, does the same to loads, because the power stays.
     """

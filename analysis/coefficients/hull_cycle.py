@@ -1,4 +1,4 @@
-"""What the water does to the hull over a cycle: gross loads less those of inertia and weight.
+"""Hydrodynamic loads on the hull over a cycle: gross loads less those of inertia and weight.
 
 Inertia is taken off exactly, in body axes. A model in water is borne by it: of weight and buoyancy
 ``m g z_G sin(pitch)`` is left besides the restoring that is stated, less what a zero run took off

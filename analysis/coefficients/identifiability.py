@@ -1,4 +1,4 @@
-"""Which linear coefficients runs can tell; what is missing, by name."""
+"""Which linear coefficients the runs determine, and which runs the others need."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ ALONE = 1e-2  # of the other motion: less may be left out
 _APART = 2e-2  # ratio of singular values above which two motions can be told apart
 
 
-def moved_of(cycles: Sequence[BodyCycle], form: Form) -> ComplexArray:
+def fundamental_velocities(cycles: Sequence[BodyCycle], form: Form) -> ComplexArray:
     """Return the fundamental's velocities of a form, the rotation's at the struts; (cycles, 2)."""
     moved = []
     for cycle in cycles:
@@ -28,13 +28,13 @@ def moved_of(cycles: Sequence[BodyCycle], form: Form) -> ComplexArray:
     return np.array(moved)
 
 
-def told_apart(moved: ComplexArray) -> tuple[int, ...]:
-    """Return which motions' coefficients can be told; none where both always go together.
+def identifiable_motions(moved: ComplexArray) -> tuple[int, ...]:
+    """Return the motions whose coefficients are determined; none if both always vary together.
 
     Parameters
     ----------
     moved
-        Of :func:`moved_of`.
+        Of :func:`fundamental_velocities`.
     """
     if len(moved) > 1:
         singular = np.linalg.svd(moved / np.abs(moved).max(), compute_uv=False)
@@ -62,7 +62,7 @@ def _phase_for(column: int, run: BodyCycle, form: Form) -> float:
     return 2.0 * math.atan2(2.0 * math.pi * run.frequency_hz * run.half_spacing_m, speed)
 
 
-def lacking(
+def missing_run(
     name: str, place: Place, runs: Sequence[BodyCycle], form: Form, moved: ComplexArray
 ) -> str:
     """Return why a coefficient is not determined, and which run would do it."""
@@ -78,7 +78,7 @@ def lacking(
     )
 
 
-def mixed(runs: Sequence[BodyCycle], form: Form, moved: ComplexArray) -> str:
+def mixture_run(runs: Sequence[BodyCycle], form: Form, moved: ComplexArray) -> str:
     """Return why nothing is determined, and which run would do it."""
     words = motion_words(runs[0].plane, form)
     share = np.abs(moved).max(axis=0)

@@ -29,7 +29,7 @@ _LEAST_FORCE = 0.05  # of the larger strut's: below, the other strut's errors de
 
 
 @dataclass(frozen=True, eq=False)
-class InPlace:
+class InPlaceResponse:
     """Response of both dynamometers, aft and fore.
 
     Attributes
@@ -57,7 +57,7 @@ class InPlace:
         }
 
 
-def in_place(struts: StrutCycle, body: Body) -> InPlace:
+def in_place_response(struts: StrutCycle, body: Body) -> InPlaceResponse:
     """Return gain and lag of both dynamometers at the fundamental.
 
     Parameters
@@ -94,7 +94,7 @@ def in_place(struts: StrutCycle, body: Body) -> InPlace:
     relative = np.sqrt(np.diagonal(ordered.mapped(slope, FORCES, ("1", "1")).covariance))
     ratio = read / forces
     spread = np.stack((np.abs(ratio) * relative[0::2], relative[1::2] / omega), axis=-1)
-    return InPlace(np.abs(ratio), -np.angle(ratio) / omega, spread, struts.frequency_hz)
+    return InPlaceResponse(np.abs(ratio), -np.angle(ratio) / omega, spread, struts.frequency_hz)
 
 
 def _forces(struts: StrutCycle, body: Body, omega: float) -> ComplexArray:

@@ -1,4 +1,4 @@
-"""Least squares of many trials at once, for columns that are known to be told apart."""
+"""Least squares of many trials at once, for columns known to be linearly independent."""
 
 import numpy as np
 

@@ -14,11 +14,11 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_terms
 from analysis.coefficients.identifiability import (
     ALONE,
-    lacking,
-    mixed,
+    fundamental_velocities,
+    identifiable_motions,
+    missing_run,
+    mixture_run,
     motion_words,
-    moved_of,
-    told_apart,
 )
 from analysis.coefficients.names import PLACES, Form, Place, name_of
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -61,10 +61,10 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
     DataError
         If they determine none: the message says which run would.
     """
-    moved = moved_of(cycles, form)
-    columns = told_apart(moved)
+    moved = fundamental_velocities(cycles, form)
+    columns = identifiable_motions(moved)
     if not columns:
-        raise DataError(mixed(cycles, form, moved))
+        raise DataError(mixture_run(cycles, form, moved))
     places = tuple(place for place in PLACES if place.column in columns)
     terms = tuple(Term(place.row, (_FACTORS[place.column][place.inertial],)) for place in places)
     names = tuple(name_of(place, cycles[0].plane, form) for place in places)
@@ -81,11 +81,16 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
 
 def lacking_places(cycles: Sequence[BodyCycle], form: Form) -> list[tuple[str, str]]:
     """Return the names of what runs do not tell, and which run would."""
-    moved = moved_of(cycles, form)
-    columns = told_apart(moved)
+    moved = fundamental_velocities(cycles, form)
+    columns = identifiable_motions(moved)
     names = [(name_of(place, cycles[0].plane, form), place) for place in PLACES]
     return [
-        (name, lacking(name, place, cycles, form, moved) if columns else mixed(cycles, form, moved))
+        (
+            name,
+            missing_run(name, place, cycles, form, moved)
+            if columns
+            else mixture_run(cycles, form, moved),
+        )
         for name, place in names
         if place.column not in columns
     ]

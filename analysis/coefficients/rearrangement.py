@@ -1,4 +1,4 @@
-"""What coefficients would be had the rig been arranged otherwise, and whether recordings tell.
+"""The coefficients if the rig were arranged otherwise than stated, and the evidence for it.
 
 The fit is a function of the arrangement: joint, pivot, gauges and the way a drift is set. Each fit
 of a campaign is made once more under each alternative of one key, with the same weights.
@@ -24,8 +24,8 @@ _OF_STRUTS: Final = ("joint", "pivot")  # what a turntable has not
 
 
 @dataclass(frozen=True, eq=False)
-class Otherwise:
-    """Fits under one alternative.
+class Refits:
+    """Fits under one alternative arrangement.
 
     Attributes
     ----------
@@ -58,9 +58,9 @@ def alternatives(given: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
     return tuple(arrangements)
 
 
-def otherwise(
+def refits(
     cycles: Sequence[BodyCycle], fits: Sequence[CycleFit], judged: Sequence[CycleFit]
-) -> tuple[Otherwise, ...]:
+) -> tuple[Refits, ...]:
     """Return fits under each alternative; none where a run's readings are not known.
 
     Parameters
@@ -80,7 +80,7 @@ def otherwise(
     values = np.concatenate(refitted, axis=1) if fits else np.zeros((len(ways), 0))
     evidence = sum((_evidence(fit, table) for fit in judged), np.zeros(len(ways)))
     return tuple(
-        Otherwise(key, str(getattr(way, key)), values[k], float(evidence[k]))
+        Refits(key, str(getattr(way, key)), values[k], float(evidence[k]))
         for k, (key, way) in enumerate(ways)
     )
 

@@ -1,4 +1,4 @@
-"""One value a coefficient: which row of a campaign's table is to be used first.
+"""The recommended value of each coefficient: which row of a campaign's table to use.
 
 A manoeuvring derivative is that of slow motion: the value at zero frequency, where several
 frequencies tell it, else the fit of all amplitudes, else a static test, else the linear value. A

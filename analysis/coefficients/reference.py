@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY, ReferenceRow
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.hull_coefficients import named
+from analysis.coefficients.hull_coefficients import coefficients_by_name
 from analysis.coefficients.names import Form
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
@@ -86,7 +86,7 @@ def table_of_matrices(
 
     As panel methods give them; in the manoeuvring form with the opposite sign.
     """
-    values = named(added_mass, damping, plane, form)
+    values = coefficients_by_name(added_mass, damping, plane, form)
     return ReferenceTable(
         name, speed_m_s, "dimensional", np.asarray(frequency_hz), values, allowance_relative
     )

@@ -1,4 +1,4 @@
-"""Runs of one kind beside each other: what repeating adds to the scatter, and who stands off.
+"""Repeated runs: what repeating adds to the scatter, and which runs are outliers.
 
 Runs with the same motion are brought to one motion (loads over motion, both are measured) and their
 loads compared. What they differ by beyond their own scatter is a source of its own, relative to the
@@ -47,7 +47,7 @@ class RepeatedMotion:
 
 @dataclass(frozen=True, eq=False)
 class Repeatability:
-    """What repeating adds.
+    """Scatter between repeated runs, beyond the scatter within them.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Repeatability:
 
 
 def repeatability(cycles: Sequence[BodyCycle]) -> Repeatability:
-    """Return what repeating adds to the scatter of force and moment."""
+    """Return the scatter of force and moment between repeated runs, beyond that within them."""
     kinds = tuple(_kind(group) for group in _groups(cycles) if len(group) > 1)
     freedom = sum(len(kind.runs) - 1 for kind in kinds)
     if not freedom:
@@ -79,7 +79,7 @@ def repeatability(cycles: Sequence[BodyCycle]) -> Repeatability:
 
 
 def with_repeats(cycle: BodyCycle, repeating: Repeatability) -> BodyCycle:
-    """Return the cycle with what repeating adds as a source of its own."""
+    """Return the cycle with the scatter between repeats as one more source of uncertainty."""
     if not (repeating.relative > 0.0).any():
         return cycle
     places = [cycle.phasors.index(at_order(name, 1)) for name in LOADS]
@@ -91,7 +91,7 @@ def with_repeats(cycle: BodyCycle, repeating: Repeatability) -> BodyCycle:
 
 
 def outliers(repeating: Repeatability) -> tuple[Outlier, ...]:
-    """Return the runs that stand off from three or more of their kind.
+    """Return the runs that differ from three or more others of the same motion.
 
     Each is held against the others' mean; the scale is the larger of the runs' own scatter and of
     the scatter between all other repeats. The limit is Student's, so wide that a good campaign

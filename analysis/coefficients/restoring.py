@@ -1,4 +1,4 @@
-"""Quasi-static restoring: force and moment for a displacement, of a turn slower than all waves."""
+"""Quasi-static restoring: force and moment over a displacement, from a very slow oscillation."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Standard uncertainties that the experimenter states: of what all runs of a campaign share."""
+"""Standard uncertainties that the experimenter states, common to all runs of a campaign."""
 
 from dataclasses import dataclass, fields
 

@@ -1,4 +1,4 @@
-"""From readings of the resolver to phasors of the struts, with what all channels share of scatter.
+"""From the resolver's harmonics to phasors of the struts, with the covariance between channels.
 
 Both struts feel the same carriage and the same waves, so their scatter is not independent.
 """

@@ -51,7 +51,7 @@ class Tow:
 
 
 def tow_of(kind: str, cycle: BodyCycle) -> Tow:
-    """Return the loads of a tow whose zeros are taken off."""
+    """Return the loads of a tow, zero readings subtracted."""
     rows = ["force", "moment", *([SURGE_FORCE] if cycle.has_surge else [])]
     means = cycle.phasors.select([at_order(name, 0) for name in rows])
     value = {name: float(value.real) for name, value in zip(rows, means.values, strict=True)}

@@ -1,8 +1,9 @@
-"""Coefficients at zero frequency, from those at several: with an interval for the way there.
+"""Coefficients extrapolated to zero frequency, with the uncertainty of the extrapolation.
 
-Added mass and damping of a water that forgets are even functions of the frequency, so polynomials
-in its square are fitted: constant, linear, quadratic. Their values at zero are averaged by the
-weights that Akaike's criterion gives them, and what they differ by is part of the uncertainty.
+Added mass and damping of a fluid with decaying memory are even functions of the frequency, so
+polynomials in its square are fitted: constant, linear, quadratic. Their values at zero are averaged
+by the weights that Akaike's criterion gives them, and what they differ by is part of the
+uncertainty.
 """
 
 from collections.abc import Sequence

@@ -37,7 +37,7 @@ AHEAD_CHANNEL: Final = CHANNELS[2]
 
 @dataclass(frozen=True)
 class SimmanDescription:
-    """What stands beside the numbers; ``None`` where it is not known.
+    """Description that goes with the deliverables; ``None`` where a value is not known.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class SimmanDescription:
 
 @dataclass(frozen=True, eq=False)
 class Deliverables:
-    """One run as SIMMAN asks for it.
+    """Deliverables of one run in SIMMAN's form.
 
     Attributes
     ----------

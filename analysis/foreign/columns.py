@@ -11,7 +11,7 @@ LONGEST_ANSWER: Final = 1 << 22  # bytes: names, units and lengths of 4096 colum
 
 @dataclass(frozen=True, eq=False)
 class ForeignColumns:
-    """What was found in a file.
+    """Columns of numbers that were read from a file.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The parent's side: a child process that reads one file after the other, until one ends it."""
+"""The parent process: it hands files to a child process that reads them one after another."""
 
 import atexit
 import json

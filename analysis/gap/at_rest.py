@@ -15,7 +15,7 @@ from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.rest import standing, standing_state
+from sim.rest import rig_at_rest, state_at_rest
 from sim.rig import SimulatedRig
 from sim.run import simulate
 
@@ -73,7 +73,7 @@ def observe_at_rest(recording: Recording) -> Observation:
 
 def steady_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun) -> FloatArray:
     """Return the components of a standing rig in the order of a run's: means, and what is done."""
-    state = standing_state(rig, set_point, run.stands_at_m or (0.0, 0.0), run.applied)
+    state = state_at_rest(rig, set_point, run.stands_at_m or (0.0, 0.0), run.applied)
     return run.observed.layout.read(state.spectra)
 
 
@@ -82,7 +82,7 @@ def record_at_rest(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: in
     from analysis.readers.dataset import from_dataset
 
     dataset = simulate(
-        standing(rig),
+        rig_at_rest(rig),
         set_point,
         periods=run.periods - 1,  # a simulated record is one longer
         settling_periods=0,

@@ -14,7 +14,7 @@ from analysis.gap.spectrum import Lines
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
-from sim.rest import Applied
+from sim.rest import Excitation
 
 
 class Part(StrEnum):
@@ -187,7 +187,7 @@ class GapRun:
     sample_rate_hz: float
     lead_s: float = 0.0
     stands_at_m: tuple[float, float] | None = None
-    applied: Applied | None = None
+    applied: Excitation | None = None
     preload_n: float = 0.0
 
     @property

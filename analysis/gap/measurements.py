@@ -19,7 +19,7 @@ from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import FurtherMeasurement
-from sim.rest import Applied, check_weight, injection
+from sim.rest import Excitation, check_weight, injection
 
 BESIDES: Final = (
     (FurtherMeasurement.REST, ""),
@@ -97,13 +97,13 @@ def _parts(kind: FurtherMeasurement, recorded: set[str]) -> Iterator[Component]:
                 yield Component(name, Part.QUADRATURE, order)
 
 
-def _applied(kind: FurtherMeasurement, force_n: float, strut: str) -> Applied | None:
+def _applied(kind: FurtherMeasurement, force_n: float, strut: str) -> Excitation | None:
     if kind is FurtherMeasurement.CHECK_WEIGHT:
         return check_weight(force_n, fore=strut == "fore")
     return injection(force_n, INJECTED_HZ) if kind is FurtherMeasurement.INJECTION else None
 
 
-def _size_n(applied: Applied | None, one: Component) -> float:
+def _size_n(applied: Excitation | None, one: Component) -> float:
     """Return the size of what is done to a gauge: its mean, and its first harmonic."""
     if applied is None:
         return 0.0

@@ -39,7 +39,7 @@ class Weight:
 
 @dataclass(frozen=True)
 class BallastTarget:
-    """What is wanted; ``None`` where anything will do.
+    """Wanted mass properties; ``None`` where any value will do.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class BallastTarget:
 
 @dataclass(frozen=True)
 class Ballasting:
-    """Where the weights go and what that gives.
+    """Places of the weights, and the mass properties that follow.
 
     Attributes
     ----------

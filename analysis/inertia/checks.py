@@ -1,4 +1,4 @@
-"""What can be wrong with a record of a free oscillation before anything is fitted."""
+"""Checks of a record of a free oscillation before anything is fitted to it."""
 
 import math
 

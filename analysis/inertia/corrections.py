@@ -1,4 +1,4 @@
-"""What turns an observed period or inertia into the body's own."""
+"""Corrections of an observed period or inertia for air, lines and the test's frame."""
 
 import math
 

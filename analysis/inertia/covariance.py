@@ -1,4 +1,4 @@
-"""How well a fit of damped oscillations knows its parameters, and what they have in common."""
+"""Covariance of the parameters of fitted damped oscillations."""
 
 import numpy as np
 

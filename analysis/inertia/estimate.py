@@ -1,4 +1,4 @@
-"""A value with its standard uncertainty, the currency of this package."""
+"""A value with its standard uncertainty, as all results of this package are given."""
 
 import math
 from dataclasses import dataclass

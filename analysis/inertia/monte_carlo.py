@@ -24,7 +24,7 @@ _MOST_LOST = 0.01
 
 @dataclass(frozen=True)
 class MonteCarlo:
-    """What the trials gave.
+    """Statistics of the trials.
 
     Attributes
     ----------

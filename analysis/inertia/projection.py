@@ -21,7 +21,7 @@ CONVERGED = 1e-13  # relative change of the sum of squares, with a step below 1e
 
 @dataclass(frozen=True)
 class ProjectionProblem:
-    """What is fitted to what.
+    """A record, and the columns that are fitted to it.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class ProjectionProblem:
 
 @dataclass(frozen=True)
 class Solution:
-    """Where the iteration ended.
+    """Result of the iteration.
 
     Attributes
     ----------

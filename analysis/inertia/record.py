@@ -1,4 +1,4 @@
-"""From one record to its periods, and from several to one period with its scatter: the short way.
+"""From one record to its periods, and from several records to one period with its scatter.
 
 series -> usable part -> checks -> fit -> parts of the record -> period at no amplitude
 """

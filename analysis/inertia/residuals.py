@@ -1,4 +1,4 @@
-"""What a fit leaves over: its colour, which widens the covariance, and its shape, which accuses.
+"""Residuals of a fit: their spectrum widens the covariance, their structure shows a wrong model.
 
 A damped sinusoid's parameters feel the noise near its own frequency only, an offset that near zero.
 So each column of the covariance is widened by the residual's spectral density near its frequency
@@ -19,7 +19,7 @@ STRUCTURED = 20.0  # times the density further away
 
 @dataclass(frozen=True)
 class ResidualDiagnostics:
-    """How the residual looks.
+    """Spectrum and structure of a fit's residual.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class ResidualDiagnostics:
 def diagnose(
     residual: FloatArray, time_s: FloatArray, frequency_hz: FloatArray
 ) -> ResidualDiagnostics:
-    """Look at a residual.
+    """Return the diagnostics of a residual.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a test ends in: mass, centre of gravity, inertia and gyradii with their uncertainties."""
+"""The result of a test: mass, centre of gravity, inertia and gyradii with their uncertainties."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""One signal of a free oscillation, and which part of it is usable."""
+"""One signal of a free oscillation, its usable part, and whether it is sampled fast enough."""
 
 from dataclasses import dataclass, replace
 

@@ -1,8 +1,8 @@
-"""One body on several suspensions: whether the gyradii agree, and what would make them.
+"""One body on several suspensions: whether the gyradii agree, and why they may not.
 
 Each possible cause is one number that all geometries share. It is fitted with the gyradius to the
 periods' gyradii; the cause that leaves least over is the likeliest. With few geometries that proves
-little: a cause is named only if, fitted to all but one of them, it foretells the one left out.
+little: a cause is named only if, fitted to all but one of them, it predicts the one left out.
 """
 
 import math
@@ -18,20 +18,20 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 DISAGREE = 0.01
-SURE = 0.8  # share of what it has not seen that a cause has to foretell to be named
+SURE = 0.8  # share of what it has not seen that a cause has to predict to be named
 
 
-def said_of(cause: str, foretells: float) -> str:
-    """Return what may be said of the likeliest cause.
+def cause_statement(cause: str, predicts: float) -> str:
+    """Return the sentence about the likeliest cause.
 
     Parameters
     ----------
-    foretells
+    predicts
         Share of the gap on what was left out of the fit that goes away with it.
     """
-    share = f"{100.0 * max(foretells, 0.0):.0f} % of what it was not fitted to"
-    if foretells >= SURE:
-        return f"the cause: {cause}, which foretells {share}"
+    share = f"{100.0 * max(predicts, 0.0):.0f} % of what it was not fitted to"
+    if predicts >= SURE:
+        return f"the cause: {cause}, which predicts {share}"
     return f"the cause cannot be told; likeliest cause: {cause}, which accounts for {share}"
 
 
@@ -56,8 +56,8 @@ class SpreadCause:
     gyradius_m
         The body's, if that is the cause.
     chi_squared, degrees_of_freedom
-        What it leaves over.
-    foretells
+        Of the residuals with this cause.
+    predicts
         Share of the departure of a geometry, from what the others let expect, that goes away when
         the cause is fitted to those others; root mean square over the geometries in turn.
     """
@@ -68,11 +68,11 @@ class SpreadCause:
     gyradius_m: float
     chi_squared: float
     degrees_of_freedom: int
-    foretells: float = 0.0
+    predicts: float = 0.0
 
     @property
     def explains(self) -> bool:
-        """Whether what it leaves over can be chance (1 %)."""
+        """Whether its residuals are within chance (1 %)."""
         from scipy.stats import chi2
 
         return float(chi2.sf(self.chi_squared, self.degrees_of_freedom)) >= DISAGREE
@@ -84,7 +84,7 @@ class SpreadCause:
 
 @dataclass(frozen=True)
 class Spread:
-    """What several suspensions say of one body.
+    """Comparison of one body's gyradii from several suspensions.
 
     Attributes
     ----------
@@ -161,13 +161,13 @@ def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]
             units = tuple(shapes[n][0] for n in names)
             sizes = tuple(solved[1:].tolist())
             own = k * math.exp(float(solved[0]))
-            share = _foretells(matrix, target, weight)
+            share = _predicts(matrix, target, weight)
             causes.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))
     # a second cause has to pay for itself (Akaike)
     return tuple(sorted(causes, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
 
 
-def _foretells(matrix: FloatArray, target: FloatArray, weight: FloatArray) -> float:
+def _predicts(matrix: FloatArray, target: FloatArray, weight: FloatArray) -> float:
     """Return by how much less the left-out geometries depart with a cause than without."""
     with_it = _left_out(matrix * weight[:, None], target)
     without = _left_out(matrix[:, :1] * weight[:, None], target)
@@ -191,8 +191,8 @@ def _flag(
     if causes:
         best = causes[0]
         why = (
-            f"; {said_of(str(best), best.foretells)} (chi-squared {best.chi_squared:.3g} over "
-            f"{best.degrees_of_freedom}, gyradius then {best.gyradius_m:.4f} m)"
+            f"; {cause_statement(str(best), best.predicts)} (chi-squared {best.chi_squared:.3g} "
+            f"over {best.degrees_of_freedom}, gyradius then {best.gyradius_m:.4f} m)"
         )
     message = (
         f"the gyradii range from {values.min():.4f} to {values.max():.4f} m, beyond their "

@@ -13,7 +13,7 @@ REACTION_S = 0.1  # standard deviation of a person's start and stop together
 
 @dataclass(frozen=True)
 class StopwatchReading:
-    """One reading: how long so many swings took."""
+    """One reading: the time that a counted number of swings took."""
 
     swings: int
     duration_s: float

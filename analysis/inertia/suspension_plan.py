@@ -1,4 +1,4 @@
-"""Before a bifilar test: which suspension points measure what, and what to expect of a geometry."""
+"""Planning of a bifilar test: what each suspension measures, and its expected uncertainty."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ SUSPENSION_OPTIONS = {
 
 @dataclass(frozen=True)
 class SuspensionForecast:
-    """What a geometry would give.
+    """Expected periods and uncertainties of a suspension.
 
     Attributes
     ----------

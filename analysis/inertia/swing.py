@@ -184,7 +184,7 @@ def _refuse_nothing(inertia: Estimate) -> None:
 
 
 def share_flags(share: float, gyradius: Estimate) -> tuple[Flag, ...]:
-    """Say when the model is too small a part of the total to be worth swinging."""
+    """Flag a model that is too small a part of the total inertia to be measured on this swing."""
     if share >= SMALL_SHARE and gyradius.relative <= FORECAST_LIMIT:
         return ()
     message = (

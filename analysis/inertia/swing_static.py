@@ -60,7 +60,7 @@ class StaticMoment:
 
 @dataclass(frozen=True)
 class StaticResult:
-    """All levers at once, and each alone.
+    """The fit of all levers together, and of each lever alone.
 
     Attributes
     ----------

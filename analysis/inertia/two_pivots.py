@@ -1,4 +1,4 @@
-"""The swing's built-in check: two pivots a known distance apart must tell the same body."""
+"""Check of a swing: two pivots a known distance apart must give the same inertia."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class PivotTest:
 
 @dataclass(frozen=True)
 class TwoPivotCheck:
-    """What the two pivots say about each other.
+    """Agreement of the results from two pivots.
 
     Attributes
     ----------

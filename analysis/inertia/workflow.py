@@ -28,7 +28,7 @@ _PROMPTS = {
 
 @dataclass(frozen=True)
 class StepResult:
-    """What a step gave: pivot inertia or first moment, from repeated runs."""
+    """Result of a step: pivot inertia or first moment, from repeated runs."""
 
     step: Step
     value: Estimate
@@ -36,7 +36,7 @@ class StepResult:
 
 @dataclass(frozen=True)
 class WorkflowResult:
-    """What the four steps give together.
+    """Result of all four steps.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ def next_step(readings: tuple[StepResult, ...]) -> tuple[Step, str] | None:
 def assess_workflow(
     readings: tuple[StepResult, ...], known: Estimate, *, scale_relative: float = 0.0
 ) -> WorkflowResult:
-    """Bring the four steps together.
+    """Return the result of the four steps.
 
     Parameters
     ----------

@@ -2,6 +2,6 @@
 
 ``cycle``: harmonics of a run's channels over the averaged cycle, and back. ``motion``: from the
 struts' displacements to u, v (w), r (q) and their rates. ``projection``: from gauge readings to
-loads and back. ``rigid_body``: inertia and weight of the model. ``linearised``: the slope of any of
-it, for covariances. All of it works on arrays of instants, for many runs and trials at once.
+loads and back. ``rigid_body``: inertia and weight of the model. ``complex_step``: the slope of any
+of it, for covariances. All of it works on arrays of instants, for many runs and trials at once.
 """

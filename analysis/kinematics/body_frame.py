@@ -1,4 +1,4 @@
-"""A run's model in body axes at each instant: its motion through the water, and what holds it."""
+"""Motion of the model through the water, and the struts' loads on it, in body axes."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Slopes by complex step: exact to rounding, for covariances to be carried with.
+"""Derivatives by complex step, exact to rounding, for the propagation of covariances.
 
 What is reckoned at each instant alone has a slope at each instant; harmonics follow by their waves.
 """
@@ -19,7 +19,7 @@ nothing conjugated, no absolute values."""
 
 
 def pointwise(function: Pointwise, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return what a function makes of waves, and its slope.
+    """Return a function's value for given waves, and its derivative.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How a run's rig stands: what its kinematics and its gauges' readings are reckoned with."""
+"""Geometry of a run's rig, from which kinematics and gauge readings are computed."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -71,7 +71,7 @@ class Geometry:
 
     @property
     def offset_m(self) -> Waves | float:
-        """By how much the fore strut's mean position lies off the rig's middle; the aft's less."""
+        """Offset of the fore strut's mean position from the rig's middle; the aft's is opposite."""
         angle = self.turned(DriftBy.STRUTS_OFFSET)
         on_model = self.arrangement.joint is Joint.SLIDES_ON_MODEL
         lever: Waves | float = np.tan(angle) if on_model else np.sin(angle)

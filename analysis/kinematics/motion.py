@@ -21,7 +21,7 @@ from hardware.description.errors import DataError
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """What the rig drives: displacements of the aft and fore strut, m; or of a turntable, m, rad.
+    """Displacements that the rig drives: of the aft and fore strut, m; or of a turntable, m, rad.
 
     Arrays of shape ``(..., 2, instants)``: displacements about the positions that the drift sets,
     and their first and second derivatives.

@@ -1,4 +1,4 @@
-"""Between what the gauges read and the struts' loads on the model, in body axes.
+"""Conversion between gauge readings and the struts' loads on the model in body axes.
 
 Readings are those of the aft, the fore and the X gauge (of a turntable: force, moment and X); loads
 are force, moment and surge force about the reference point. Both are of the struts on the model.
@@ -43,7 +43,7 @@ def loads(geometry: Geometry, line_rad: Waves, readings: Waves) -> Waves:
 
 
 def readings(geometry: Geometry, line_rad: Waves, loads: Waves) -> Waves:
-    """Return what the gauges read of loads, both of shape ``(..., 3, instants)``: the inverse."""
+    """Return the gauge readings of loads, both of shape ``(..., 3, instants)``: the inverse."""
     inverse = np.linalg.inv(load_matrix(geometry, line_rad))
     return np.asarray(np.einsum("...trc,...ct->...rt", inverse, loads))
 
@@ -66,7 +66,7 @@ def check_surge_spared(geometry: Geometry) -> None:
 
 
 def load_matrix(geometry: Geometry, line_rad: Waves) -> Waves:
-    """Return what turns readings into loads, shape ``(..., instants, 3, 3)``."""
+    """Return the matrices that turn readings into loads, shape ``(..., instants, 3, 3)``."""
     along, across, moment = (
         _table(geometry, line_rad) if geometry.has_table else _struts(geometry, line_rad)
     )

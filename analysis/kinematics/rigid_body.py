@@ -1,4 +1,4 @@
-"""What the model's inertia and weight ask of the struts, exactly: force, moment, surge force.
+"""Loads on the struts from the model's inertia and weight, exact: force, moment, surge force.
 
 About the reference point, in body axes; the body's points from there too. What the struts exert
 less these is what they exert against the water. All of it is linear in the body's moments, mass,
@@ -35,7 +35,7 @@ def moments(body: Body) -> FloatArray:
 
 
 def inertia(body: Body, motion: MotionWaves, plane: Plane) -> Waves:
-    """Return what the body's inertia asks, shape ``(..., 3, instants)``.
+    """Return the loads from the body's inertia, shape ``(..., 3, instants)``.
 
     With the centre of gravity x_G ahead and z_G down (nothing to the side):
 
@@ -48,7 +48,7 @@ def inertia(body: Body, motion: MotionWaves, plane: Plane) -> Waves:
 
 
 def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
-    """Return what each of the :func:`moments` asks, shape ``(..., 4, 3, instants)``."""
+    """Return the loads per unit of each of the :func:`moments`, shape ``(..., 4, 3, instants)``."""
     u, v, r = np.moveaxis(motion.velocity, -2, 0)
     u_rate, v_rate, r_rate = np.moveaxis(motion.rate, -2, 0)
     vertical = plane is Plane.VERTICAL
@@ -64,7 +64,7 @@ def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
 
 
 def weight(body: Body, motion: MotionWaves, buoyancy: Buoyancy | None = None) -> Waves:
-    """Return what weight and buoyancy ask of the struts in the vertical plane.
+    """Return the loads on the struts from weight and buoyancy in the vertical plane.
 
     Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)`` of the weight alone.
     """
@@ -76,7 +76,7 @@ def weight(body: Body, motion: MotionWaves, buoyancy: Buoyancy | None = None) ->
 
 
 def weight_terms(motion: MotionWaves) -> Waves:
-    """Return what mass, m x_G and m z_G ask as weight, shape ``(..., 3, 3, instants)``."""
+    """Return the weight's loads per mass, m x_G and m z_G, shape ``(..., 3, 3, instants)``."""
     sine = STANDARD_GRAVITY_M_S2 * np.sin(motion.rotation_rad)
     cosine = STANDARD_GRAVITY_M_S2 * np.cos(motion.rotation_rad)
     none = np.zeros_like(sine)

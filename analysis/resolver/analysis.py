@@ -1,4 +1,4 @@
-"""A recording in, readings out: the reference, the steady stretch, its gates resolved."""
+"""Resolution of a recording: its phase reference, its steady stretch, harmonics of its gates."""
 
 from dataclasses import dataclass, replace
 
@@ -33,7 +33,7 @@ _ENOUGH_STEADY = 3  # periods: a shorter stretch is no stretch
 
 @dataclass(frozen=True)
 class Analysis:
-    """Everything found about one recording.
+    """The result of resolving one recording.
 
     Attributes
     ----------
@@ -239,7 +239,7 @@ def _under_hann(
 def let_through(
     analysis: Analysis, frequencies_hz: FloatArray, reading_index: int = 0
 ) -> FloatArray:
-    """Tell what the estimator of a reading lets through of vibrations that are no harmonics.
+    """Return how much of a vibration that is no harmonic leaks into each harmonic of a reading.
 
     Found by feeding the very gate with them; see
     :func:`analysis.resolver.leakage.measured_leakage`.

@@ -1,7 +1,7 @@
-"""How much wider an interval must be where the noise remembers: what the periods' sequence tells.
+"""How much autocorrelated noise widens an interval, from the sequence of the periods' values.
 
-The mean of m values scatters by their own scatter over the root of m only where they do not know of
-each other. Noise with memory (a slow wander of the mean, a wave so near a harmonic that it beats
+The mean of m values has the standard deviation of one over the root of m only where they are
+independent. Noise with memory (a slow wander of the mean, a wave so near a harmonic that it beats
 slowly against the periods) shows in the sequence of the periods' values, but in ten of them no
 estimate of its spectrum is sure. So the interval is averaged over the spectra that the noise may
 have, each weighted by how well it explains the sequence: a Bayesian average over covariances, with

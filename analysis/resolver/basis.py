@@ -5,7 +5,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 
 
-def template(cycles: FloatArray, orders: FloatArray) -> FloatArray:
+def harmonic_basis(cycles: FloatArray, orders: FloatArray) -> FloatArray:
     """Return the basis for any orders at some phases, shape ``(2 * orders + 1, samples)``."""
     basis = np.empty((2 * len(orders) + 1, len(cycles)))
     basis[0] = 1.0

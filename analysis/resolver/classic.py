@@ -16,7 +16,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
@@ -63,7 +63,7 @@ def products(values: FloatArray, cycles: FloatArray, harmonics: int) -> FloatArr
         ``y 2 sin(theta), y 2 cos(theta), y 2 sin(2 theta), ...``, shape
         ``(channels, 2 * harmonics, samples)``; their means are ``S_1, C_1, S_2, ...``.
     """
-    basis = template(cycles, np.arange(1.0, harmonics + 1.0))[1:]
+    basis = harmonic_basis(cycles, np.arange(1.0, harmonics + 1.0))[1:]
     return 2.0 * values[:, None, :] * basis
 
 

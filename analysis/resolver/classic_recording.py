@@ -1,4 +1,4 @@
-"""The modes of 1963 on a whole recording, and their naive digital rival."""
+"""The modes of 1963 on a whole recording, and the average over whole samples for comparison."""
 
 from itertools import pairwise
 

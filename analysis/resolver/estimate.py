@@ -1,4 +1,4 @@
-"""From the sums of some periods to harmonics with honest uncertainties.
+"""From the sums of some periods to harmonics with their uncertainties.
 
 The gate's harmonics solve the joint normal equations of its periods, so that they are exact for
 any frequency, sampling and gate. A drift would leak ``-d / (n pi)`` per period into the in-phase
@@ -41,7 +41,7 @@ class PeriodValues:
 
 @dataclass(frozen=True)
 class GateScatter:
-    """What the periods of a stretch tell of a gate's uncertainty.
+    """Uncertainty of a gate's coefficients from the scatter of a stretch's periods.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A phase channel with missing samples: the part of the record in which it has none."""
+"""A phase channel with missing samples: the longest part of the record without a gap."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Sums of any period: a bent phase, orders that are not 1 to N, a taper, the ends of the record.
+"""Sums of any period: non-linear phase, any orders, a taper, the ends of the record.
 
 Slower than :mod:`analysis.resolver.straight_sums`, which takes the usual periods.
 """
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight_sums import Gates, Sums
 from analysis.resolver.weights import REACH, gate_weights
@@ -20,7 +20,7 @@ Taper = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
-class General:
+class GeneralSums:
     """Sums of any period: bent phase, any orders, a taper, the ends of the record."""
 
     recording: Recording
@@ -87,7 +87,7 @@ def sum_any(
     turned = cycles(numbers)
     if taper is not None:
         weights = weights * taper(turned)
-    basis = template(turned, orders)
+    basis = harmonic_basis(turned, orders)
     weighted = basis * weights
     values = samples[:, start : start + len(weights)]
     return weighted @ basis.T, values @ weighted.T, weighted @ numbers

@@ -1,4 +1,4 @@
-"""What the resolver gives for one gate: mean and harmonics of each channel, with uncertainty."""
+"""The resolver's result for one gate: mean and harmonics of each channel, with uncertainty."""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,4 +1,4 @@
-"""What an estimator lets through of a vibration that is no harmonic."""
+"""Leakage of a vibration that is no harmonic through an estimator."""
 
 from collections.abc import Callable
 

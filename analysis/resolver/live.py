@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from analysis.resolver.estimate import resolve
 from analysis.resolver.general_sums import sum_any
 from analysis.resolver.harmonics import Harmonics
@@ -274,7 +274,7 @@ class LiveResolver:
             return
         step = 1.0 / (self._run.sample_rate_hz * (last.closed_s - last.opened_s))
         cycles = self._cycle + step * (np.arange(start, self._count, dtype=np.float64) - opening)
-        basis = template(cycles, self._orders)
+        basis = harmonic_basis(cycles, self._orders)
         values = self._buffer[:, start - self._first : self._count - self._first]
         gram, moment = basis @ basis.T, values @ basis.T
         if self._partial is not None:

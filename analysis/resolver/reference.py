@@ -1,4 +1,4 @@
-"""Where the shaft stands at any moment, from whatever the rig has to tell it.
+"""Phase of the shaft over time, from any of the rig's sensors that shows it.
 
 A reference is the number of revolutions as a function of time, straight between knots. Its phase
 ``theta = 2 pi cycles`` is that of the aft strut's motion ``sin(theta)``: the harmonics' in-phase
@@ -23,11 +23,11 @@ KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few e
 
 
 class NoReferenceError(DataError):
-    """Nothing in the recording tells the phase; a frequency or another channel may."""
+    """No channel of the recording shows the phase; a frequency or another channel may help."""
 
 
 class ReferenceSource(StrEnum):
-    """What told the phase."""
+    """Which sensor or number the phase comes from."""
 
     PHOTOCELL = "photocell"
     ENCODER = "encoder"

@@ -1,4 +1,4 @@
-"""Which reference a recording is resolved with: the one asked for, or the best it has."""
+"""Choice of the phase reference: the one asked for, or the best that the recording has."""
 
 from dataclasses import dataclass, replace
 
@@ -19,7 +19,7 @@ from hardware.description.errors import ConfigurationError, DataError
 
 @dataclass(frozen=True)
 class ReferenceChoice:
-    """What tells the phase; at most one of the first two, else the recording's own best.
+    """Where the phase comes from: at most one of the first two, else the best of the recording.
 
     The order is photocell, encoder (channel ``shaft_angle``), displacement of the aft strut, the
     set-point's frequency.

@@ -1,4 +1,4 @@
-"""Sums over the whole samples inside periods whose phase runs straight, where the time goes.
+"""Sums over the whole samples inside periods of linear phase: the costly part of the resolver.
 
 A phasor at sample ``r * ROW + j`` is one of row ``r`` times one of place ``j``. So the samples are
 multiplied with a table of the places, small enough for the fastest memory and the same for all

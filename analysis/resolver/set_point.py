@@ -1,4 +1,4 @@
-"""What a run was told to do, against what was found in its recording."""
+"""Comparison of a run's set-point with the motion in its recording."""
 
 import cmath
 import math
@@ -21,7 +21,7 @@ _STRUT_PHASE_RAD = 0.05  # moves a strut as far as that part of its amplitude
 def set_point_flags(
     recording: Recording, reference: PhaseReference, gate: PeriodSums, reading: Harmonics
 ) -> tuple[Flag, ...]:
-    """Return ``set_point_differs`` for what is not as the set-point says.
+    """Return ``set_point_differs`` for each quantity that differs from the set-point.
 
     Compared are the frequency over the first gate, and amplitudes and phase of the struts'
     displacements where they are recorded, as the reference or otherwise.

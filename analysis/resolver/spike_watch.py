@@ -59,10 +59,10 @@ class SpikeWatch:
         if not bend.max(initial=0.0) > known.rest:
             return []
         pulses_now = find_pulses(values, row, bend, most_of(first + values.shape[1]))
-        new = [pulse for pulse in pulses_now.found if pulse.start + first not in numbers]
+        new = [pulse for pulse in pulses_now.candidates if pulse.start + first not in numbers]
         numbers += [pulse.start + first for pulse in new]
         pulses = tuple(pulse.moved(first) for pulse in new)
-        now = Pulses(known.found + pulses, max(known.rest, pulses_now.rest))
+        now = Pulses(known.candidates + pulses, max(known.rest, pulses_now.rest))
         if np.isfinite(now.rest):
             self._known[row] = now
         spikes = [spike for spike in now.spikes() if spike in pulses]

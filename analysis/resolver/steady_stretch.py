@@ -1,4 +1,4 @@
-"""Where a run is steady: the longest stretch of periods whose first harmonics stay put."""
+"""Where a run is steady: the longest stretch of periods whose first harmonics stay constant."""
 
 from collections import deque
 from dataclasses import dataclass

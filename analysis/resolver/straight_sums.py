@@ -1,4 +1,4 @@
-"""Sums of periods in which the phase runs straight: the usual case, and the quick one.
+"""Sums of periods in which the phase is linear in time: the usual case, and the quick one.
 
 All samples strictly inside a period count once; the six around either edge carry a correction
 (:mod:`analysis.resolver.weights`). The inside takes the time: :mod:`analysis.resolver.sample_sums`.

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.general_sums import General, Taper
+from analysis.resolver.general_sums import GeneralSums, Taper
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.straight_sums import Gates, Sums, sum_straight
 from analysis.resolver.weights import REACH
@@ -153,7 +153,7 @@ def period_sums(
     gates = Gates(numbers[:-1], numbers[1:], cycles[:-1], cycles[1:])
     _check_sampling(recording, gates, float(np.max(orders)))  # before any array of their size
     orders = np.arange(1.0, orders + 1.0) if isinstance(orders, int) else orders
-    general = General(recording, reference, orders, taper)
+    general = GeneralSums(recording, reference, orders, taper)
     bent = general.needed(gates)
 
     def sum_stretch(stretch: slice) -> Sums:
@@ -184,7 +184,7 @@ def _stretches(gates: Gates) -> list[slice]:
     return stretches
 
 
-def _sum_stretch(general: General, gates: Gates, bent: BoolArray) -> Sums:
+def _sum_stretch(general: GeneralSums, gates: Gates, bent: BoolArray) -> Sums:
     """Read the samples of some periods that follow each other, and sum them."""
     first = max(0, int(gates.opening[0]) + 1 - REACH)
     block = general.recording.samples[:, first : int(gates.closing[-1]) + REACH + 1]

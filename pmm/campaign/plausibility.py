@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from analysis.plausibility import Seen, plausibility_flags
+from analysis.plausibility import RunHarmonics, plausibility_flags
 from hardware.description.arrangement import Joint
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
 
 
-def implausible(campaign: Campaign, runs: Sequence[Seen]) -> tuple[Flag, ...]:
+def implausible(campaign: Campaign, runs: Sequence[RunHarmonics]) -> tuple[Flag, ...]:
     """Return what :func:`analysis.plausibility.plausibility_flags` says of a campaign's runs.
 
     Nothing of a turntable: what is known beforehand is of two struts on one rigid model.

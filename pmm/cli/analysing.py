@@ -28,7 +28,7 @@ from pmm.parallel import open_executor
 from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
-    from analysis.plausibility import Seen
+    from analysis.plausibility import RunHarmonics
     from analysis.readers import ColumnMap
     from analysis.readers.text_source import Progress
     from analysis.recording import Recording
@@ -43,7 +43,7 @@ class Analysed:
 
     source: Source
     rows: RunRows
-    seen: "Seen | None"
+    seen: "RunHarmonics | None"
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def _try_source(
 def _analyse_recording(
     recording: "Recording", source: Source, request: AnalyseOptions, columns: "ColumnMap | None"
 ) -> Analysed:
-    from analysis.first_harmonics import seen_in
+    from analysis.first_harmonics import first_harmonics
 
     campaign = source.as_recorded
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
@@ -229,7 +229,7 @@ def _analyse_recording(
         vibrations_hz=request.let_through,
         classic=request.classic,
     )
-    return Analysed(source, rows, seen_in(recording, analysis) if campaign else None)
+    return Analysed(source, rows, first_harmonics(recording, analysis) if campaign else None)
 
 
 def _check_channels(

@@ -13,7 +13,7 @@ from pmm.campaign.order import made_in_order, place_in
 from pmm.campaign.runs import AtRest
 from sim.effects.effect import Effect
 from sim.effects.switching import switch_on
-from sim.rest import standing
+from sim.rest import rig_at_rest
 from sim.rig import SimulatedRig
 from sim.run import simulate
 
@@ -43,7 +43,7 @@ def simulate_zero(
     try:
         changed, set_point = switch_on(effects, rig, point, place_in(campaign, zero))
         dataset = simulate(
-            standing(changed),
+            rig_at_rest(changed),
             set_point,
             periods=ZERO_BLOCKS - 1,  # a simulated record is one longer
             settling_periods=0,

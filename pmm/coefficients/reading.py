@@ -17,7 +17,7 @@ from analysis.coefficients.corrections import (
 )
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
-from analysis.first_harmonics import seen_in
+from analysis.first_harmonics import first_harmonics
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from hardware.description.arrangement import Joint
@@ -135,7 +135,7 @@ def _turning(task: Task, recording: Recording) -> Done:
     flags = (*found, *flags, *_speed_flags(task, recording))
     periods = analysis.readings[0].periods
     done = _done(task, recording, _model(task, struts), None, periods, flags)
-    return replace(done, seen=seen_in(recording, analysis))
+    return replace(done, seen=first_harmonics(recording, analysis))
 
 
 def _towed(task: Task, recording: Recording) -> Done:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
-from analysis.plausibility import Seen
+from analysis.plausibility import RunHarmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
@@ -132,7 +132,7 @@ class Done:
     flags: tuple[Flag, ...] = ()
     sha256: str = ""
     calibration: Calibration | None = None
-    seen: Seen | None = None
+    seen: RunHarmonics | None = None
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from analysis.gap.pendulum.verdict import (
     open_laws,
     remainder,
 )
-from analysis.inertia.spread import said_of
+from analysis.inertia.spread import cause_statement
 from pmm.gap.pendulum_conclusion import Conclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE
 
@@ -50,7 +50,9 @@ def _wrong(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
     damped = len(others) < len(concluded.names)
     damping = [_damping(found.laws, rivals, concluded.names)] if damped else []
     what = " and ".join([*damping, *others])
-    said = said_of(what, found.foretells) if found.regimes else f"the likeliest cause: {what}"
+    said = (
+        cause_statement(what, found.foretells) if found.regimes else f"the likeliest cause: {what}"
+    )
     yield f"{said[0].upper()}{said[1:]}"
     if rivals:
         yield from _undecided(found.laws[0], rivals)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analysis.resolver.analysis import Analysis
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import PeriodSums
@@ -42,7 +42,7 @@ def fitted(analysis: Analysis, reading: Harmonics, time_s: FloatArray) -> FloatA
     # The mean belongs to the middle of the periods that were used, from the first sample on.
     middle_s = np.linalg.solve(gate.gram.sum(axis=0), gate.ramp.sum(axis=0))[0]
     elapsed_s = time_s - analysis.recording.start_s - middle_s
-    basis = template(analysis.reference.cycles_at(time_s), gate.orders)
+    basis = harmonic_basis(analysis.reference.cycles_at(time_s), gate.orders)
     return np.asarray(reading.coefficients @ basis + np.outer(reading.drift_per_s, elapsed_s))
 
 

@@ -94,7 +94,7 @@ class Digitiser:
 
 
 class LineState(NamedTuple):
-    """What a channel remembers.
+    """State of a channel between two blocks.
 
     Attributes
     ----------

@@ -9,7 +9,7 @@ from hardware.description.arrays import FloatArray
 
 @dataclass(frozen=True)
 class NoiseState:
-    """Where a stream of random numbers stands: the whole state of a PCG64 generator."""
+    """State of a stream of random numbers: that of its PCG64 generator."""
 
     position: int
     increment: int

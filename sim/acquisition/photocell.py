@@ -21,7 +21,7 @@ _MOST_STEPS = 100
 
 @dataclass(frozen=True)
 class PhotocellState:
-    """What is remembered of the last sample, so that marks passed between blocks are found.
+    """State after the last sample, so that pulses between two blocks are found.
 
     Attributes
     ----------

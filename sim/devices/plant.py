@@ -23,7 +23,7 @@ SHAFT_FRICTION: Final = Friction(time_constant_s=2.0, deceleration=1.0)
 
 @dataclass(frozen=True)
 class PlantConditions:
-    """What the rig does not decide: carriage speed, medium, seed of all noise, drift angle."""
+    """Conditions outside the rig: carriage speed, medium, seed of all noise, drift angle."""
 
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER

@@ -1,4 +1,4 @@
-"""Simulated serial devices: they say lines, at the far end of whatever port is plugged in."""
+"""Simulated serial devices: each writes lines to the far end of the port it is plugged into."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -12,7 +12,7 @@ _BLOCK = 256
 
 
 class SerialCable:
-    """What a talker has said and nobody has read yet, and whether the plug is in.
+    """Bytes on the line that nobody has read yet, and whether the plug is in.
 
     Attributes
     ----------

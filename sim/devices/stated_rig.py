@@ -36,7 +36,7 @@ _CONVERTER_STEPS: Final = 2**16  # of the nominal rig's 16 bit converters, from 
 
 @dataclass(frozen=True)
 class StatedRig:
-    """What is simulated, and the tables that it was read from."""
+    """The simulated rig, and the tables that it was read from."""
 
     rig: SimulatedRig
     tables: Mapping[str, Any]

@@ -1,4 +1,4 @@
-"""A drive that gives way to its load: a motor, or cranks behind a gear with backlash."""
+"""A drive whose speed changes under load: a motor, or cranks behind a gear with backlash."""
 
 import math
 from dataclasses import dataclass

@@ -57,7 +57,7 @@ class Guides:
 
 
 class Motor(Hashable, Protocol):
-    """What the drive needs to know of a motor."""
+    """What every motor states for the drive."""
 
     @property
     def cogging(self) -> tuple[Cogging, ...]:

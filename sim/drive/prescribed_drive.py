@@ -1,4 +1,4 @@
-"""The drive: how the shaft is told to turn, and a drive that does so whatever the load."""
+"""The commanded motion of the shaft, and a drive that follows it whatever the load."""
 
 import math
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""How far the simulated signature of an effect is from the one that its theory states."""
+"""Difference between an effect's simulated signature and the one that theory states."""
 
 from collections.abc import Iterable, Sequence
 from typing import Final

@@ -1,4 +1,4 @@
-"""What an effect is: a name, parameters with ranges, a change to the rig, a predicted signature."""
+"""An effect's interface: name, parameters with ranges, change to the rig, predicted signature."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -39,7 +39,7 @@ class StageName(StrEnum):
 
 
 class DeviationTrace(StrEnum):
-    """Where in recordings something deviates by more than noise."""
+    """Kinds of deviation from the simulation that a recording may show beyond noise."""
 
     STEADY = "steady"  # means, harmonics and the frequency, whatever the channel
     MEAN = "mean"
@@ -53,7 +53,7 @@ class DeviationTrace(StrEnum):
 
 
 class FurtherMeasurement(StrEnum):
-    """What can be measured besides plain oscillations."""
+    """Measurements other than plain oscillations."""
 
     REST = "rest"
     CHECK_WEIGHT = "check-weight"

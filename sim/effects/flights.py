@@ -1,4 +1,4 @@
-"""What crosses a clearance: free flight from one side to the other, and a plastic impact.
+"""Motion across a clearance: free flight from one side to the other, and a plastic impact.
 
 No effect itself. What is behind the clearance leaves its side when the force that holds it there
 turns, flies under what it would have taken to keep it there, and stops where it meets the other

@@ -1,4 +1,4 @@
-"""What effects of the water share: loads of changed coefficients, and motions at a point.
+"""Common parts of the water's effects: loads of changed coefficients, and motions at a point.
 
 No effect itself. Matrices are (force, moment) per (translation, rotation), as in
 :class:`sim.model.coefficients.HullCoefficients`.

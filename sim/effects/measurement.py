@@ -1,4 +1,4 @@
-"""What effects of the measurement share: changed gauges and converters, and harmonics of records.
+"""Common parts of the measurement's effects: changed gauges, converters, recorded harmonics.
 
 No effect itself.
 """

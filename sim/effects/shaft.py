@@ -1,4 +1,4 @@
-"""What struts and model do where the shaft does not turn evenly, and what makes it so."""
+"""Motion and forces where the shaft turns unevenly, and the torques that make it do so."""
 
 import math
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""The force at struts of which something gives way: model and springs as one linear system."""
+"""Forces of a model on elastic struts: model and springs as one linear system."""
 
 from collections.abc import Callable
 

@@ -1,1 +1,1 @@
-"""The gauges: what the dynamometers make of the forces in the struts."""
+"""The gauges: readings of the dynamometers from the forces in the struts."""

@@ -1,4 +1,4 @@
-"""The dynamometers: what the gauges make of the forces in the struts."""
+"""The dynamometers: readings from the forces in the struts."""
 
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple, TypeAlias

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class HullState(NamedTuple):
-    """What the mounting and the water remember.
+    """State of the mounting and of the water's memory.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a force law is, and what it may depend on."""
+"""The interface of a force law: its inputs, and where it jumps or bends."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ TURNS: Final = (Corner(Argument.VELOCITY, -CREEP_M_S), Corner(Argument.VELOCITY,
 
 @dataclass(frozen=True, eq=False)
 class LawInput:
-    """What a law may depend on: one value per sample each.
+    """Inputs of a force law: one value a sample each.
 
     Attributes
     ----------

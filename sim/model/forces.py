@@ -1,4 +1,4 @@
-"""The forces on the model that its linear system does not have: exact geometry, and laws."""
+"""Non-linear forces on the model: exact geometry, and force laws."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class ModelMotion(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """When, and how fast the carriage is."""
+    """Times, and the carriage speed at them."""
 
     time_s: FloatArray
     step_s: float

@@ -83,7 +83,7 @@ class Hull(ModelParameters):
         return {signal.name: row for signal, row in zip(self.writes, rows, strict=True)}
 
     def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
-        """Return the model in the water as it is at the first of some samples, and for how many.
+        """Return the model in the water at the first sample, and for how many samples it stays so.
 
         What the water has no input for yet (:attr:`Radiation.onset_s`) has one from the first step
         that begins after the onset.

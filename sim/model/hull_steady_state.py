@@ -38,7 +38,7 @@ class HullSteady:
 
     @cached_property
     def give(self) -> ComplexArray | None:
-        """What the model gives way per rigid load, as large; ``None`` for a rigid mounting."""
+        """Deflection per rigid load, of the same shape; ``None`` for a rigid mounting."""
         return _mounting_gain(self.system, self.impedance, self.period)
 
     def force(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
@@ -49,7 +49,7 @@ class HullSteady:
         return force
 
     def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
-        """Return what the laws ask for where the model gives way to ``laws``."""
+        """Return the laws' forces for the deflection that the forces ``laws`` cause."""
         if self._compiled is not None:
             return self._compiled.answer(y, laws)
         h = self._model(y, laws)
@@ -58,7 +58,7 @@ class HullSteady:
         return law_harmonics(self.acting, self.system, waves, self.period, self.speed_m_s)
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
-        """Return what the laws ask for, in balance with what the mounting gives way."""
+        """Return the laws' forces in balance with the deflection that they cause."""
         balanced = None if self._compiled is None else self._compiled.balanced(y)
         if balanced is not None:
             return balanced

@@ -68,7 +68,7 @@ class LawTable(NamedTuple):
 
 
 def has_number(law: ForceLaw) -> bool:
-    """Tell whether a compiled loop knows the law; a subclass of one that it knows is another."""
+    """Tell whether the compiled loops have the law; a subclass of such a law does not count."""
     return type(law) in LAWS
 
 

@@ -12,7 +12,7 @@ from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
 class Elastic(NamedTuple):
-    """What gives way, as r coordinates: ``model at the struts = strut motion + shape p``.
+    """Elastic deflections p, r coordinates: ``model at the struts = strut motion + shape p``.
 
     ``mass p'' + damping p' + stiffness p = - shape^T (force of the struts on the model)``.
     """

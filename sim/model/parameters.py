@@ -1,4 +1,4 @@
-"""What a model, its mounting and the water around it are stated by."""
+"""Parameters of a model, its mounting and the water around it."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""Along the model: what the water holds it back with."""
+"""Surge: the water's resistance along the model."""
 
 from dataclasses import dataclass
 from typing import ClassVar

@@ -1,4 +1,4 @@
-"""A pendulum test: what swings, how it is let go, and what watches it; effects change it."""
+"""A pendulum test: body, release and sensors; effects change it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace

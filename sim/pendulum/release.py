@@ -1,4 +1,4 @@
-"""How a body is let go: where it was held, for how long, and how clean the hand was."""
+"""Release of a body: where it was held, how long the release takes, and its side push."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What acts on one coordinate alone: friction, damping, drag, and restoring beyond the linear."""
+"""Forces on one coordinate alone: friction, damping, drag, and restoring beyond the linear."""
 
 from dataclasses import dataclass, fields
 from typing import ClassVar

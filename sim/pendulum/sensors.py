@@ -1,4 +1,4 @@
-"""Instruments on the body or beside it: what each makes of the motion."""
+"""Instruments on the body or beside it: the reading of each from the motion."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The laws' harmonics over a period in balance with what the mounting gives way: compiled.
+"""Harmonic balance of the force laws with the mounting's deflection: compiled.
 
 The same as sweeping :func:`sim.model.forces.law_harmonics` by :func:`sim.solve.relaxation.relax`,
 for laws in a table. Loaded when it is first needed, because numba is. Complex harmonics are kept as

@@ -1,4 +1,4 @@
-"""The loads and torques that one sample leaves open, solved: Broyden's method, and what it solves.
+"""The unknown loads and torques of one sample, solved by Broyden's method.
 
 The estimate of the slope goes on from sample to sample, so that few evaluations are needed. Called
 by :mod:`sim.solve.march`, which says how it is loaded.

@@ -1,4 +1,4 @@
-"""Drive, mechanism and model in one stage: a drive that feels the load of the struts.
+"""Drive, mechanism and model in one stage, for a drive whose speed depends on the load.
 
 The three parts are the same as in an open chain. The drive's linear part answers exactly to the
 load torque between samples; torque, motion and forces are then solved sample by sample

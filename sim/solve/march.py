@@ -1,4 +1,4 @@
-"""Model, mounting and drive solved sample by sample: what acts back, in one unknown.
+"""Model, mounting and drive solved sample by sample, with all feedback in one unknown.
 
 What a sample leaves open are the loads of model and mounting and the torques at the shaft. All
 else follows from them by matrices that are the same for every sample, so that one evaluation is a

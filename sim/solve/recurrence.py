@@ -1,4 +1,4 @@
-"""The periodic steady state of what meets in a clearance: run on until one period is like the last.
+"""The periodic steady state with a clearance: run until one period repeats the last.
 
 A clearance that opens twice a period has no balance of harmonics that sweeps could find; it is run
 in time instead, with steps that fit its fastest vibration.

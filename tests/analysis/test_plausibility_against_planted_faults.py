@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.plausibility import Seen, plausibility_flags
+from analysis.plausibility import RunHarmonics, plausibility_flags
 from hardware.description.body import Body
 from hardware.description.setpoint import SetPoint
 
@@ -20,7 +20,7 @@ FACTORS = {"displacement_aft": 1.0, "displacement_fore": 1.0, "force_aft": 1.0, 
 
 def run(
     frequency_hz: float, phase_rad: float, factors: dict[str, float], added: float, damping: float
-) -> Seen:
+) -> RunHarmonics:
     """One rigid body, added mass and damping as wholes of its own mass, symmetric fore and aft."""
     told = SetPoint(frequency_hz, 0.02, phase_rad)
     omega = 2.0 * math.pi * frequency_hz
@@ -36,7 +36,7 @@ def run(
         "force_fore": law * (mass * heave - turning * pitch),
     }
     first = {name: factors.get(name, 1.0) * value for name, value in force.items()}
-    return Seen(f"{frequency_hz:g}", told, frequency_hz, first)
+    return RunHarmonics(f"{frequency_hz:g}", told, frequency_hz, first)
 
 
 def flags(

@@ -1,4 +1,4 @@
-"""What a real pendulum test has and an ideal one has not: one small class each.
+"""The interface of an effect on a pendulum test, and what such effects share.
 
 An effect is a value; calling it with a test returns the changed test, so several compose. Loads on
 a coordinate are N or, for angles, N m. The nominal test has none of them on.

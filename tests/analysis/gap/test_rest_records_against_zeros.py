@@ -31,7 +31,7 @@ from sim.effects.situation import RECORDED_FORCES, Situation, at_struts
 from sim.effects.switching import switch_on
 from sim.model.force_law import ForceLaw, LawInput
 from sim.model.law_point import Acting, Point
-from sim.rest import standing
+from sim.rest import rig_at_rest
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from tests.analysis.gap.small import problem_of, record
@@ -87,7 +87,7 @@ def at_rest(
         place = CampaignRun(number, BETWEEN_S * number, 300.0, None)
         changed, really = switch_on(effects, rig, point, place)
         dataset = simulate(
-            standing(changed),
+            rig_at_rest(changed),
             really,
             periods=ZERO_BLOCKS - 1,
             settling_periods=0,
@@ -233,7 +233,7 @@ def test_what_is_proposed_has_the_noise_of_a_run(
 def test_records_that_are_too_short_or_have_gaps_are_refused(
     rig: SimulatedRig, samples: int, missing: int, said: str
 ) -> None:
-    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
+    dataset = simulate(rig_at_rest(rig), STANDS, periods=2, seed=1, settling_periods=0)
     short = dataset.isel(time=slice(samples)).load()
     short["force_aft"].values[:missing] = np.nan
     with pytest.raises(DataError, match=said):
@@ -241,13 +241,13 @@ def test_records_that_are_too_short_or_have_gaps_are_refused(
 
 
 def test_a_record_without_force_is_refused(rig: SimulatedRig) -> None:
-    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
+    dataset = simulate(rig_at_rest(rig), STANDS, periods=2, seed=1, settling_periods=0)
     with pytest.raises(DataError, match="no channel force_aft or force_fore"):
         run_at_rest(from_dataset(dataset).select(["displacement_aft"]), CampaignRun(), STANDS)
 
 
 def test_one_in_air_has_no_restoring_force(rig: SimulatedRig) -> None:
-    dataset = simulate(standing(rig), STANDS, periods=2, seed=1, settling_periods=0)
+    dataset = simulate(rig_at_rest(rig), STANDS, periods=2, seed=1, settling_periods=0)
     run = run_at_rest(from_dataset(dataset), CampaignRun(), replace(STANDS, medium=Medium.AIR))
     moved = replace(run, stands_at_m=(1e-3, 1e-3))
     assert Simulator(rig, Stack.of((moved,))).nominal == pytest.approx(np.zeros(2), abs=1e-9)

@@ -54,7 +54,7 @@ def test_four_geometries_of_one_rod() -> None:
     assert not spread.agree
     assert spread.flags[0].code == "unexplained_spread"
     assert spread.causes[0].explains
-    assert 0.5 < spread.causes[0].foretells < 0.8
+    assert 0.5 < spread.causes[0].predicts < 0.8
     assert "the cause cannot be told; likeliest cause: the lines are longer than measured" in (
         spread.flags[0].message
     )

@@ -8,7 +8,14 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.special import stdtrit
 
-from analysis.resolver.autocorrelation import _averaged, _beat, _fading, _flicker, _parts, widened
+from analysis.resolver.autocorrelation import (
+    _averaged,
+    _beat,
+    _fading,
+    _flicker,
+    _parts,
+    widened,
+)
 from tests.analysis.resolver.signals import FloatArray, autoregressive
 
 TRIALS = 1000
@@ -73,7 +80,9 @@ def test_another_zero_of_the_phase_turns_the_deviations_and_no_more() -> None:
     numbers = np.arange(10.0)
     wider = widened(left, numbers, 10, line=True)
     np.testing.assert_allclose(
-        widened(turned, numbers, 10, line=True)[:, :, 1:3], wider[:, :, 1:3] @ turn, atol=1e-9
+        widened(turned, numbers, 10, line=True)[:, :, 1:3],
+        wider[:, :, 1:3] @ turn,
+        atol=1e-9,
     )
 
 

@@ -8,7 +8,7 @@ them at once, and no random number is needed.
 import numpy as np
 import pytest
 
-from analysis.resolver.basis import template
+from analysis.resolver.basis import harmonic_basis
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.reference import from_frequency
@@ -24,7 +24,7 @@ def bound(first_s: float, last_s: float, opening_cycle: float) -> FloatArray:
     """Smallest variance of mean and harmonics from the samples in the gate, for noise of 1."""
     numbers = np.arange(np.ceil(first_s * RATE_HZ), np.floor(last_s * RATE_HZ) + 1.0)
     cycles = opening_cycle + FREQUENCY_HZ * (numbers / RATE_HZ - first_s)
-    basis = template(cycles, np.arange(1.0, HARMONICS + 1.0))
+    basis = harmonic_basis(cycles, np.arange(1.0, HARMONICS + 1.0))
     return np.diagonal(np.linalg.inv(basis @ basis.T))
 
 

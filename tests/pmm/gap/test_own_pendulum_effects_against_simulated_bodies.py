@@ -76,7 +76,7 @@ def test_names_alone_restrict_and_what_a_record_cannot_show_is_said() -> None:
     assert found["notes"] == ["these records cannot show line_twist"]
     assert [law["name"] for law in found["laws"]] == ["quadratic"]
     assert found["said"][0] == (
-        "The cause: quadratic_drag, which foretells 100 % of what it was not fitted to."
+        "The cause: quadratic_drag, which predicts 100 % of what it was not fitted to."
     )
 
 

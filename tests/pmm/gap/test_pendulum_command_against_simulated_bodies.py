@@ -116,7 +116,7 @@ def test_a_law_that_is_told_needs_no_further_record() -> None:
     path = HOUSE / "examples" / "decay" / "roll.toml"
     found = json.loads(run(path, "--without", "power_drag", "--most", "1", "--json").stdout)
     assert found["said"][0] == (
-        "The cause: quadratic_drag, which foretells 100 % of what it was not fitted to."
+        "The cause: quadratic_drag, which predicts 100 % of what it was not fitted to."
     )
     assert not found["next"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 import pytest
 
 from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws, told_apart
-from analysis.inertia.spread import SURE, said_of
+from analysis.inertia.spread import SURE, cause_statement
 
 if TYPE_CHECKING:
     from analysis.gap.pendulum.hypothesis import Hypothesis
@@ -48,10 +48,12 @@ def test_both_have_to_say_so(other: Law, apart: bool) -> None:
 
 @pytest.mark.parametrize("share", [-0.2, 0.0, 0.5, SURE - 1e-3])
 def test_a_cause_that_foretells_little_is_not_named(share: float) -> None:
-    said = said_of("line_twist", share)
+    said = cause_statement("line_twist", share)
     assert said.startswith("the cause cannot be told; likeliest cause: line_twist")
     assert f"accounts for {100.0 * max(share, 0.0):.0f} %" in said
 
 
 def test_a_cause_that_foretells_most_is_named() -> None:
-    assert said_of("line_twist", 0.93).startswith("the cause: line_twist, which foretells 93 %")
+    assert cause_statement("line_twist", 0.93).startswith(
+        "the cause: line_twist, which predicts 93 %"
+    )
