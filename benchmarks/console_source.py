@@ -20,7 +20,7 @@ from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, Signal
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
-from pmm.console.station import TICK_S
+from pmm.console.station_view import TICK_S
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State

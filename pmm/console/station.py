@@ -1,10 +1,9 @@
-"""The rig's side of the console: the loop, the plans that wait, and a frame 25 times a second.
+"""The rig's side of the console: the loop, orders between two cycles, and the plans that wait.
 
-Nothing here waits for a browser. Orders are taken between two cycles; frames are handed to
-:class:`pmm.console.link.Link`, which drops what nobody fetches.
+Nothing here waits for a browser: what it is told goes to :class:`pmm.console.link.Link`, which
+drops what nobody fetches.
 """
 
-from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import Final
@@ -15,29 +14,12 @@ from hardware.rig import Rig
 from pmm.console.asking import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
-from pmm.console.messages import (
-    Frame,
-    Hello,
-    LoopOrder,
-    Needles,
-    Notice,
-    OrderKind,
-    QueuedPlan,
-    Reply,
-)
+from pmm.console.messages import Hello, LoopOrder, OrderKind, QueuedPlan, Reply
 from pmm.console.pacing import CountingPacer
-from pmm.console.picture import (
-    HARMONICS,
-    NeedleReader,
-    allowed,
-    axes_of,
-    bus_of,
-    channels_of,
-    following,
-    present_run,
-)
+from pmm.console.picture import HARMONICS, channels_of
 from pmm.console.quick_stop import QuickStop
-from pmm.console.traces import TraceBuffer, points_a_second
+from pmm.console.station_view import PlansInHand, StationView
+from pmm.console.traces import points_a_second
 from pmm.console.writing import Writer
 from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
@@ -47,7 +29,6 @@ from pmm.run.recording import RecorderFactory
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError, State
 
-TICK_S: Final = 0.04
 _READY: Final = frozenset({State.IDLE, State.STOPPED, State.DONE})
 
 
@@ -87,34 +68,16 @@ class Station:
         speed: float = 1.0,
     ) -> None:
         self._rig, self._rig_file, self._link = rig, rig_file, link
-        self._answers, self._pacer, self._taps = answers, pacer, taps
+        self._answers, self._taps = answers, taps
         self._quick_stop = quick_stop
         self._clock, self._utc, self._provenance = clock, utc, provenance
         self._executor, self._speed = executor, speed
         self._channels = channels_of(rig, rig_file)
-        self._traces = TraceBuffer(len(self._channels), rig.configuration.sample_rate_hz)
-        self._needles = NeedleReader()
-        self._waiting: deque[QueuedPlan] = deque()
-        self._present: QueuedPlan | None = None
+        self._plans = PlansInHand()
         self._recording: RecorderFactory | None = None
         self._writer = Writer(rig_file, executor)
-        self._due_s = clock()
-        self._ticks = self._told_alarms = self._told_outcomes = 0
-        self._told_state: State | None = None
-        self._latest: Needles | None = None
+        self._view = StationView(rig, link, answers, pacer, clock, self._writer, self._plans)
         self.control = self._controlled(())
-
-    def show(self, control: RunControl) -> None:
-        """Tell what is new, and hand on a frame when it is time: the view of run control."""
-        self._answers.settle()
-        if control.taken is not None:
-            self._traces.add(control.taken.first, control.taken.values)
-        self._tell_news(control)
-        now_s = self._clock()
-        if now_s >= self._due_s:
-            self._due_s += TICK_S * (1.0 + (now_s - self._due_s) // TICK_S)
-            self._ticks += 1
-            self._link.frame(self._frame(control))
 
     def hello(self) -> Hello:
         """Return what does not change."""
@@ -153,9 +116,9 @@ class Station:
             self._link.tell(self._carry_out(order))
 
     def _go_on(self) -> None:
-        if self._present is not None and self.control.finished and not self._left:
-            self._writer.let_go(self._present.number)
-        if self.control.finished and self._waiting:
+        if self._plans.present is not None and self.control.finished and not self._left:
+            self._writer.let_go(self._plans.present.number)
+        if self.control.finished and self._plans.waiting:
             self._next_plan(goes_on=self.control.state is State.DONE)
 
     def close(self) -> list[str]:
@@ -205,34 +168,34 @@ class Station:
     def _queue(self, plan: QueuedPlan) -> str:
         if not plan.runs:
             raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
-        if len(self._waiting) >= MOST_WAITING:
+        if len(self._plans.waiting) >= MOST_WAITING:
             raise RunStateError(
                 f"{MOST_WAITING} plans wait already, which is the limit; take one out, or queue "
                 f"{plan.plan.name} when the next of them has begun"
             )
         self._writer.begin(plan)
-        self._waiting.append(plan)
-        self._notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
+        self._plans.waiting.append(plan)
+        self._view.notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
         if self._idle and not self._left:
             self._next_plan(goes_on=False)
         return f"{plan.plan.name} is queued"
 
     def _drop(self, number: int) -> str:
-        if self._present is not None and number == self._present.number:
+        if self._plans.present is not None and number == self._plans.present.number:
             if not self._idle:
-                raise RunStateError(f"{self._present.plan.name} is under way; stop it first")
-            name, self._present = self._present.plan.name, None
+                raise RunStateError(f"{self._plans.present.plan.name} is under way; stop it first")
+            name, self._plans.present = self._plans.present.plan.name, None
             self._writer.let_go(number)
             before, self.control = self.control, self._controlled(())
             self.control.follow(before)
         else:
-            found = [one for one in self._waiting if one.number == number]
+            found = [one for one in self._plans.waiting if one.number == number]
             if not found:
                 raise RunStateError(f"no plan {number} waits")
             name = found[0].plan.name
-            self._waiting.remove(found[0])
+            self._plans.waiting.remove(found[0])
             self._writer.let_go(number)
-        self._notice("queue", f"{name}: taken out of the queue")
+        self._view.notice("queue", f"{name}: taken out of the queue")
         return f"{name} is taken out"
 
     @property
@@ -246,23 +209,26 @@ class Station:
 
     def _next_plan(self, *, goes_on: bool) -> None:
         """Take the next plan; queueing at rest moves nothing: that is what Start is for."""
-        goes_on = goes_on and self._present is not None
-        if self._left and self._present is not None:
+        goes_on = goes_on and self._plans.present is not None
+        if self._left and self._plans.present is not None:
             return
-        self._present = self._waiting.popleft()
-        before, self.control = self.control, self._controlled(self._present.runs)
+        self._plans.present = self._plans.waiting.popleft()
+        before, self.control = self.control, self._controlled(self._plans.present.runs)
         self.control.follow(before)
-        self._notice("plan", f"{self._present.plan.name} is next", plan=self._present.number)
+        self._view.notice(
+            "plan", f"{self._plans.present.plan.name} is next", plan=self._plans.present.number
+        )
         if goes_on:
             self.control.request(Command.START)
 
     def _controlled(self, runs: tuple[RunPlan, ...]) -> RunControl:
         control = RunControl(
-            self._rig, self._rig_file, runs, self._begin, self._clock, self, self._executor
+            self._rig, self._rig_file, runs, self._begin, self._clock, self._view, self._executor
         )
-        self._told_alarms = self._told_outcomes = 0
-        self._told_state = None
-        self._recording = None if self._present is None else self._recorded(self._present)
+        self._view.begin()
+        self._recording = (
+            None if self._plans.present is None else self._recorded(self._plans.present)
+        )
         if self._recording is not None:
             control.free_bytes = self._recording.free_bytes
         return control
@@ -279,58 +245,3 @@ class Station:
         if self._recording is None:
             raise AssertionError("a run without a plan")
         return self._recording.begin(run)
-
-    def _tell_news(self, control: RunControl) -> None:
-        if control.state is not self._told_state:
-            before, self._told_state = self._told_state, control.state
-            self._notice("state", str(control.state))
-            if control.measurement is not None and before is not State.STOPPING:
-                self._latest = self._needles.standing(control.measurement)
-        for text in self._writer.failures():
-            self._notice("alarm", text)
-        new = control.alarms.count - self._told_alarms
-        if new:
-            self._told_alarms += new
-            for text in control.status().alarms[-new:]:
-                self._notice("alarm", text)
-        for outcome in control.outcomes[self._told_outcomes :]:
-            self._told_outcomes += 1
-            if self._present is None:
-                continue
-            plan = self._present
-            self._link.tell(
-                Notice("outcome", self._time_s, f"{outcome.run}, {outcome.outcome}", outcome,
-                       self._latest, plan.number, plan.folder)
-            )  # fmt: skip
-            self._latest = None
-            self._writer.write(plan, self._link.tell)
-
-    def _notice(self, kind: str, text: str, plan: int = 0) -> None:
-        self._link.tell(Notice(kind, self._time_s, text, plan=plan))
-
-    @property
-    def _time_s(self) -> float:
-        return self._rig.number / self._rig.configuration.sample_rate_hz
-
-    def _frame(self, control: RunControl) -> Frame:
-        status = control.status()
-        measurement, run = control.measurement, present_run(control, status)
-        gate = measurement.gate if measurement is not None else None
-        return Frame(
-            number=self._ticks,
-            status=status,
-            plan=self._present.number if self._present is not None else 0,
-            queue=tuple(one.number for one in self._waiting),
-            set_point=run.set_point if run is not None else None,
-            opened_s=gate.opened_s if gate is not None else float("nan"),
-            closed_s=gate.closed_s if gate is not None else float("nan"),
-            shaft_hz=self._rig.shaft.measured_frequency_hz if self._rig.shaft else float("nan"),
-            axes=axes_of(self._rig),
-            allowed=allowed(control),
-            question=self._answers.question,
-            bus=bus_of(self._rig),
-            loop=self._pacer.statistics(),
-            needles=self._needles.read(measurement, status.harmonics),
-            trace=self._traces.take(),
-            following=following(control, status),
-        )
