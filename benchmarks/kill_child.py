@@ -15,7 +15,7 @@ import can
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.opening import opening_of
+from hardware.carry_over import opening_of
 from hardware.pacing import FreeRunning, RealTime
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig

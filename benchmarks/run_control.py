@@ -24,7 +24,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
-from pmm.run.recording import RecorderFactory
+from pmm.run.recorder_factory import RecorderFactory
 from pmm.run.run_control import RunControl, View
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS

@@ -150,7 +150,7 @@ class Amplifier:
         return tuple(self._zero)
 
     def carried(self) -> dict[str, Any]:
-        """Return the tare; see :mod:`hardware.opening`."""
+        """Return the tare; see :mod:`hardware.carry_over`."""
         return {"zero": self._zero}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:

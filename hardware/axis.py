@@ -4,7 +4,7 @@ from enum import Enum
 
 from hardware.axis_settings import PositionAxisSettings
 from hardware.cia402 import ControlWord, Mode, StatusWord
-from hardware.commanded import check_position
+from hardware.command_limits import check_position
 from hardware.description.oscillator import Range
 from hardware.dictionary import Entry
 from hardware.drive import (

@@ -88,7 +88,7 @@ class SerialInclinometer:
         return blocks(taken)
 
     def carried(self) -> dict[str, Any]:
-        """Return the count of lines; see :mod:`hardware.opening`."""
+        """Return the count of lines; see :mod:`hardware.carry_over`."""
         return {"sequence": self._sequence.value}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:

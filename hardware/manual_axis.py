@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from hardware.commanded import check_position
+from hardware.command_limits import check_position
 from hardware.demand import Demand
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from hardware.commanded import check_speed
+from hardware.command_limits import check_speed
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services

@@ -97,7 +97,7 @@ class SerialPhotocell:
         return taken
 
     def carried(self) -> dict[str, Any]:
-        """Return counts and the marks of the clocks; see :mod:`hardware.opening`."""
+        """Return counts and the marks of the clocks; see :mod:`hardware.carry_over`."""
         return {"ticks": self._ticks.value, "count": self._count, "marks": self.fit.marks}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hardware.cia402 import Mode, StatusWord
-from hardware.commanded import check_speed
+from hardware.command_limits import check_speed
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -214,7 +214,7 @@ class DriveShaft:
         return blocks(taken)
 
     def carried(self) -> dict[str, Any]:
-        """Return the count and the latest of its way; see :mod:`hardware.opening`."""
+        """Return the count and the latest of its way; see :mod:`hardware.carry_over`."""
         return {"counts": self.motion.counts, "track": list(self._track)}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:

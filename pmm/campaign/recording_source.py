@@ -106,7 +106,7 @@ def open_recording(
     """
     from analysis.readers import read_recording
     from analysis.readers.photocell import read_edges
-    from pmm.recorder.changes import text_flags
+    from pmm.recorder.file_changes import text_flags
 
     if source.outcome != COMPLETE and not partial:
         raise DataError(f"{source.name}: its outcome is {source.outcome!r}")

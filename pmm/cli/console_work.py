@@ -21,8 +21,8 @@ from hardware.rig import Rig
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import messages
 from pmm.cli.terminal import Terminal
+from pmm.console.answers import BrowserAnswers
 from pmm.console.app_settings import ConsoleSettings
-from pmm.console.asking import BrowserAnswers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
 from pmm.console.plans import is_plan

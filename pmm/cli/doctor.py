@@ -61,7 +61,7 @@ def _check(rig: str | None, folder: Path, listen_s: float) -> Iterator[MachineFi
 
 def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
     from hardware.errors import HardwareError
-    from pmm.devices.opening import DeviceTables
+    from pmm.devices.device_source import DeviceTables
     from pmm.devices.survey import survey_rig
     from pmm.doctor.reach import check_rig
 

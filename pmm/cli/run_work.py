@@ -41,12 +41,12 @@ from pmm.run.campaign_folder import (
     keep_sources,
     kept_runs,
 )
-from pmm.run.identity import change_lines
 from pmm.run.journal import Taps
 from pmm.run.operator import Answers, Interrupts, standard_input
-from pmm.run.recording import RecorderFactory
+from pmm.run.recorder_factory import RecorderFactory
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
+from pmm.run.run_origin import change_lines
 from pmm.run.states import Command, RunStateError
 from pmm.run.status import RunOutcome
 

@@ -11,7 +11,6 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hardware.description.errors import PmmError
-from pmm.console.checking import check_plan_text, ready_plan
 from pmm.console.command_log import CommandRecord, keep
 from pmm.console.desk import NotInControlError
 from pmm.console.encoding import encode_answer
@@ -19,8 +18,8 @@ from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, OrderKind
+from pmm.console.plan_queue import Queued
 from pmm.console.plans import Plans
-from pmm.console.queued import Queued
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
@@ -29,6 +28,7 @@ from pmm.console.requests import (
     Posted,
     TakePosted,
 )
+from pmm.console.worker_tasks import check_plan_text, ready_plan
 from pmm.console.workers import Workers
 from pmm.run.states import Command
 

@@ -22,9 +22,8 @@ from starlette.websockets import WebSocket
 from hardware.description.errors import PmmError
 from pmm.console.actions import PageActions, TooLargeError, body_of, who_asks
 from pmm.console.app_settings import ConsoleSettings
-from pmm.console.checking import look_around
 from pmm.console.client import Client
-from pmm.console.finished import Finished
+from pmm.console.coefficient_updates import Finished
 from pmm.console.hub import Hub
 from pmm.console.limits import MOST_STREAMS
 from pmm.console.lockout import Lockout
@@ -36,6 +35,7 @@ from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, Guard
+from pmm.console.worker_tasks import look_around
 from pmm.console.workers import Shared, Workers
 
 PAGE: Final = Path(__file__).parent / "page"

@@ -11,7 +11,7 @@ from typing import Final
 from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from hardware.rig import Rig
-from pmm.console.asking import BrowserAnswers
+from pmm.console.answers import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import Hello, LoopOrder, OrderKind, QueuedPlan, Reply
@@ -25,7 +25,7 @@ from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.measurement import Measurement
-from pmm.run.recording import RecorderFactory
+from pmm.run.recorder_factory import RecorderFactory
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError, State
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from hardware.rig import Rig
-from pmm.console.asking import BrowserAnswers
+from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
 from pmm.console.messages import Frame, Needles, Notice, QueuedPlan
 from pmm.console.pacing import CountingPacer

@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable
 from typing import Final, Generic, TypeVar
 
 from pmm.console.limits import CHECK_MEMORY, CHECK_S, MOST_CHECKS
-from pmm.console.worker import WorkerProcess, WorkLimits
+from pmm.console.worker_process import WorkerProcess, WorkLimits
 
 T = TypeVar("T")
 _CHECKS: Final = WorkLimits(CHECK_S, CHECK_MEMORY, MOST_CHECKS)

@@ -13,7 +13,7 @@ from hardware.objects import MappedObjects
 from hardware.rig import Rig
 from hardware.scan import Ear, scan
 from hardware.serial_port import PortSettings, SerialPort
-from pmm.devices.live import DeviceRow, Live
+from pmm.devices.device_readings import DeviceRow, Live
 
 REFRESH_S: Final = 0.25
 ONCE_S: Final = 0.5

@@ -10,7 +10,7 @@ from hardware.listening import Heard, listen
 from hardware.master import Master
 from hardware.scan import Ear, FoundNode, scan
 from hardware.serial_port import PortSettings, SerialPort
-from pmm.devices.opening import DeviceTables
+from pmm.devices.device_source import DeviceTables
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class FinishedRun:
     number
         Its place among the campaign's runs; 0 where nobody says, then the order given is taken.
     differs, recorded_with
-        As in :class:`pmm.run.identity.RunOrigin`.
+        As in :class:`pmm.run.run_origin.RunOrigin`.
     """
 
     plan: RunPlan

@@ -13,7 +13,7 @@ from typing import Any, Final
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.simulation_tables import simulation_tables, with_preset
-from hardware.simulated import SimulatedTables, simulated_behind
+from hardware.simulation_identity import SimulatedTables, simulated_behind
 from pmm.configuration import read_toml
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.rig_file import RigFile

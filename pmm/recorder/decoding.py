@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from importlib.metadata import EntryPoint
 from typing import Any, Final
 
+from hardware.carry_over import carry_on
 from hardware.description.errors import DataError
 from hardware.errors import DriveStateError, HardwareError, NotAtRestError, TransitionTimeoutError
 from hardware.line_log import LoggedPort
-from hardware.opening import carry_on
 from hardware.pacing import FreeRunning
 from hardware.playback import INTERFACE
 from hardware.raw_log_reading import read_frames

@@ -61,7 +61,7 @@ class RunHeader:
     rig_tables
         The tables that :func:`hardware.rig_configuration.read_rig` takes; a replay needs them.
     opening
-        What the devices carried over from before (:func:`hardware.opening.opening_of`); a replay
+        What the devices carried over from before (:func:`hardware.carry_over.opening_of`); a replay
         of a run that did not begin with the rig's power needs it.
     """
 

@@ -12,8 +12,8 @@ from hardware.description.flags import Flag, Severity
 from hardware.raw_log import file_header
 from hardware.raw_log_reading import LogState, look
 from pmm.recorder.campaign_owner import own_campaign
-from pmm.recorder.changes import change_flags, changed_files, files_recovered
 from pmm.recorder.disk import DiskFullError
+from pmm.recorder.file_changes import change_flags, changed_files, files_recovered
 from pmm.recorder.files import (
     BUS,
     HEADER,

@@ -12,8 +12,8 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.roles import Pulse
 from pmm.recorder.campaign_owner import writer_of
-from pmm.recorder.changes import changed_files
 from pmm.recorder.decoding import decode
+from pmm.recorder.file_changes import changed_files
 from pmm.recorder.files import HARMONICS
 from pmm.recorder.live_path import Taken, joined
 from pmm.recorder.recording import RunData, read_run

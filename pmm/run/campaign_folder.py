@@ -14,7 +14,7 @@ from pmm.recorder.header import RunHeader
 from pmm.recorder.marker import read_marker
 from pmm.recorder.recording import NOISE
 from pmm.recorder.run_recorder import RunEnd
-from pmm.run.identity import KEPT, Sources, check_unchanged
+from pmm.run.run_origin import KEPT, Sources, check_unchanged
 
 
 def folder_of(plan: Plan, folder: str, output: str | None) -> Path:

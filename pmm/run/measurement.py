@@ -19,7 +19,7 @@ from pmm.recorder.live_path import GateResolver, Taken, as_record, header_channe
 from pmm.run.errors import GateVoidError, RecordingError
 from pmm.run.gate import Gate, GateState
 from pmm.run.journal import RunJournal
-from pmm.run.push import PushRecord
+from pmm.run.push_record import PushRecord
 from pmm.run.readings import Means, beside, far_text, needles, rows_of, worst_relative
 from pmm.run.status import ChannelReading
 

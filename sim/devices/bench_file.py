@@ -11,7 +11,7 @@ from hardware.description.toml import parse_toml
 from hardware.driver import GROUP, read_settings
 from hardware.rig_configuration import TABLES as DEVICES
 from hardware.rig_configuration import RigConfiguration, read_rig
-from hardware.simulated import SimulatedTables
+from hardware.simulation_identity import SimulatedTables
 from sim.devices.plant import PlantConditions
 from sim.devices.stated_rig import TABLES, stated_rig
 from sim.devices.world import Scene, World

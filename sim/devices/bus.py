@@ -7,7 +7,7 @@ from pathlib import Path
 import can
 
 from hardware.driver import Prompt
-from hardware.simulated import SimulatedTables
+from hardware.simulation_identity import SimulatedTables
 from sim.devices.bench_file import read_bench
 from sim.devices.operator import SimulatedOperator
 from sim.devices.registry import give_back, take

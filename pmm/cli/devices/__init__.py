@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hardware.rig import Rig
     from hardware.rig_configuration import RigConfiguration
     from hardware.serial_port import PortSettings
-    from pmm.devices.opening import DeviceTables
+    from pmm.devices.device_source import DeviceTables
 
 JSON_SCHEMA = "pmm-devices-1"
 
@@ -103,13 +103,13 @@ class Target:
                 f"{' and '.join(named) or 'nothing'} to look at: name one of RIG.toml, "
                 "--interface (with --channel), --port"
             )
-        from pmm.devices.opening import DeviceTables
+        from pmm.devices.device_source import DeviceTables
 
         return DeviceTables(Path(self.rig)) if self.rig else None
 
     def bus(self) -> "BusConfiguration":
         """Return the bus that is named alone."""
-        from pmm.devices.opening import bus_alone
+        from pmm.devices.device_source import bus_alone
 
         found = dict(_option(one) for one in self.options)
         return bus_alone(self.interface or "", self.channel, self.bitrate, found)
@@ -146,7 +146,7 @@ def opened(configuration: "RigConfiguration", *, free_running: bool = False) -> 
     """
     from hardware.pacing import FreeRunning, RealTime
     from hardware.rig import Rig
-    from pmm.devices.opening import SIMULATED
+    from pmm.devices.device_source import SIMULATED
 
     bus = configuration.bus
     if free_running and (bus is None or bus.interface != SIMULATED):

@@ -16,7 +16,7 @@ from pmm.cli.terminal import Terminal
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from pmm.devices.pushing import Pushed
+    from pmm.devices.push_session import Pushed
 
 
 @click.command()
@@ -32,8 +32,8 @@ def gauges(
 
     You are asked for one gauge after the other; nothing has to be typed, the push itself is seen.
     """
-    from pmm.devices.opening import DeviceTables
-    from pmm.devices.pushing import GaugeReadings, push_each
+    from pmm.devices.device_source import DeviceTables
+    from pmm.devices.push_session import GaugeReadings, push_each
 
     tables = DeviceTables(Path(rig))
     with (

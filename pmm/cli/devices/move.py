@@ -32,10 +32,10 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
     \b
     pmm devices move eccentricity 20mm rig.toml
     """  # noqa: D301
-    from hardware.commanded import check_position
-    from pmm.devices.moving import NOTHING_MOVED, axis_of, look
-    from pmm.devices.moving import move as move_axis
-    from pmm.devices.opening import DeviceTables
+    from hardware.command_limits import check_position
+    from pmm.devices.axis_move import NOTHING_MOVED, axis_of, look
+    from pmm.devices.axis_move import move as move_axis
+    from pmm.devices.device_source import DeviceTables
 
     tables = DeviceTables(Path(rig))
     with (

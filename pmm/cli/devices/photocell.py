@@ -16,7 +16,7 @@ from pmm.cli.terminal import Terminal
 
 if TYPE_CHECKING:
     from hardware.roles import Pulse
-    from pmm.devices.watching import PhotocellRecord
+    from pmm.devices.photocell_test import PhotocellRecord
 
 
 @click.command()
@@ -38,10 +38,10 @@ def photocell(
     turn_hz: float | None,
 ) -> None:
     """Test the photocell: pulses, intervals, missing and extra ones."""
-    from hardware.commanded import check_speed
-    from pmm.devices.moving import NOTHING_MOVED, look, turn
-    from pmm.devices.opening import DeviceTables
-    from pmm.devices.watching import watch
+    from hardware.command_limits import check_speed
+    from pmm.devices.axis_move import NOTHING_MOVED, look, turn
+    from pmm.devices.device_source import DeviceTables
+    from pmm.devices.photocell_test import watch
 
     tables = DeviceTables(Path(rig))
     with (

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from rich.live import Live as Screen
     from rich.table import Table
 
-    from pmm.devices.live import DeviceRow
-    from pmm.devices.opening import DeviceTables
+    from pmm.devices.device_readings import DeviceRow
+    from pmm.devices.device_source import DeviceTables
     from pmm.devices.readings import Look, Shown
 
 _LATEST = 5  # faults shown

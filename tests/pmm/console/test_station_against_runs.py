@@ -10,7 +10,7 @@ import can
 import numpy as np
 
 from hardware.pacing import FreeRunning
-from pmm.console.asking import BrowserAnswers
+from pmm.console.answers import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
 from pmm.console.messages import Frame, LoopOrder, Notice, OrderKind, QueuedPlan, Reply, Told
 from pmm.console.pacing import CountingPacer

@@ -16,7 +16,7 @@ import pytest
 from pmm.console.messages import QueuedPlan
 from pmm.console.packing import pack, unpack
 from pmm.console.plans import Plans
-from pmm.console.worker import BusyError, NotWorkedOutError, WorkerProcess, WorkLimits
+from pmm.console.worker_process import BusyError, NotWorkedOutError, WorkerProcess, WorkLimits
 from pmm.console.workers import Shared
 from tests.pmm.console.chromium import plan, rig_in
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from hardware.bus import BusConfiguration
-from hardware.commanded import check_speed
+from hardware.command_limits import check_speed
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 from hardware.errors import InterlockError, LimitError
@@ -14,10 +14,10 @@ from hardware.objects import MappedObjects
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.scan import Ear, scan
-from pmm.devices.live import Live
-from pmm.devices.moving import NOTHING_MOVED, axis_of, look, move, turn
-from pmm.devices.pushing import GaugeReadings, direction, push_each
-from pmm.devices.watching import watch
+from pmm.devices.axis_move import NOTHING_MOVED, axis_of, look, move, turn
+from pmm.devices.device_readings import Live
+from pmm.devices.photocell_test import watch
+from pmm.devices.push_session import GaugeReadings, direction, push_each
 from sim.devices.registry import running
 from sim.devices.world import Scene, World
 from sim.rig import vertical_rig

@@ -14,11 +14,11 @@ from hardware.roles import Pulse
 from pmm.cli.devices.gauges import gauges
 from pmm.cli.devices.photocell import photocell
 from pmm.cli.devices.read import read
-from pmm.devices.live import DeviceRow
+from pmm.devices.device_readings import DeviceRow
+from pmm.devices.photocell_test import PhotocellRecord
+from pmm.devices.push_session import Pushed
 from pmm.devices.push_test import Push
-from pmm.devices.pushing import Pushed
 from pmm.devices.readings import Shown
-from pmm.devices.watching import PhotocellRecord
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "vertical" / "rig.toml"
 
@@ -79,7 +79,7 @@ def test_gauges_are_pushed_on(monkeypatch: pytest.MonkeyPatch) -> None:
         yield Pushed("force_fore", None, ("no push",))
         terminal.goes_on.set()
 
-    monkeypatch.setattr("pmm.devices.pushing.push_each", pushed)
+    monkeypatch.setattr("pmm.devices.push_session.push_each", pushed)
     words = [str(EXAMPLE), "--free-running", "--within", "1"]
     assert gauges.main(words, standalone_mode=False) == 1
     assert not terminal.held_up
@@ -95,7 +95,7 @@ def test_pulses_are_watched_on(monkeypatch: pytest.MonkeyPatch) -> None:
         terminal.goes_on.set()
         return PhotocellRecord((Pulse(7, 1.0),), (), (), True)
 
-    monkeypatch.setattr("pmm.devices.watching.watch", watched)
+    monkeypatch.setattr("pmm.devices.photocell_test.watch", watched)
     words = [str(EXAMPLE), "--free-running", "--yes", "--pulses", "2"]
     photocell.main(words, standalone_mode=False)
     assert not terminal.held_up

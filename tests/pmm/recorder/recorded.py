@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from hardware.carry_over import opening_of
 from hardware.description.channels import Channel
 from hardware.description.setpoint import SetPoint
-from hardware.opening import opening_of
 from hardware.pacing import FreeRunning
 from hardware.raw_log import Frame
 from hardware.rig import Rig

@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hardware.carry_over import carry_on, opening_of
 from hardware.description.errors import DataError
 from hardware.lines import TICK_MODULUS, Unwrapped
-from hardware.opening import carry_on, opening_of
 from hardware.raw_log import FramePacker, container, file_header
 from hardware.raw_log_reading import read_frames
 from hardware.roles import SampleBlock

@@ -14,7 +14,7 @@ import pytest
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import RecordedWith
-from pmm.run.identity import _TABLES
+from pmm.run.run_origin import _TABLES
 from tests.pmm.run.test_command_against_its_files import pmm
 from tests.sim.devices.benches import ROOT
 

@@ -6,7 +6,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Final
 
-from hardware.opening import opening_of
+from hardware.carry_over import opening_of
 from hardware.rig import Rig
 from hardware.roles import Reading
 from pmm.campaign.calibrated_recording import provenance_of

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pmm.console.figures import figures_of
 from pmm.console.hub import Hub
-from pmm.console.worker import NotWorkedOutError, WorkerProcess
+from pmm.console.worker_process import NotWorkedOutError, WorkerProcess
 
 
 class Finished:

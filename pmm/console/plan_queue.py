@@ -4,8 +4,8 @@ from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
-from pmm.console.checking import ReadyPlan
 from pmm.console.encoding import EncodedText
+from pmm.console.worker_tasks import ReadyPlan
 
 
 class Queued:

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hardware.commanded import check_position, check_speed
+from hardware.command_limits import check_position, check_speed
 from hardware.description.errors import ConfigurationError
 from hardware.rig import Rig
 from hardware.roles import PositionAxis, Reading, Shaft
