@@ -7,11 +7,18 @@ from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import socket
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE
 from pmm.console.quick_stop import QuickStop
+
+if TYPE_CHECKING:
+    import asyncio
+
+    import uvicorn
+
+    from pmm.console.security import Guard
 
 
 def serve(
@@ -31,7 +38,6 @@ def serve(
     import uvicorn
 
     from pmm.console.app import application
-    from pmm.console.connections import Connection, Crowd, PageStream
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -43,8 +49,19 @@ def serve(
     def end() -> None:
         server.should_exit = True
 
-    configuration = uvicorn.Config(
-        application(settings, connection, quick_stop, end),
+    page = application(settings, connection, quick_stop, end)
+    server = Server(_configuration(page, certificate, key))
+    asyncio.run(server.serve(sockets=[listening]))
+
+
+def _configuration(page: "Guard", certificate: Path | None, key: Path | None) -> "uvicorn.Config":
+    """Return how the page is served: what comes is limited in size, number and time."""
+    import uvicorn
+
+    from pmm.console.connections import Connection, Crowd, PageStream
+
+    return uvicorn.Config(
+        page,
         ws=PageStream,
         ws_per_message_deflate=False,
         ws_max_size=LARGEST_MESSAGE,
@@ -57,6 +74,3 @@ def serve(
         ssl_certfile=certificate,
         ssl_keyfile=key,
     )
-    server = Server(configuration)
-
-    asyncio.run(server.serve(sockets=[listening]))

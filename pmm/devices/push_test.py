@@ -87,19 +87,18 @@ def judge(
         )
         for one in channels
     }
-    by_strength = sorted(
+    first, *weaker = sorted(
         channels, key=lambda one: _strength(changes[one.name], limits[one.name]), reverse=True
     )
-    first = by_strength[0]
     change, limit = changes[first.name], limits[first.name]
     if not abs(change) > limit:
         raise NoPushError(
             f"no push: {first.name} moved most, by {change:.3g} {first.unit}, and a push is more "
             f"than {limit:.3g} {first.unit}; push harder, or look whether the gauge is connected"
         )
-    for other in by_strength[1:]:
+    for other in weaker:
         _check_alone(first, changes, limits, other)
-    others = {one.name: changes[one.name] for one in by_strength[1:]}
+    others = {one.name: changes[one.name] for one in weaker}
     return Push(first.name, 1 if change > 0.0 else -1, change, limit, first.unit, others)
 
 

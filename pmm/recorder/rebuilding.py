@@ -48,12 +48,7 @@ def rebuild(
         what = "lost samples" if run.samples else "no whole sample, and none"
         raise DataError(f"{run.folder}: holds {what} can be decoded: {error}") from error
     first, values = _with_whole(run, run.header.first_sync, _samples(run, taken))
-    need = 8 * (values.shape[0] + 1) * values.shape[1]
-    if (free := free_bytes(run.folder)) < need:
-        raise DiskFullError(
-            f"{run.folder / SAMPLES}: needs {need / 1e6:.1f} MB, {free / 1e6:.1f} MB are free; "
-            f"make room, then: pmm recover {run.folder}"
-        )
+    _check_room(run.folder, values)
     set_aside(run.folder / SAMPLES)
     _write_samples(run, first, values)
     lost = [SAMPLES]
@@ -62,6 +57,15 @@ def rebuild(
         lost.append(PULSES)
     message = f"what {' and '.join(lost)} had lost is decoded again from the raw log ({BUS})"
     return Flag("samples_rebuilt", Severity.WARNING, message), tuple(lost)
+
+
+def _check_room(folder: Path, values: FloatArray) -> None:
+    need, free = 8 * (values.shape[0] + 1) * values.shape[1], free_bytes(folder)
+    if free < need:
+        raise DiskFullError(
+            f"{folder / SAMPLES}: needs {need / 1e6:.1f} MB, {free / 1e6:.1f} MB are free; "
+            f"make room, then: pmm recover {folder}"
+        )
 
 
 def _with_whole(run: RunData, first: int, decoded: FloatArray) -> tuple[int, FloatArray]:

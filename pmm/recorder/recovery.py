@@ -69,12 +69,16 @@ class NothingWrittenError(DataError):
     """A run of which nothing had been recorded when its program ended."""
 
 
-def _nothing_written(run: RunData) -> bool:
-    """Whether a run, never closed, has no more than what its recorder begins its files with."""
-    if run.marker is not None or not (run.folder / HEADER).exists():
-        return False
+def _check_written(run: RunData) -> None:
+    """Refuse a run, never closed, that has no more than what its recorder begins its files with."""
+    if run.samples is not None or run.marker is not None or not (run.folder / HEADER).exists():
+        return
     begun = {SAMPLES: SampleWriter(run.header).head(), BUS: file_header()}
-    return all(_is_begun(run.folder / name, begun.get(name, b"")) for name in STREAMS)
+    if all(_is_begun(run.folder / name, begun.get(name, b"")) for name in STREAMS):
+        raise NothingWrittenError(
+            f"{run.folder}: its recorder was opened, and the program ended before anything was "
+            "written: there is nothing to recover, and nothing is lost"
+        )
 
 
 def _is_begun(path: Path, head: bytes) -> bool:
@@ -129,11 +133,7 @@ def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Recove
         is_recorded = (folder / RECORDING).exists() and RECORDING not in changed
         if is_recorded and not changed:
             return _outcome(run, log, _flags_before(folder), was_whole=run.marker is not None)
-        if run.samples is None and _nothing_written(run):
-            raise NothingWrittenError(
-                f"{folder}: its recorder was opened, and the program ended before anything was "
-                "written: there is nothing to recover, and nothing is lost"
-            )
+        _check_written(run)
         damage = changed.pop(RECORDING, None)
         flags, made = (*_torn(run, log), *change_flags(changed)), files_recovered(folder)
         if _has_lost(run):
