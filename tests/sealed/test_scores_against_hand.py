@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from benchmarks import machine
 from hardware.description.errors import DataError
-from tests.sealed import steps
+from tests.sealed import steps, steps_of_worlds
 from tests.sealed.__main__ import main
 from tests.sealed.scoreboard import page, write_scoreboard
 from tests.sealed.scores import all_scores, is_development, keep, read
@@ -208,8 +208,11 @@ def test_whole_keeps_the_score_of_a_commit_alone(
     for step in ("generated", "answered", "others", "left_out_answered"):
         monkeypatch.setattr(steps, step, lambda *arguments: None)
     monkeypatch.setattr(steps, "scored", lambda board, place, workers: told.append(place))
+    held: list[Path] = []
+    monkeypatch.setattr(steps_of_worlds, "held", lambda board, place: held.append(place))
     assert _run("whole", *words, "--output", str(docs), "--docs", str(docs)).exit_code == 0
     assert told == [docs if kept else None]
+    assert held == [docs / "scores/worlds/ccccccc-A.json" if kept else docs / "limits.json"]
 
 
 def test_the_documentation_s_page_is_what_its_scores_make() -> None:
