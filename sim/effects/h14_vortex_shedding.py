@@ -11,10 +11,11 @@ from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
-from sim.model.laws import Coulomb, ForceLaw, Tone
+from sim.model.laws import Coulomb, Tone
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
+    from sim.model.force_law import ForceLaw
     from sim.model.law_point import Point
 
 TONES: Final = 24

@@ -14,8 +14,8 @@ from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 from sim.effects.situation import at_struts as at_struts_of
 from sim.model.coefficients import HullCoefficients, Matrix
+from sim.model.force_law import ForceLaw
 from sim.model.law_point import Acting, Point
-from sim.model.laws import ForceLaw
 from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
 

@@ -1,19 +1,28 @@
-"""The interface of a force law: its inputs, and where it jumps or bends."""
+"""The interface of a force law: its inputs, and where it jumps or bends.
 
+:func:`sim.solve.compilation.compile_loop` takes the functions of an input as they stand here.
+"""
+
+import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import astuple, replace
 from enum import IntEnum
-from typing import ClassVar, Final, NamedTuple, Self
+from typing import Any, ClassVar, Final, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from sim.mechanism.geometry import Value
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens
 # the turn of a motion with peak speed V, which takes (CREEP / V)^2 / 6 from the first harmonic.
 CREEP_M_S: Final = 1e-4
+
+
+Parameters: TypeAlias = tuple[float, float, float, float]
+"""The parameters of a law in the order of its class, NaN for one that is ``None`` or missing."""
 
 
 class Argument(IntEnum):
@@ -36,9 +45,8 @@ class Corner(NamedTuple):
 TURNS: Final = (Corner(Argument.VELOCITY, -CREEP_M_S), Corner(Argument.VELOCITY, CREEP_M_S))
 
 
-@dataclass(frozen=True, eq=False)
-class LawInput:
-    """Inputs of a force law: one value a sample each.
+class LawInput(NamedTuple):
+    """Inputs of a force law: one value a sample each, or those of one instant in a compiled loop.
 
     Attributes
     ----------
@@ -55,23 +63,40 @@ class LawInput:
         Carriage speed.
     """
 
-    position: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    load: FloatArray
-    time_s: FloatArray
+    position: Value
+    velocity: Value
+    acceleration: Value
+    load: Value
+    time_s: Value
     step_s: float
-    speed_m_s: FloatArray
+    speed_m_s: Value
 
     @property
-    def half_change(self) -> FloatArray:
-        """Half of what the velocity changes over the sample."""
-        return np.hypot(self.acceleration * (self.step_s / 2.0), CREEP_M_S)
-
-    @property
-    def direction(self) -> FloatArray:
+    def direction(self) -> Value:
         """Sign of the velocity, averaged over the sample."""
-        return np.minimum(np.maximum(self.velocity / self.half_change, -1.0), 1.0)
+        return direction(self)
+
+
+def half_change(at: LawInput) -> Value:
+    """Return half of what the velocity changes over the sample."""
+    return np.sqrt((at.acceleration * (at.step_s / 2.0)) ** 2 + CREEP_M_S**2)
+
+
+def direction(at: LawInput) -> Value:
+    """Return the sign of the velocity, averaged over the sample."""
+    return np.minimum(np.maximum(at.velocity / half_change(at), -1.0), 1.0)
+
+
+def dynamic(reference_speed_m_s: float, at: LawInput) -> Value:
+    """Return (U/U_0)^2, or 1 where the law does not depend on the speed."""
+    return 1.0 if math.isnan(reference_speed_m_s) else (at.speed_m_s / reference_speed_m_s) ** 2
+
+
+def error_function(x: Value) -> Value:
+    """Return erf(x); in compiled loops it is :func:`math.erf`."""
+    from scipy.special import erf
+
+    return erf(x)
 
 
 class ForceLaw(ABC):
@@ -113,3 +138,21 @@ class ForceLaw(ABC):
             )
         more = {name: factor * getattr(self, name) for name in self.strengths}
         return replace(self, **more)  # type: ignore[type-var]  # every law is a dataclass
+
+
+class NumberedLaw(ForceLaw):
+    """A law that the compiled loops have, by its number in :data:`sim.model.laws.LAWS`."""
+
+    kernel: ClassVar["staticmethod[[Parameters, LawInput], Value]"]
+
+    @property
+    def parameters(self) -> Parameters:
+        """Return the parameters in order, NaN for one that is ``None`` or missing."""
+        given: tuple[Any, ...] = astuple(self)  # type: ignore[call-overload]  # all are dataclasses
+        p, q, r, s, *_ = (math.nan if one is None else one for one in (*given, *[None] * 4))
+        return p, q, r, s
+
+    def force(self, motion: LawInput) -> FloatArray:
+        """Return the force that has to be exerted, shape ``(samples,)``."""
+        force: FloatArray = self.kernel(self.parameters, motion)
+        return force

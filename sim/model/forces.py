@@ -7,8 +7,8 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.mechanism import geometry
+from sim.model.force_law import LawInput
 from sim.model.law_point import Acting, Point
-from sim.model.laws import LawInput
 from sim.model.numbers import (
     corners_only,
     geometry_only,

@@ -4,20 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
 
-from sim.model.laws import (
-    Coulomb,
-    Cubic,
-    Exponential,
-    ForceLaw,
-    LoadFriction,
-    Proximity,
-    Quadratic,
-    RubbingSpring,
-    Spring,
-    Stribeck,
-    Tone,
-    Viscous,
-)
+from sim.model.force_law import ForceLaw
+from sim.model.laws import AnyLaw
 
 
 class Point(StrEnum):
@@ -30,22 +18,6 @@ class Point(StrEnum):
     THROUGH_WATER = "through_water"  # translation; its velocity includes U times the rotation
 
 
-# The laws that a configuration file can name, told apart by their keys.
-AnyLaw = (
-    Viscous
-    | Quadratic
-    | Cubic
-    | Coulomb
-    | Stribeck
-    | LoadFriction
-    | Spring
-    | RubbingSpring
-    | Proximity
-    | Exponential
-    | Tone
-)
-
-
 @dataclass(frozen=True)
 class Acting:
     """A law and the point of the model at which it acts.
@@ -53,7 +25,7 @@ class Acting:
     Attributes
     ----------
     law
-        One of the laws of this file where it comes from a configuration file, else any.
+        One of :mod:`sim.model.laws` where it comes from a configuration file, else any.
     in_water
         True for a law of the water, which a run in air does not have.
     """

@@ -1,45 +1,17 @@
 """Force laws as a table of numbers: what a compiled loop reads in place of Python objects."""
 
 import math
-from dataclasses import astuple
-from typing import Final, NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from sim.model.force_law import ForceLaw, NumberedLaw
 from sim.model.forces import arguments_of, direction
 from sim.model.law_point import Acting, Point
-from sim.model.laws import (
-    Coulomb,
-    Cubic,
-    Exponential,
-    ForceLaw,
-    LoadFriction,
-    Proximity,
-    Quadratic,
-    RubbingSpring,
-    Spring,
-    Stribeck,
-    Tone,
-    Viscous,
-)
+from sim.model.laws import LAWS
 from sim.model.numbers import has_corners
 from sim.model.system import HullSystem
-
-# The order is the law's number in :mod:`sim.model.compiled_laws`, a test holds the two together.
-LAWS: Final[tuple[type[ForceLaw], ...]] = (
-    Viscous,
-    Quadratic,
-    Cubic,
-    Spring,
-    Proximity,
-    Exponential,
-    Tone,
-    Coulomb,
-    Stribeck,
-    LoadFriction,
-    RubbingSpring,
-)
 
 
 class LawTable(NamedTuple):
@@ -48,9 +20,9 @@ class LawTable(NamedTuple):
     Attributes
     ----------
     laws
-        Shape ``(laws, 10)``: number of the law in :data:`LAWS`; four parameters in order, NaN for
-        one that is ``None`` or missing; in strut coordinates, two numbers each, the direction of
-        its motion and what gives its load; 1 for a law of the motion through the water, else 0.
+        Shape ``(laws, 10)``: number of the law in :data:`sim.model.laws.LAWS`; its parameters; in
+        strut coordinates, two numbers each, the direction of its motion and what gives its load;
+        1 for a law of the motion through the water, else 0.
     hull
         See :mod:`sim.mechanism.geometry`.
     arguments
@@ -79,9 +51,8 @@ def table_of(laws: tuple[Acting, ...], system: HullSystem) -> LawTable:
     corners: list[tuple[int, int, float]] = []
     for item, acting in enumerate(laws):
         row = rows[item]
-        values = astuple(acting.law)  # type: ignore[arg-type]  # every numbered law is a dataclass
-        row[0] = LAWS.index(type(acting.law))
-        row[1 : 1 + len(values)] = [math.nan if value is None else value for value in values]
+        law = cast("NumberedLaw", acting.law)
+        row[0], row[1:5] = LAWS.index(type(law)), law.parameters
         row[5:7], row[7:9] = direction(acting.point, system.to_motion)
         row[9] = acting.point is Point.THROUGH_WATER
         corners += [(item, corner.argument, corner.level) for corner in acting.law.corners]

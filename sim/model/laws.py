@@ -1,8 +1,12 @@
 """Forces that depend on the motion at once: friction, drag, springs; each one small law.
 
 A law gives the force that a strut (or the couple that both) has to exert because of it, positive
-along the motion, from the motion at one :class:`sim.model.law_point.Point` of the model. A new law
-is a new class with a method ``force``; nothing else needs to know of it.
+along the motion, from the motion at one :class:`sim.model.law_point.Point` of the model.
+
+Each law is written once, as a function of its parameters and of the motion at one instant or at an
+array of them: :func:`sim.solve.compilation.compile_loop` makes compiled ones of the same functions.
+A new law is such a function, its class, and its line in :data:`AnyLaw` and :func:`law_value`; a law
+of one's own needs a class with a method ``force`` only.
 
 A law that jumps where the velocity changes sign is averaged over the sample: the velocity is taken
 as linear over the sample, so that sgn(v) becomes the part of the sample with v > 0 less the part
@@ -13,39 +17,55 @@ steady state has no samples: there the law is integrated between its ``corners``
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final, get_args
 
 import numpy as np
 
-from hardware.description.arrays import FloatArray
-from sim.model.force_law import CREEP_M_S, TURNS, Argument, Corner, ForceLaw, LawInput
-
-__all__ = ["CREEP_M_S", "ForceLaw", "LawInput"]
+from sim.mechanism.geometry import Value
+from sim.model.force_law import (
+    TURNS,
+    Argument,
+    Corner,
+    LawInput,
+    NumberedLaw,
+    Parameters,
+    direction,
+    dynamic,
+    error_function,
+    half_change,
+)
 
 # Of the Stribeck speed: beyond it exp(-9), 1e-4 of the force, is left. It only parts the period.
 _STRIBECK_ENDS = 3.0
 
 
+def _viscous(p: Parameters, at: LawInput) -> Value:
+    return p[0] * at.velocity
+
+
 @dataclass(frozen=True)
-class Viscous(ForceLaw):
+class Viscous(NumberedLaw):
     """``b v``."""
 
     viscous_n_s_m: float
 
+    kernel = staticmethod(_viscous)
     strengths: ClassVar[tuple[str, ...]] = ("viscous_n_s_m",)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        return self.viscous_n_s_m * motion.velocity
+
+def _quadratic(p: Parameters, at: LawInput) -> Value:
+    velocity = at.velocity + p[1]
+    return p[0] * velocity * np.abs(velocity)
 
 
 @dataclass(frozen=True)
-class Quadratic(ForceLaw):
+class Quadratic(NumberedLaw):
     """``B (v + v0) |v + v0|``, with a mean velocity v0 (drift)."""
 
     quadratic_n_s2_m2: float
     drift_m_s: float = 0.0
 
+    kernel = staticmethod(_quadratic)
     strengths: ClassVar[tuple[str, ...]] = ("quadratic_n_s2_m2",)
 
     @property
@@ -53,27 +73,27 @@ class Quadratic(ForceLaw):
         """Return where the flow turns."""
         return (Corner(Argument.VELOCITY, -self.drift_m_s),)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        velocity = motion.velocity + self.drift_m_s
-        return self.quadratic_n_s2_m2 * velocity * np.abs(velocity)
+
+def _cubic(p: Parameters, at: LawInput) -> Value:
+    return p[0] * at.velocity**3
 
 
 @dataclass(frozen=True)
-class Cubic(ForceLaw):
+class Cubic(NumberedLaw):
     """``B v^3``."""
 
     cubic_n_s3_m3: float
 
+    kernel = staticmethod(_cubic)
     strengths: ClassVar[tuple[str, ...]] = ("cubic_n_s3_m3",)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        return self.cubic_n_s3_m3 * motion.velocity**3
+
+def _coulomb(p: Parameters, at: LawInput) -> Value:
+    return p[0] * direction(at) + p[1]
 
 
 @dataclass(frozen=True)
-class Coulomb(ForceLaw):
+class Coulomb(NumberedLaw):
     """``F_c sgn(v)``, and the constant that different friction to either side leaves.
 
     With F+ and F- the friction forward and backward, ``coulomb_n`` is their mean and ``uneven_n``
@@ -83,6 +103,7 @@ class Coulomb(ForceLaw):
     coulomb_n: float
     uneven_n: float = 0.0
 
+    kernel = staticmethod(_coulomb)
     strengths: ClassVar[tuple[str, ...]] = ("coulomb_n", "uneven_n")
 
     @property
@@ -90,18 +111,22 @@ class Coulomb(ForceLaw):
         """Return where the motion turns."""
         return TURNS
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        return self.coulomb_n * motion.direction + self.uneven_n
+
+def _stribeck(p: Parameters, at: LawInput) -> Value:
+    # The mean over the sample, by its integral.
+    half, velocity = half_change(at) / p[1], at.velocity / p[1]
+    risen = error_function(np.abs(velocity + half)) - error_function(np.abs(velocity - half))
+    return p[0] * (math.sqrt(math.pi) / 4.0) * risen / half
 
 
 @dataclass(frozen=True)
-class Stribeck(ForceLaw):
+class Stribeck(NumberedLaw):
     """``(F_s - F_c) exp(-(v/v_s)^2) sgn(v)``: what sticking adds to Coulomb friction."""
 
     excess_n: float
     stribeck_speed_m_s: float
 
+    kernel = staticmethod(_stribeck)
     strengths: ClassVar[tuple[str, ...]] = ("excess_n",)
 
     @property
@@ -110,25 +135,20 @@ class Stribeck(ForceLaw):
         rest = _STRIBECK_ENDS * self.stribeck_speed_m_s
         return (*TURNS, Corner(Argument.VELOCITY, rest), Corner(Argument.VELOCITY, -rest))
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force that has to be exerted: its mean over the sample, by its integral."""
-        from scipy.special import erf
 
-        half, scale = motion.half_change / self.stribeck_speed_m_s, math.sqrt(math.pi) / 4.0
-        velocity = motion.velocity / self.stribeck_speed_m_s
-        risen = erf(np.abs(velocity + half)) - erf(np.abs(velocity - half))
-        mean: FloatArray = self.excess_n * scale * risen / half
-        return mean
+def _load_friction(p: Parameters, at: LawInput) -> Value:
+    return p[0] * np.abs(p[2] * at.load + p[1]) * direction(at)
 
 
 @dataclass(frozen=True)
-class LoadFriction(ForceLaw):
+class LoadFriction(NumberedLaw):
     """``mu |N + N_0| sgn(v)``: N the load that the linear parts put on the strut."""
 
     friction: float
     side_load_n: float = 0.0
     load_share: float = 1.0
 
+    kernel = staticmethod(_load_friction)
     strengths: ClassVar[tuple[str, ...]] = ("friction",)
 
     @property
@@ -138,14 +158,13 @@ class LoadFriction(ForceLaw):
             return TURNS
         return (*TURNS, Corner(Argument.LOAD, -self.side_load_n / self.load_share))
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        normal = np.abs(self.load_share * motion.load + self.side_load_n)
-        return self.friction * normal * motion.direction
+
+def _spring(p: Parameters, at: LawInput) -> Value:
+    return p[3] + at.position * (p[0] + at.position * (p[1] + at.position * p[2]))
 
 
 @dataclass(frozen=True)
-class Spring(ForceLaw):
+class Spring(NumberedLaw):
     """``F_0 + k x + k_2 x^2 + k_3 x^3``: a cable, a flaring hull."""
 
     stiffness_n_m: float = 0.0
@@ -153,6 +172,7 @@ class Spring(ForceLaw):
     stiffness_n_m3: float = 0.0
     preload_n: float = 0.0
 
+    kernel = staticmethod(_spring)
     strengths: ClassVar[tuple[str, ...]] = (
         "stiffness_n_m",
         "stiffness_n_m2",
@@ -160,19 +180,18 @@ class Spring(ForceLaw):
         "preload_n",
     )
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        x = motion.position
-        slope = self.stiffness_n_m + x * (self.stiffness_n_m2 + x * self.stiffness_n_m3)
-        return self.preload_n + x * slope
+
+def _rubbing_spring(p: Parameters, at: LawInput) -> Value:
+    return p[0] * np.abs(at.position) * direction(at)
 
 
 @dataclass(frozen=True)
-class RubbingSpring(ForceLaw):
+class RubbingSpring(NumberedLaw):
     """``k_h |x| sgn(v)``: a loss per cycle that does not depend on the frequency (Reid)."""
 
     rubbing_n_m: float
 
+    kernel = staticmethod(_rubbing_spring)
     strengths: ClassVar[tuple[str, ...]] = ("rubbing_n_m",)
 
     @property
@@ -180,13 +199,13 @@ class RubbingSpring(ForceLaw):
         """Return where the motion turns, and its middle."""
         return (*TURNS, Corner(Argument.POSITION))
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        return self.rubbing_n_m * np.abs(motion.position) * motion.direction
+
+def _proximity(p: Parameters, at: LawInput) -> Value:
+    return p[0] * dynamic(p[3], at) * ((p[1] / (p[1] - at.position)) ** p[2] - 1.0)
 
 
 @dataclass(frozen=True)
-class Proximity(ForceLaw):
+class Proximity(NumberedLaw):
     """``F_0 (U/U_0)^2 ((h/(h - x))^p - 1)``: a wall, or the bottom, at the distance h."""
 
     proximity_n: float
@@ -194,36 +213,33 @@ class Proximity(ForceLaw):
     exponent: float = 2.0
     reference_speed_m_s: float | None = None
 
+    kernel = staticmethod(_proximity)
     strengths: ClassVar[tuple[str, ...]] = ("proximity_n",)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        ratio = self.clearance_m / (self.clearance_m - motion.position)
-        return (
-            self.proximity_n
-            * _dynamic(motion, self.reference_speed_m_s)
-            * (ratio**self.exponent - 1.0)
-        )
+
+def _exponential(p: Parameters, at: LawInput) -> Value:
+    return p[0] * dynamic(p[2], at) * np.expm1(p[1] * at.position)
 
 
 @dataclass(frozen=True)
-class Exponential(ForceLaw):
+class Exponential(NumberedLaw):
     """``F_0 (U/U_0)^2 (exp(k x) - 1)``: suction below a free surface."""
 
     suction_n: float
     rate_1_m: float
     reference_speed_m_s: float | None = None
 
+    kernel = staticmethod(_exponential)
     strengths: ClassVar[tuple[str, ...]] = ("suction_n",)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        dynamic = _dynamic(motion, self.reference_speed_m_s)
-        return self.suction_n * dynamic * np.expm1(self.rate_1_m * motion.position)
+
+def _tone(p: Parameters, at: LawInput) -> Value:
+    decay = 1.0 if math.isnan(p[3]) else np.exp(-at.time_s / p[3])
+    return p[0] * decay * np.sin(2.0 * math.pi * p[1] * at.time_s + p[2])
 
 
 @dataclass(frozen=True)
-class Tone(ForceLaw):
+class Tone(NumberedLaw):
     """A force from outside at a frequency of its own: waves left over, shed vortices.
 
     It decays with ``decay_s`` if that is given. Being no multiple of the shaft's frequency, it has
@@ -237,18 +253,47 @@ class Tone(ForceLaw):
 
     periodic: ClassVar[bool] = False
 
+    kernel = staticmethod(_tone)
     strengths: ClassVar[tuple[str, ...]] = ("tone_n",)
 
-    def force(self, motion: LawInput) -> FloatArray:
-        """Return the force."""
-        turned = 2.0 * math.pi * self.tone_hz * motion.time_s + self.tone_phase_rad
-        decay = 1.0 if self.decay_s is None else np.exp(-motion.time_s / self.decay_s)
-        tone: FloatArray = self.tone_n * decay * np.sin(turned)
-        return tone
+
+# The laws that a configuration file can name, told apart by their keys.
+AnyLaw = (
+    Viscous
+    | Quadratic
+    | Cubic
+    | Spring
+    | Proximity
+    | Exponential
+    | Tone
+    | Coulomb
+    | Stribeck
+    | LoadFriction
+    | RubbingSpring
+)
+LAWS: Final[tuple[type[NumberedLaw], ...]] = get_args(AnyLaw)
 
 
-def _dynamic(motion: LawInput, reference_speed_m_s: float | None) -> FloatArray | float:
-    """Return (U/U_0)^2, or 1 where the law does not depend on the speed."""
-    if reference_speed_m_s is None:
-        return 1.0
-    return (motion.speed_m_s / reference_speed_m_s) ** 2
+def law_value(number: int, p: Parameters, at: LawInput) -> Value:  # noqa: C901  # a branch a law
+    """Return the force of the law with a number: the place of its class in :data:`LAWS`."""
+    if number == 0:
+        return _viscous(p, at)
+    if number == 1:
+        return _quadratic(p, at)
+    if number == 2:
+        return _cubic(p, at)
+    if number == 3:
+        return _spring(p, at)
+    if number == 4:
+        return _proximity(p, at)
+    if number == 5:
+        return _exponential(p, at)
+    if number == 6:
+        return _tone(p, at)
+    if number == 7:
+        return _coulomb(p, at)
+    if number == 8:
+        return _stribeck(p, at)
+    if number == 9:
+        return _load_friction(p, at)
+    return _rubbing_spring(p, at)

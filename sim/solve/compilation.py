@@ -42,6 +42,22 @@ def compile_loop(function: FunctionT) -> FunctionT:
     return cast("FunctionT", compiled)
 
 
+def callable_when_compiled(*functions: Callable[..., Any], by: Any = None) -> None:
+    """Let compiled loops call functions that stay as they are for arrays.
+
+    Parameters
+    ----------
+    by
+        What stands for them in compiled loops; by default they themselves.
+    """
+    if not available():
+        return
+    from numba.extending import overload
+
+    for function in functions:
+        overload(function, strict=False)(lambda *_, own=by or function: own)
+
+
 @cache
 def _cache_folder(chosen: str) -> Path:
     """Return where the compiled loops are kept: another folder for every change of their sources.

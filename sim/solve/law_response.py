@@ -11,7 +11,7 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.compiled_laws import law_force, law_value, motion_at
-from sim.model.force_law import CREEP_M_S
+from sim.model.force_law import LawInput
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import find_corners, multiples, pieces_between, value_at
 
@@ -172,7 +172,7 @@ def _ask(
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
         x, v = value_at(own[0], own[1], 0, way), value_at(own[0], own[1], 1, way)
         load = value_at(own[0], own[1], 3, way)
-        asked_force = law_value(laws, item, (x, v, load), CREEP_M_S, time_s, speed_m_s)
+        asked_force = law_value(laws, item, LawInput(x, v, 0.0, load, time_s, 0.0, speed_m_s))
         asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
         return
     value = np.empty((1, 8))

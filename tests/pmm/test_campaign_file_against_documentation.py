@@ -27,7 +27,8 @@ from sim.drive.prescribed_drive import DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Setting
 from sim.model.hull import HullCoefficients
-from sim.model.law_point import Acting, AnyLaw
+from sim.model.law_point import Acting
+from sim.model.laws import AnyLaw
 from sim.model.mounting import Mounting
 from sim.model.water.force_laws import CrossFlow
 from sim.model.water.radiation_file import RadiationFile

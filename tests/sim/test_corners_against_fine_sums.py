@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from hardware.description.setpoint import SetPoint
-from sim.model.force_law import LawInput
+from sim.model.force_law import ForceLaw, LawInput
 from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
 from sim.model.law_point import Acting, Point
 from sim.model.law_table import table_of
-from sim.model.laws import Coulomb, ForceLaw, LoadFriction, Quadratic, RubbingSpring, Stribeck
+from sim.model.laws import Coulomb, LoadFriction, Quadratic, RubbingSpring, Stribeck
 from sim.model.numbers import corners_only, geometry_only
 from sim.model.system import HullSystem
 from sim.model.water.force_laws import CrossFlow

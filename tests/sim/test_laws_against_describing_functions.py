@@ -9,12 +9,12 @@ from scipy.special import dawsn, iv
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
+from sim.model.force_law import ForceLaw
 from sim.model.law_point import Acting, Point
 from sim.model.laws import (
     Coulomb,
     Cubic,
     Exponential,
-    ForceLaw,
     LoadFriction,
     Proximity,
     Quadratic,

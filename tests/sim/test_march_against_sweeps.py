@@ -13,14 +13,15 @@ from sim.drive.motor import Cogging, Guides, Servo
 from sim.model import hull
 from sim.model import hull_steady_state as hull_steady
 from sim.model.compiled_laws import law_force
+from sim.model.force_law import ForceLaw
 from sim.model.forces import Instants, ModelMotion, law_forces
 from sim.model.law_point import Acting, Point
-from sim.model.law_table import LAWS, has_number, table_of
+from sim.model.law_table import has_number, table_of
 from sim.model.laws import (
+    LAWS,
     Coulomb,
     Cubic,
     Exponential,
-    ForceLaw,
     LoadFriction,
     Proximity,
     Quadratic,

@@ -30,8 +30,9 @@ from sim.effects.h13_residual_waves import ResidualWaves
 from sim.effects.h14_vortex_shedding import VortexShedding
 from sim.effects.h15_dynamic_trim import DynamicTrim
 from sim.effects.situation import STRUT_FORCES, Situation
+from sim.model.force_law import LawInput
 from sim.model.law_point import Acting, Point
-from sim.model.laws import LawInput, Quadratic
+from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
