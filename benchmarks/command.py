@@ -32,6 +32,7 @@ NAMES = (
     "recorder",
     "kill",
     "soak",
+    "faults",
     "coefficients",
     "exact",
     "campaign",
