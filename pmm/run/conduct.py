@@ -6,6 +6,7 @@ from typing import Final
 
 from hardware.demand import Demand
 from hardware.description.kinds import RunKind
+from hardware.limits import RAMP_MARGIN
 from hardware.rig import Rig
 from hardware.roles import PositionAxis
 from pmm.plan.rig_file import RigFile
@@ -17,6 +18,7 @@ from pmm.run.states import RunStateMachine, State
 from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
+_UNKNOWN_RAMP_S: Final = 60.0  # of a shaft that states no acceleration
 _UNDISPLACED: Final = frozenset({RunKind.ZERO, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW})
 
 
@@ -118,6 +120,14 @@ class Conduct:
     def moving(self) -> bool:
         """Whether any axis moves."""
         return any(one.moving for one in self.rig.powered())
+
+    @property
+    def ramp_s(self) -> float:
+        """Longest time that a profile stop may take, from the shaft's own settings."""
+        part = self.rig.configuration.shaft
+        acceleration = getattr(part.settings, "acceleration_hz_per_s", None) if part else None
+        highest_hz = self.rig_file.oscillator.frequency_hz.high
+        return RAMP_MARGIN * highest_hz / acceleration if acceleration else _UNKNOWN_RAMP_S
 
     def axes(self) -> tuple[tuple[PositionAxis, float], ...]:
         """Return the axes with where the run wants them.

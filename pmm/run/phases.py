@@ -28,6 +28,7 @@ def _enter_homing(c: Conduct) -> None:
 
 def _homing(c: Conduct) -> State | None:
     """Home the axes that are not, one after the other as the operator or the drive goes."""
+    check_standing(c, c.ramp_s)
     turns = c.rig.shaft is not None and c.rig.shaft.moving
     if turns or not all(one.enabled for one in c.rig.powered()):
         return None

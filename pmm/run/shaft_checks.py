@@ -37,19 +37,27 @@ def check_frequency(c: Conduct) -> None:
         )
 
 
-def check_standing(c: Conduct) -> None:
-    """Look whether the shaft stands, as it has to while the axes are set and the water calms.
+def check_standing(c: Conduct, ramp_s: float = 0.0) -> None:
+    """Look whether the shaft stands, as it has to while axes are homed and set and water calms.
+
+    One that is not heard is a fault of its own; a hand-set one is asked for first.
+
+    Parameters
+    ----------
+    ramp_s
+        For a shaft that may turn when it is enabled: it runs down first.
 
     Raises
     ------
     NotAtRestError
         If it has been seen to turn for longer than a drive takes to hold it.
     """
-    shaft = c.rig.shaft
-    c.restless = c.restless + 1 if shaft is not None and shaft.moving else 0
-    if shaft is not None and c.restless > RESTLESS_S * c.rate_hz:
+    shaft, allowed_s = c.rig.shaft, RESTLESS_S + ramp_s
+    turns = shaft is not None and shaft.moving and not math.isnan(shaft.measured_frequency_hz)
+    c.restless = c.restless + 1 if turns else 0
+    if shaft is not None and c.restless > allowed_s * c.rate_hz:
         raise NotAtRestError(
             shaft.name,
-            f"moves for {RESTLESS_S:g} s ({shaft.measured_frequency_hz:.3g} Hz) though nothing "
+            f"moves for {allowed_s:g} s ({shaft.measured_frequency_hz:.3g} Hz) though nothing "
             "told it to; look at it, and use the emergency stop if it turns",
         )

@@ -3,13 +3,12 @@
 from typing import Final
 
 from hardware.errors import HardwareError, NotAtRestError
-from hardware.limits import COASTING_S, RAMP_MARGIN, REST_DEADLINE_S
+from hardware.limits import COASTING_S, REST_DEADLINE_S
 from pmm.run.conduct import Conduct
 from pmm.run.states import FAULTS
 from pmm.run.status import Alarms
 
 _REST_S: Final = 3.0  # for drives that are not heard any more, or that quick-stop
-_UNKNOWN_RAMP_S: Final = 60.0  # of a shaft that states no acceleration
 
 
 class Stopper:
@@ -42,7 +41,7 @@ class Stopper:
         """
         c = self._conduct
         if c.moving:
-            late = c.elapsed_s > _REST_S + self._ramp_s()
+            late = c.elapsed_s > _REST_S + c.ramp_s
             if late and not c.questions.present:
                 raise _still_moving(heard=True)
             return False
@@ -68,7 +67,7 @@ class Stopper:
         if not self._power_taken and any(FAULTS[r.reaction].takes_power for r in c.rig.faults):
             self._power_taken = True
             self.power_off()
-        patience_s = self._ramp_s() + REST_DEADLINE_S + COASTING_S if self._heard else _REST_S
+        patience_s = c.ramp_s + REST_DEADLINE_S + COASTING_S if self._heard else _REST_S
         if c.moving and c.elapsed_s < patience_s:
             return False
         if c.moving:
@@ -81,14 +80,6 @@ class Stopper:
     def give_up(self) -> None:
         """Wind down no further: the way to rest cannot be followed any more."""
         self.winding_down = False
-
-    def _ramp_s(self) -> float:
-        """Longest time that a profile stop may take, from the shaft's own settings."""
-        c = self._conduct
-        part = c.rig.configuration.shaft
-        acceleration = getattr(part.settings, "acceleration_hz_per_s", None) if part else None
-        highest_hz = c.rig_file.oscillator.frequency_hz.high
-        return RAMP_MARGIN * highest_hz / acceleration if acceleration else _UNKNOWN_RAMP_S
 
 
 def _still_moving(*, heard: bool) -> NotAtRestError:

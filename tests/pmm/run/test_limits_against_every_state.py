@@ -117,6 +117,34 @@ def test_a_shaft_that_turns_while_it_has_to_stand_is_a_fault(tmp_path) -> None:
         assert "nothing told it to" in str(one.control.fault)
 
 
+@pytest.mark.parametrize("turns_hz", [0.5, -0.05])
+@pytest.mark.parametrize("by", ["runaway", "drag"])
+def test_a_shaft_that_does_not_come_to_rest_for_homing_is_a_fault(
+    tmp_path, by: str, turns_hz: float
+) -> None:
+    with bench(tmp_path, [oscillation(**LONG)], start=False) as one:
+        inject(one.world, f"{by} shaft {turns_hz}")
+        steps(one, 20)
+        one.control.request(Command.START)
+        steps(one, 200)
+        assert one.control.state is State.HOMING  # 1 s, and 1.5 ramps from 2 Hz at 2 Hz/s
+        steps(one, 70)
+        assert one.control.state is State.FAULT
+        assert "shaft: moves for 2.5 s" in str(one.control.fault)
+        inject(one.world, "free shaft")
+        one.finish()
+
+
+def test_a_shaft_that_coasts_when_a_plan_is_started_is_braked_and_waited_for(tmp_path) -> None:
+    with bench(tmp_path, [oscillation(**LONG)], start=False) as one:
+        inject(one.world, "drag shaft 1.5")
+        steps(one, 20)
+        inject(one.world, "free shaft")
+        one.control.request(Command.START)
+        one.until(State.SETTING)
+        assert one.at_rest()
+
+
 def test_a_reset_is_refused_while_the_shaft_turns(tmp_path) -> None:
     with bench(tmp_path, [oscillation(**LONG)]) as one:
         one.until(State.GATE_OPEN)
