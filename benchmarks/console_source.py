@@ -21,6 +21,7 @@ from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
 from pmm.console.station_view import TICK_S
+from pmm.plan.rig_file import read_rig_file
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
@@ -56,9 +57,9 @@ class Source:
         port = self._socket.getsockname()[1]
         self.address = f"http://127.0.0.1:{port}/"
         door = Door("127.0.0.1", port)
-        settings = ConsoleSettings(
-            self._folder / "rig.toml", self._folder, None, self._folder, door
-        )
+        rig = self._folder / "rig.toml"
+        hashes = read_rig_file(rig).hashes
+        settings = ConsoleSettings(rig, hashes, self._folder, None, self._folder, door)
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         self._process = context.Process(

@@ -41,8 +41,20 @@ def read_toml(path: Path) -> dict[str, Any]:
     ConfigurationError
         If it cannot be read; the message gives the line.
     """
+    return read_toml_and_bytes(path)[0]
+
+
+def read_toml_and_bytes(path: Path) -> tuple[dict[str, Any], bytes]:
+    """Read a TOML file once: what it says, and what it was, for its hash and its copy.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot be read; the message gives the line.
+    """
     try:
-        return parse_toml(path.read_text(encoding="utf-8-sig"))
+        content = path.read_bytes()
+        return parse_toml(content.decode("utf-8-sig")), content
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError) as error:

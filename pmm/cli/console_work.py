@@ -246,6 +246,7 @@ def _settings(request: ConsoleOptions, rig_file: RigFile, port: int) -> ConsoleS
     output = None if request.output is None else Path(request.output)
     return ConsoleSettings(
         rig_path=rig_file.path,
+        rig_hashes=rig_file.hashes,
         plans=rig_file.path.parent if request.plans is None else Path(request.plans),
         output=output,
         log_folder=output or rig_file.path.parent / rig_file.recorder.folder,

@@ -171,7 +171,7 @@ def _keep_time(stack: ExitStack) -> None:
 
 def _carry_out(job: Job, terminal: Terminal, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
     """Run the loop; return the outcomes, whether Ctrl-C ended it, and the fault."""
-    keep_sources(job.plan, job.folder)
+    keep_sources(job.plan, job.rig_file, job.folder)
     answers, interrupts = standard_input(), Interrupts()
     with ExitStack() as stack:
         stack.enter_context(interrupts.counted())

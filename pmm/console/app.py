@@ -63,7 +63,7 @@ class Console:
         self.loop = LoopSide(connection, quick_stop, self.hub.take, self._lost)
         self._end = end
         self._lockout = Lockout(time.monotonic)
-        plans = Plans(settings.rig_path, settings.plans, settings.output)
+        plans = Plans(settings.rig_path, settings.rig_hashes, settings.plans, settings.output)
         self.workers = Workers()
         self.actions = PageActions(
             self.hub, self.loop, self.workers, plans, settings.log_folder, _utc

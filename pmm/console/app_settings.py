@@ -1,5 +1,6 @@
 """How a console is set up."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +16,8 @@ class ConsoleSettings:
     rig_path, plans, output
         The rig's file; where its plans lie; where campaigns are recorded (``None``: as the rig's
         file says).
+    rig_hashes
+        Of the files of the rig that is open.
     log_folder
         Where commands are logged while there is no campaign.
     earlier
@@ -24,6 +27,7 @@ class ConsoleSettings:
     """
 
     rig_path: Path
+    rig_hashes: Mapping[str, str]
     plans: Path
     output: Path | None
     log_folder: Path

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
@@ -54,6 +54,8 @@ class Plans:
     ----------
     rig_path
         The rig's file; plans that name another one are refused.
+    rig_hashes
+        Of the files of the rig that is open: once they are others, plans are refused too.
     folder
         Where plans lie; by default beside the rig's file.
     output
@@ -61,6 +63,7 @@ class Plans:
     """
 
     rig_path: Path
+    rig_hashes: Mapping[str, str]
     folder: Path
     output: Path | None
 
@@ -112,6 +115,14 @@ class Plans:
                 f"{path}: rig = {given!r} is no rig of this console; write {known}"
             )
 
+    def _check_unchanged(self, rig: RigFile) -> None:
+        """Refuse to hold a plan against another rig than the one that is open."""
+        if rig.hashes != self.rig_hashes:
+            raise ConfigurationError(
+                f"{rig.path}: the file, or its calibration, was changed after this console had "
+                "opened the rig; put it back, or leave and start the console anew"
+            )
+
     def _possible(self, path: Path) -> CheckedPlan:
         found = self._read(path)
         require_possible(found.waiting.plan, found.rig, _today())
@@ -138,6 +149,7 @@ class Plans:
     def _read(self, path: Path) -> CheckedPlan:
         self._check_rig(path)
         plan, rig = read_plan_and_rig(path)
+        self._check_unchanged(rig)
         folder = folder_of(plan, rig.recorder.folder, None)
         if self.output is not None:
             folder = self.output / plan.name

@@ -31,7 +31,7 @@ class Writer:
         self._owned: dict[int, CampaignOwnership] = {}
 
     def begin(self, plan: QueuedPlan) -> None:
-        """Own a plan's folder, and copy plan and rig file into it, as they are now.
+        """Own a plan's folder, and keep plan and rig file in it, as they were read.
 
         The loop owns it, because the web server may end before the plan; and it never waits.
 
@@ -43,7 +43,7 @@ class Writer:
         owned = self._owned[plan.number] = own_campaign(plan.folder, patience_s=0.0)
 
         def begin() -> None:
-            keep_sources(plan.plan, plan.folder)
+            keep_sources(plan.plan, self._rig_file, plan.folder)
             owned.count()  # now, and not in the loop
 
         self._do(plan, begin)

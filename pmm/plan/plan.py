@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
-from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
+from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml_and_bytes, validate
 from pmm.plan.expansion import MOST_RUNS, run_count
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan_rules import (
@@ -45,6 +45,8 @@ class Plan:
         Who runs it, for the recordings; empty where the file does not say.
     sha256
         Of the plan's file.
+    content
+        That file, as it was read; empty for a plan that was not read from one.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Plan:
     runs: tuple[RunPlan, ...]
     operator: str
     sha256: str
+    content: bytes = b""
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -77,7 +80,7 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
         that the rig does not have, and runs of the same name: all errors of both files.
     """
     path = Path(path)
-    original = read_toml(path)
+    original, content = read_toml_and_bytes(path)
     table = deepcopy(original)
     faults: list[Fault] = []
     expand_units(table, faults)
@@ -95,9 +98,10 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
     errors += [found.error] if found.error is not None else []
     if errors or tables is None or found.rig is None:
         raise ConfigurationError("\n".join(map(str, errors)))
-    sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
+    sha256 = hashlib.sha256(content).hexdigest()
     name = tables.name or path.resolve().parent.name
-    return Plan(name, path, rig_path, runs, tables.operator, sha256), found.rig
+    plan = Plan(name, path, rig_path, runs, tables.operator, sha256, content)
+    return plan, found.rig
 
 
 def _rig_path(path: Path, table: dict[str, Any]) -> Path:

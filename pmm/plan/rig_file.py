@@ -15,7 +15,14 @@ from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
 from pmm.campaign.calibration import Calibration, read_calibration
 from pmm.campaign.oscillator_table import expand_preset
-from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.configuration import (
+    Fault,
+    as_error,
+    limit_faults,
+    read_toml,
+    read_toml_and_bytes,
+    validate,
+)
 from pmm.plan.rig_checks import (
     SIMULATED,
     channels_of,
@@ -55,8 +62,9 @@ class RigFile:
         Structural modes from a pluck test.
     calibration
         Of the gauges, from check weights; kept with every recording and applied in the analysis.
-    tables
-        All of the file, as it is written.
+    tables, content
+        All of the file, as it is written: as tables, and its bytes, empty for a rig that was not
+        read from a file.
     realtime
         Whether cycles keep to the clock; a simulated rig runs free unless it is asked for.
     campaign
@@ -81,6 +89,13 @@ class RigFile:
     realtime: bool = True
     campaign: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    content: bytes = b""
+
+    @property
+    def hashes(self) -> dict[str, str]:
+        """SHA-256 of the rig's file, and of its calibration's where it names one."""
+        one = self.calibration
+        return {"rig": self.sha256} | ({} if one is None else {"calibration": one.sha256})
 
     @property
     def watched(self) -> WatchLimits:
@@ -133,7 +148,7 @@ def read_rig_file(path: str | Path) -> RigFile:
 def examine_rig(path: Path) -> RigFileReading:
     """Read a rig's file as far as it goes."""
     try:
-        original = read_toml(path)
+        original, content = read_toml_and_bytes(path)
     except ConfigurationError as error:
         return RigFileReading(error=error)
     faults: list[Fault] = []
@@ -152,7 +167,7 @@ def examine_rig(path: Path) -> RigFileReading:
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))
-    rig = _built(path, replace(own, modes=own.modes + modes), hardware, devices)
+    rig = _built(path, content, replace(own, modes=own.modes + modes), hardware, devices)
     # As written: a table that is read again elsewhere is handed on untouched.
     kept = MappingProxyType(dict(original.get("campaign", {})))
     tables = MappingProxyType(original)
@@ -209,13 +224,15 @@ def _calibration(
 
 def _built(
     path: Path,
+    content: bytes,
     own: RigTables,
     hardware: RigConfiguration,
     devices: Mapping[str, Any],
 ) -> RigFile:
     return RigFile(
         path=path,
-        sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+        sha256=hashlib.sha256(content).hexdigest(),
+        content=content,
         oscillator=own.oscillator,
         hardware=hardware,
         hardware_tables=MappingProxyType(dict(devices)),

@@ -1,6 +1,5 @@
 """A campaign's folder: which runs it holds, what it was made from, and what is still to be done."""
 
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from pmm.recorder.marker import read_marker
 from pmm.recorder.recording import NOISE
 from pmm.recorder.run_recorder import RunEnd
 from pmm.run.run_origin import KEPT, Sources, check_unchanged
+from pmm.whole_file import write_whole
 
 
 def folder_of(plan: Plan, folder: str, output: str | None) -> Path:
@@ -77,16 +77,16 @@ def _wanted_runs(
     return wanted
 
 
-def keep_sources(plan: Plan, folder: Path) -> None:
-    """Copy plan and rig file into the folder, as they are now; earlier copies stay beside."""
+def keep_sources(plan: Plan, rig: RigFile, folder: Path) -> None:
+    """Keep plan and rig file in the folder, as they were read; earlier ones stay beside."""
     target = folder / KEPT
     target.mkdir(parents=True, exist_ok=True)
-    for path in (plan.path, plan.rig_path):
+    for path, content in ((plan.path, plan.content), (rig.path, rig.content)):
         copy, number = target / path.name, 1
-        while copy.exists() and copy.read_bytes() != path.read_bytes():
+        while copy.exists() and copy.read_bytes() != content:
             number += 1
             copy = target / f"{path.stem}-{number}{path.suffix}"
-        shutil.copyfile(path, copy)
+        write_whole(copy, content)
 
 
 def finished_runs(folder: Path, plan: Plan, rig: RigFile) -> tuple[FinishedRun, ...]:

@@ -124,7 +124,7 @@ class RecorderFactory:
             kind=str(run.kind),
             set_point=run.set_point,
             plan_json=run.to_json(),
-            configuration_sha256=self._hashes(),
+            configuration_sha256={"plan": self.plan.sha256} | self.rig_file.hashes,
             provenance=dict(self.provenance)
             | provenance_of(self.rig_file.calibration)
             | provenance_of_departures(self._departures),
@@ -140,11 +140,6 @@ class RecorderFactory:
                 angle_offset_rad=offset.angle_offset_rad,
             ),
         )
-
-    def _hashes(self) -> dict[str, str]:
-        found = {"plan": self.plan.sha256, "rig": self.rig_file.sha256}
-        one = self.rig_file.calibration
-        return found if one is None else found | {"calibration": one.sha256}
 
     def _readings(self) -> dict[str, Reading]:
         axes = {"eccentricity": self.rig.eccentricity, "phase": self.rig.phase}

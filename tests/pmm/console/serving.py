@@ -16,6 +16,7 @@ from pmm.console.app_settings import ConsoleSettings
 from pmm.console.messages import LoopOrder, OrderKind, Reply
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
+from pmm.plan.rig_file import read_rig_file
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "vertical"
 PORT = 8063
@@ -69,6 +70,7 @@ def served(
     ours, theirs = Pipe()
     settings = ConsoleSettings(
         rig_path=rig / "rig.toml",
+        rig_hashes=read_rig_file(rig / "rig.toml").hashes,
         plans=rig,
         output=folder,
         log_folder=folder,

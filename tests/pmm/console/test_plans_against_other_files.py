@@ -10,15 +10,26 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from pmm.console.limits import LARGEST_PLAN
 from pmm.console.plans import Plans
+from pmm.plan.rig_file import read_rig_file
 from tests.pmm.console.chromium import plan, rig_in
 from tests.pmm.console.serving import served
+
+CALIBRATION = """
+made = "2026-01-01"
+expires = "2036-01-01"
+channels = ["force_aft", "force_fore"]
+matrix = [[1.0, 0.0], [0.0, 1.0]]
+standard_uncertainty = [[1e-4, 0.0], [0.0, 1e-4]]
+hysteresis = [0.0, 0.0]
+nonlinearity = [0.0, 0.0]
+"""
 
 
 @pytest.fixture
 def plans(tmp_path: Path) -> Plans:
     """Those of a console; it reads them in a worker, which does the same."""
     rig = rig_in(tmp_path / "rig")
-    return Plans(rig, rig.parent, tmp_path / "out")
+    return Plans(rig, read_rig_file(rig).hashes, rig.parent, tmp_path / "out")
 
 
 def test_a_rig_is_named_from_the_list_and_no_other_file_is_opened(
@@ -51,6 +62,25 @@ def test_plans_in_another_folder_name_the_rig_from_there(plans: Plans, tmp_path:
     assert one.rigs == ("../rig/rig.toml",)
     text = plan("p").replace('"rig.toml"', '"../rig/rig.toml"')
     assert one.queue("", text).waiting.plan.rig_path.samefile(plans.rig_path)
+
+
+@pytest.mark.parametrize("file", ["rig.toml", "calibration.toml"])
+def test_a_rig_that_is_edited_while_it_is_open_takes_no_plan(tmp_path: Path, file: str) -> None:
+    rig = rig_in(tmp_path / "rig")
+    calibration = rig.with_name("calibration.toml")
+    calibration.write_text(CALIBRATION, encoding="utf-8")
+    text = rig.read_text(encoding="utf-8")
+    rig.write_text(f'calibration_file = "calibration.toml"\n{text}', encoding="utf-8")
+    plans = Plans(rig, read_rig_file(rig).hashes, rig.parent, tmp_path / "out")
+    assert not plans.check("", plan("p")).refused
+    edited = rig.with_name(file)
+    before = edited.read_text(encoding="utf-8")
+    edited.write_text(f"{before}\n# later", encoding="utf-8")
+    for take in (plans.check, plans.queue):
+        with pytest.raises(ConfigurationError, match=r"rig\.toml: the file, or its calibration"):
+            take("", plan("p"))
+    edited.write_text(before, encoding="utf-8")
+    assert not plans.check("", plan("p")).refused
 
 
 @pytest.mark.parametrize(

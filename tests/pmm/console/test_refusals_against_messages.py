@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from pmm.cli import cli
 from pmm.console.plans import Plans
 from pmm.plan.findings import PlanRefusedError
+from pmm.plan.rig_file import read_rig_file
 from tests.pmm.console.chromium import plan
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "vertical"
@@ -83,7 +84,8 @@ def test_unknown_keys_are_told_with_those_that_are_known(folder: Path) -> None:
 
 
 def test_the_text_of_a_plan_that_the_rig_refuses_is_not_kept(folder: Path) -> None:
-    plans = Plans(folder / "rig" / "rig.toml", folder / "rig", folder / "out")
+    rig = folder / "rig" / "rig.toml"
+    plans = Plans(rig, read_rig_file(rig).hashes, folder / "rig", folder / "out")
     before = sorted((folder / "rig").iterdir())
     with pytest.raises(PlanRefusedError, match=r"0\.09 is above 0\.06"):
         plans.queue("", plan("far").replace("20.0", "90.0"))

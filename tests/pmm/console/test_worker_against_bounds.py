@@ -18,6 +18,7 @@ from pmm.console.packing import pack, unpack
 from pmm.console.plans import Plans
 from pmm.console.worker_process import BusyError, NotWorkedOutError, WorkerProcess, WorkLimits
 from pmm.console.workers import Shared
+from pmm.plan.rig_file import read_rig_file
 from tests.pmm.console.chromium import plan, rig_in
 
 BOUNDS = WorkLimits(seconds=120.0, memory_bytes=1 << 30, waiting=2)
@@ -108,7 +109,7 @@ def test_those_who_ask_meanwhile_share_the_next_answer() -> None:
 
 def test_a_plan_in_pieces_is_the_plan_again(tmp_path: Path) -> None:
     rig = rig_in(tmp_path / "rig")
-    one = Plans(rig, rig.parent, tmp_path / "out")
+    one = Plans(rig, read_rig_file(rig).hashes, rig.parent, tmp_path / "out")
     text = plan("p").replace("= 1.0", f"= {[round(0.5 + 0.001 * k, 3) for k in range(120)]}")
     found = one.check("", text).waiting
     given = QueuedPlan(7, found.plan, found.folder, found.runs[::3])

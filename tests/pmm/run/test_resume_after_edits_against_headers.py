@@ -4,6 +4,7 @@ Oracles: the raw headers, the values as they are typed here, and the water that 
 left of a run's force when its own inertia is taken off is 75 kg whichever model hung there.
 """
 
+import hashlib
 import json
 import tomllib
 from dataclasses import fields
@@ -14,6 +15,8 @@ import pytest
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import RecordedWith
+from pmm.plan.plan import read_plan_and_rig
+from pmm.run.campaign_folder import keep_sources
 from pmm.run.run_origin import _TABLES
 from tests.pmm.run.test_command_against_its_files import pmm
 from tests.sim.devices.benches import ROOT
@@ -162,6 +165,18 @@ def test_a_value_that_changed_is_refused_by_file_key_and_run(
             assert one in said, said
         assert "--accept-changes" in said
     assert _kept(part) == as_they_were
+
+
+def test_what_is_kept_is_what_was_read_whatever_was_edited_since(part: Path) -> None:
+    plan, rig = read_plan_and_rig(part / "plan.toml")
+    _write(part, "plan", PLAN.replace("periods = 3", "periods = 4"))
+    _edit(part, "rig", "mass_kg = 70.0", "mass_kg = 80.0")
+    (part / "plan.toml").rename(part / "moved.toml")
+    keep_sources(plan, rig, part / "later")
+    copies = {one.name: one.read_bytes() for one in (part / "later" / "made-from").iterdir()}
+    assert copies == {"plan.toml": PLAN.encode(), "rig.toml": CALIBRATED.encode()}
+    hashes = {name: hashlib.sha256(one).hexdigest() for name, one in copies.items()}
+    assert hashes == {"plan.toml": plan.sha256, "rig.toml": rig.hashes["rig"]}
 
 
 def test_comments_and_runs_that_were_added_change_nothing(part: Path) -> None:
