@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.kinematics.body_frame import CHANNELS, UNITS, in_body_axes
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Driven, motion
-from analysis.kinematics.projection import loads, readings
+from analysis.kinematics.motion import Driven
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _AFT, _FORE = 0, 1
@@ -47,14 +47,13 @@ class InBodyAxes:
         the drift sets the model.
     sensitivity
         Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
-    of_tare
-        Loads in body axes of what the gauges read of 1 N m at rest, where the drift sets the model:
-        a zero run takes that off all readings. Shape ``(2 or 3, instants)``.
+    at_rest
+        Where the drift sets the model, and what a zero run there takes off.
     """
 
     phasors: Phasors
     sensitivity: FloatArray
-    of_tare: FloatArray
+    at_rest: AtRest
 
 
 def of_struts(
@@ -105,13 +104,13 @@ def of_struts(
     moved = _moved(harmonics_of_body.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
     moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
-    return InBodyAxes(phasors, sensitivity, _of_tare(geometry, moving, channels - 2))
+    return InBodyAxes(phasors, sensitivity, AtRest.of(geometry, moving, channels - 2))
 
 
 def parts_of_struts(
     readings: ComplexArray, geometry: Geometry, omega: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the interleaved parts and the ``of_tare`` of :func:`of_struts` alone, of many runs.
+) -> tuple[FloatArray, AtRest]:
+    """Return the interleaved parts and the ``at_rest`` of :func:`of_struts` alone, of many runs.
 
     Parameters
     ----------
@@ -132,7 +131,7 @@ def parts_of_struts(
     read = waves(interleaved(readings[..., 2:].reshape(runs, -1)), channels - 2)
     parts = harmonics(in_body_axes(geometry, moved, read), count - 1)
     parts[:, 2] -= np.ravel(geometry.drift_rad)
-    return parts, _of_tare(geometry, moved, channels - 2)
+    return parts, AtRest.of(geometry, moved, channels - 2)
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:
@@ -148,14 +147,6 @@ def _model(geometry: Geometry, waves: Waves) -> Waves:
     exact = replace(geometry, half_spacing_m=half, speed_m_s=speed, drift_rad=drift)
     driven = Driven(waves[..., 0:2, :], waves[..., 2:4, :], waves[..., 4:6, :])
     return in_body_axes(exact, driven, waves[..., 6:-3, :])
-
-
-def _of_tare(geometry: Geometry, moved: Driven, gauges: int) -> FloatArray:
-    still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
-    at_rest = motion(geometry, Driven(still, still, still)).line_rad
-    read = readings(geometry, at_rest, np.array([[0.0], [1.0], [0.0]]))[..., :gauges, :]
-    line = motion(geometry, moved).line_rad
-    return loads(geometry, line, read * np.ones(line.shape[-1]))
 
 
 def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool) -> FloatArray:

@@ -11,13 +11,13 @@ from functools import cached_property
 
 import numpy as np
 
+from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.hull_cycle import HullCycle, on_hull
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.kinematics.body_frame import CHANNELS
-from analysis.kinematics.cycle import INSTANTS
 from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
@@ -41,10 +41,6 @@ def _nothing() -> FloatArray:
 
 def _unread() -> ComplexArray:
     return np.zeros((0, 0), dtype=np.complex128)
-
-
-def _still() -> FloatArray:
-    return np.array([0.0, 1.0, 0.0])[:, None] * np.ones(INSTANTS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +69,10 @@ class BodyCycle:
     body
         What is taken off as inertia and weight; ``None`` where nothing is (a dry run was).
     restoring
-        Hydrostatic restoring that is taken off, N/m, N and N m; about the midpoint.
-    of_tare
-        Loads of what the gauges read of 1 N m at rest, shape ``(2 or 3, INSTANTS)``: that which a
-        zero run took off.
+        Hydrostatic restoring that is taken off, N/m, N and N m; about the midpoint, per
+        displacement from where the model floats without drift.
+    at_rest
+        Where the drift sets the model, and what a zero run there took off.
     point_ahead_m
         Where coefficients are wanted, ahead of the midpoint.
     drift_rad
@@ -103,7 +99,7 @@ class BodyCycle:
     mean_known: bool = False
     flags: tuple[Flag, ...] = ()
     sensitivity: FloatArray = field(default_factory=lambda: np.zeros((0, len(STATED))))
-    of_tare: FloatArray = field(default_factory=_still)
+    at_rest: AtRest = field(default_factory=AtRest)
     arrangement: Arrangement = field(default_factory=Arrangement)
     readings: ComplexArray = field(default_factory=_unread)
 
@@ -167,7 +163,7 @@ class BodyCycle:
             frequency_hz=self.frequency_hz,
             speed_m_s=self.speed_m_s,
             drift_rad=self.drift_rad,
-            of_tare=self.of_tare,
+            at_rest=self.at_rest,
             body=self.body,
             restoring=self.restoring,
             point_ahead_m=self.point_ahead_m,

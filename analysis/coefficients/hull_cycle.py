@@ -1,8 +1,8 @@
 """Hydrodynamic loads on the hull over a cycle: gross loads less those of inertia and weight.
 
 Inertia is taken off exactly, in body axes. A model in water is borne by it: of weight and buoyancy
-``m g z_G sin(pitch)`` is left besides the restoring that is stated, less what a zero run took off
-the readings at rest.
+``m g z_G sin(pitch)`` is left besides the restoring that is stated; of both a zero run took off
+what the gauges read at rest.
 """
 
 import math
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
 from analysis.coefficients.stated_uncertainties import STATED
@@ -62,7 +63,7 @@ def on_hull(
     frequency_hz: float,
     speed_m_s: float,
     drift_rad: float,
-    of_tare: FloatArray,
+    at_rest: AtRest,
     body: Body | None,
     restoring: FloatArray,
     point_ahead_m: float,
@@ -82,7 +83,7 @@ def on_hull(
     stated = _taken(body, drift_rad)
     loads = len(channels) - _MOVING
     values, slope = pointwise(
-        lambda waves: _asked(waves, plane, of_tare, restoring)[..., :loads, :],
+        lambda waves: _asked(waves, plane, at_rest, restoring)[..., :loads, :],
         np.concatenate((moved, stated)),
     )
     orders = count - 1
@@ -115,16 +116,13 @@ def on_hull(
     )
 
 
-def parts_on_hull(
-    gross: FloatArray, of_tare: FloatArray, cycles: Sequence["BodyCycle"]
-) -> FloatArray:
+def parts_on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence["BodyCycle"]) -> FloatArray:
     """Return the interleaved parts of :func:`on_hull` alone, without slopes, of many runs.
 
     Parameters
     ----------
-    gross, of_tare
-        In place of the runs' own, shapes ``(several, runs, 2 n)`` and
-        ``(several, runs, 2 or 3, INSTANTS)``.
+    gross, at_rest
+        In place of the runs' own, with leading axes ``(several, runs)``.
     cycles
         Of one plane, with as many orders and the same channels.
     """
@@ -138,7 +136,7 @@ def parts_on_hull(
     stated = np.stack([_taken(cycle.body, cycle.drift_rad) for cycle in cycles])
     inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
     restoring = np.stack([cycle.restoring for cycle in cycles])
-    asked = _asked(np.concatenate(inputs, axis=-2), plane, of_tare, restoring)[..., :loads, :]
+    asked = _asked(np.concatenate(inputs, axis=-2), plane, at_rest, restoring)[..., :loads, :]
     net = _Net(count, len(channels)).parts(gross, harmonics(asked, count - 1))
     turned = np.empty_like(net)
     for k, cycle in enumerate(cycles):
@@ -178,8 +176,11 @@ class _Net:
         return parts
 
 
-def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArray) -> Waves:
-    """What inertia, weight and restoring ask of the struts: force, moment, surge force."""
+def _asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -> Waves:
+    """What inertia, weight and restoring ask of the struts: force, moment, surge force.
+
+    Less what the latter two ask at rest, as the gauges read it there.
+    """
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
     mass, ahead, below, turned, factor, drift = np.moveaxis(waves[..., 8:, :], -2, 0)
     state = MotionWaves(
@@ -191,13 +192,19 @@ def _asked(waves: Waves, plane: Plane, of_tare: FloatArray, restoring: FloatArra
     )
     moments = np.stack((mass, mass * ahead, mass * below, turned), axis=-2)
     loads = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
-    if plane is Plane.VERTICAL:
-        hanging = STANDARD_GRAVITY_M_S2 * mass * below
-        loads[..., 1, :] += hanging * np.sin(rotation + drift)
-        tared = (hanging * np.sin(drift))[..., None, :] * of_tare
-        loads[..., : of_tare.shape[-2], :] -= tared
-    place = np.stack((translation, rotation), axis=-2)
-    loads[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, place)
+    hanging = STANDARD_GRAVITY_M_S2 * mass * below * (plane is Plane.VERTICAL)
+
+    def static(place: Waves, angle: Waves) -> Waves:
+        held = factor[..., None, :] * np.einsum(
+            "...rc,...ct->...rt", restoring, np.stack((place, angle), axis=-2)
+        )
+        about = held[..., 1, :] + hanging * np.sin(angle)
+        return np.stack((held[..., 0, :], about, np.zeros_like(about)), axis=-2)
+
+    still = np.broadcast_to(at_rest.place_m[..., None], translation.shape)
+    tared = at_rest.tared(static(still, drift))
+    loads += static(translation, rotation + drift)
+    loads[..., : tared.shape[-2], :] -= tared
     return np.asarray(loads)
 
 

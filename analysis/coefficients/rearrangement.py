@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import parts_of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
@@ -92,27 +93,27 @@ def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str
         by_shape.setdefault(cycle.readings.shape, []).append(cycle)
     parts_of_key: dict[str, FloatArray] = {}
     for alike in by_shape.values():
-        gross, of_tare = zip(*(_gross(alike, way) for way in ways), strict=True)
-        parts = parts_on_hull(np.stack(gross), np.stack(of_tare), alike)
+        gross, at_rest = zip(*(_gross(alike, way) for way in ways), strict=True)
+        parts = parts_on_hull(np.stack(gross), AtRest.stacked(at_rest), alike)
         parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
     return parts_of_key
 
 
-def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, FloatArray]:
-    """Return gross parts and ``of_tare``; NaN where the alternative does not let them be had."""
+def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, AtRest]:
+    """Return gross parts and ``at_rest``; NaN where the alternative does not let them be had."""
     speed, drift = np.array([[cycle.speed_m_s, cycle.drift_rad] for cycle in cycles]).T[..., None]
     own = np.stack([interleaved(cycle.phasors.values) for cycle in cycles])
-    own_tare = np.stack([cycle.of_tare for cycle in cycles])
+    rests = AtRest.stacked([cycle.at_rest for cycle in cycles])
     stated = cycles[0].arrangement
     if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
-        return own, own_tare
+        return own, rests
     geometry = Geometry(cycles[0].plane, cycles[0].half_spacing_m, way, speed, drift)
     omega = np.array([2.0 * np.pi * cycle.frequency_hz for cycle in cycles])
     readings = np.stack([cycle.readings for cycle in cycles])
     try:
         return parts_of_struts(readings, geometry, omega)
     except DataError:  # no force_x, or the struts cannot reach
-        return np.full_like(own, np.nan), np.full_like(own_tare, np.nan)
+        return np.full_like(own, np.nan), rests
 
 
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:

@@ -120,7 +120,7 @@ class StrutCycle:
             mean_known=self.mean_known,
             flags=self.flags,
             sensitivity=model.sensitivity,
-            of_tare=model.of_tare,
+            at_rest=model.at_rest,
             arrangement=oscillator.arrangement,
             readings=ordered.values.reshape(self.orders + 1, -1),
         )

@@ -57,7 +57,7 @@ def state(rig: ExactRig, theta: Array) -> State:
     """Return the rig's state at some shaft angles."""
     at = points(rig, theta)
     motion, spin = _motion(rig, at)
-    water = rig.hull(motion)
+    water = _water(rig, motion)
     force, moment = _needed(rig, at, spin, water)
     pivot, slide, couple = _joint(rig, at, force, moment)
     axis = at.ahead.value
@@ -89,6 +89,13 @@ def _motion(rig: ExactRig, at: Points) -> tuple[dict[str, Array], Jet]:
         "y" if side > 0.0 else "z": at.reference.value.imag,
     }
     return motion, spin
+
+
+def _water(rig: ExactRig, motion: dict[str, Array]) -> Loads:
+    x, force, moment = rig.hull(motion)
+    place, angle = ("y", "psi") if rig.side > 0.0 else ("z", "theta")
+    held = rig.restoring @ np.stack((motion[place], motion[angle]))
+    return x, force - held[0], moment - held[1]
 
 
 def _needed(rig: ExactRig, at: Points, spin: Jet, water: Loads) -> tuple[Values, Array]:

@@ -44,6 +44,9 @@ class ExactRig:
         Mean heading of the model, bow to starboard (bow up).
     hull
         Of the water, about the reference point.
+    restoring
+        Hydrostatic, against force and moment of the hull, per displacement of the reference point
+        across the tank and per angle of the model in it; there at rest, too.
     """
 
     coordinates: Values
@@ -55,6 +58,7 @@ class ExactRig:
     arrangement: Arrangement = field(default_factory=Arrangement)
     body: ExactBody = ExactBody()
     hull: Hull = field(default_factory=lambda: polynomial({}))
+    restoring: NDArray[np.float64] = field(default_factory=lambda: np.zeros((2, 2)))
 
     @property
     def omega(self) -> float:

@@ -32,6 +32,10 @@ VERTICAL = {
     name.replace("v", "w").replace("r", "q").replace("Y_", "Z_").replace("N_", "M_"): value
     for name, value in HORIZONTAL.items()
 }
+RESTORING = {
+    Plane.HORIZONTAL: ((30.0, 12.0), (-8.0, 60.0)),  # of a cable, say
+    Plane.VERTICAL: ((5600.0, 300.0), (250.0, 1900.0)),
+}
 TERMS = {Plane.HORIZONTAL: HORIZONTAL, Plane.VERTICAL: VERTICAL}
 
 
@@ -58,6 +62,7 @@ def simulated(plane: Plane, arrangement: Arrangement) -> SimulatedRig:
         water=HullCoefficients(
             added_mass=asked(f"{v}dot", f"{r}dot"),  # type: ignore[arg-type]  # two by two
             damping=asked(v, r),  # type: ignore[arg-type]
+            restoring=RESTORING[plane],
         ),
         cross_flow=CrossFlow(cubic, quadratic),
         surge=SurgeForces(*(terms[f"X_{one}"] for one in ("u", "uu", v * 2, v + r, r * 2))),
@@ -93,4 +98,5 @@ def exact(plane: Plane, arrangement: Arrangement, point: SetPoint, drift_rad: fl
         arrangement,
         body,
         polynomial(TERMS[plane] if water else {}),
+        np.array(RESTORING[plane]) if water else np.zeros((2, 2)),
     )

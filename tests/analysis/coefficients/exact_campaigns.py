@@ -42,6 +42,11 @@ HULLS = {
     },
 }  # fmt: skip
 
+RESTORING = {
+    Plane.HORIZONTAL: np.zeros((2, 2)),
+    Plane.VERTICAL: np.array([[5600.0, 300.0], [250.0, 1900.0]]),  # of a surface ship
+}
+
 
 def campaign(plane: Plane, arrangement: Arrangement) -> list[ExactRig]:
     """Return sway, yaw and both, with drift, to 23 degrees (15 with pitch)."""
@@ -57,8 +62,13 @@ def campaign(plane: Plane, arrangement: Arrangement) -> list[ExactRig]:
         )
         for turn, sway, hertz, drift in RUNS
     ]
-    hull = polynomial(HULLS[plane])
-    return [replace(one, hull=hull, body=borne(one.body)) for one in rigs]
+    return [afloat(one) for one in rigs]
+
+
+def afloat(rig: ExactRig) -> ExactRig:
+    """Return a rig with the plane's hull, that floats."""
+    hull, restoring = polynomial(HULLS[rig.plane]), RESTORING[rig.plane]
+    return replace(rig, hull=hull, body=borne(rig.body), restoring=restoring)
 
 
 def borne(body: ExactBody) -> ExactBody:
@@ -89,6 +99,10 @@ def struts_of(rig: ExactRig, name: str, orders: int) -> StrutCycle:
 
 
 def cycle_of(rig: ExactRig, name: str, orders: int) -> BodyCycle:
-    """Return a rig's cycle with its body to be taken off."""
-    found = struts_of(rig, name, orders).model()
-    return found.without(body_of(rig.body))
+    """Return a rig's cycle with its body and restoring to be taken off."""
+    return less_known(struts_of(rig, name, orders), rig)
+
+
+def less_known(struts: StrutCycle, rig: ExactRig) -> BodyCycle:
+    """Return the cycle in body axes, with what is known of the rig to be taken off."""
+    return struts.model().without(body_of(rig.body), rig.restoring)

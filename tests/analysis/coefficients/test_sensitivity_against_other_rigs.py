@@ -17,16 +17,18 @@ from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
 from hardware.description.oscillator import Plane
-from tests.analysis.coefficients.exact_campaigns import HULLS, borne, campaign, struts_of
-from tests.analysis.kinematics.exact import body_of
+from tests.analysis.coefficients.exact_campaigns import (
+    HULLS,
+    RESTORING,
+    borne,
+    campaign,
+    less_known,
+    struts_of,
+)
 from tests.exact.hull import Hull, Loads, Motion, polynomial
 from tests.exact.rig import ExactBody, ExactRig
 
 ORDERS = 7
-RESTORING = {
-    Plane.HORIZONTAL: np.array([[40.0, 5.0], [-8.0, 60.0]]),
-    Plane.VERTICAL: np.array([[700.0, 30.0], [30.0, 240.0]]),
-}
 ARRANGEMENTS = (
     Arrangement(),
     Arrangement(Joint.SLIDES_ON_RIG, Pivot.FORE, Gauges.RIG, DriftBy.STRUTS_OFFSET),
@@ -38,22 +40,20 @@ def held(rig: ExactRig, factor: float = 1.0, ahead_m: float = 0.0) -> ExactRig:
     """The rig with a hull about a point ahead of the midpoint, and what hydrostatics hold it by."""
     vertical = rig.plane is Plane.VERTICAL
     turn = "q" if vertical else "r"
-    across, place, angle = ("w", "z", "theta") if vertical else ("v", "y", "psi")
+    across = "w" if vertical else "v"
     arm, water = rig.side * ahead_m, polynomial(HULLS[rig.plane])
-    restoring = factor * RESTORING[rig.plane]
 
     def loads(motion: Motion) -> Loads:
         moved = dict(motion)
         for rate in ("", "dot"):
             moved[across + rate] = motion[across + rate] + arm * motion[turn + rate]
         x, force, moment = water(moved)
-        rotation = motion[angle] - rig.drift_rad
-        at = (motion[place] + arm * rotation, rotation)
-        kept = [row[0] * at[0] + row[1] * at[1] for row in restoring]
-        return x, force - kept[0], moment - kept[1] + arm * (force - kept[0])
+        return x, force, moment + arm * force
 
     hull: Hull = loads
-    return replace(rig, hull=hull)
+    to_point = np.array([[1.0, arm], [0.0, 1.0]])
+    restoring = factor * to_point.T @ RESTORING[rig.plane] @ to_point
+    return replace(rig, hull=hull, restoring=restoring)
 
 
 def nominal(plane: Plane, arrangement: Arrangement) -> Rigs:
@@ -86,7 +86,7 @@ def fitted(
 ) -> CycleFit:
     plane = said[0].plane
     cycles = [
-        chain(read(one, taken, f"run {k}")).model().without(body_of(taken.body), RESTORING[plane])
+        less_known(chain(read(one, taken, f"run {k}")), taken)
         for k, (one, taken) in enumerate(zip(rigs, said, strict=True))
     ]
     return fit_cycles(cycles, tuple(HULLS[plane]), (0, 1, 2, 3), stated=stated)

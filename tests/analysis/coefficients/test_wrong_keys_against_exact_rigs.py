@@ -19,10 +19,8 @@ from analysis.coefficients.phasors import from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.arrangement import Arrangement, Gauges, Joint
 from hardware.description.oscillator import Plane
-from tests.analysis.coefficients.exact_campaigns import HULLS, borne, struts_of
+from tests.analysis.coefficients.exact_campaigns import afloat, less_known, struts_of
 from tests.analysis.coefficients.sources import of_draws
-from tests.analysis.kinematics.exact import body_of
-from tests.exact.hull import polynomial
 from tests.exact.rig import ExactRig
 from tests.exact.rigs import exact_rig
 
@@ -59,16 +57,8 @@ def rigs_of(plane: Plane, true: Arrangement, part: float = 1.0) -> list[ExactRig
         )
         for turn, sway, drift in RUNS
     ]  # fmt: skip
-    hull = polynomial(HULLS[plane])
-    return [
-        replace(
-            one,
-            coordinates=one.coordinates * np.array([[1.0], [1.0], [part]]),
-            hull=hull,
-            body=borne(one.body),
-        )
-        for one in found
-    ]
+    turning = np.array([[1.0], [1.0], [part]])
+    return [afloat(replace(one, coordinates=one.coordinates * turning)) for one in found]
 
 
 def recorded(rigs: list[ExactRig], seed: int) -> list[StrutCycle]:
@@ -91,9 +81,7 @@ def analysed(
     struts: list[StrutCycle], rigs: list[ExactRig], given: Arrangement, *, nonlinear: bool = True
 ) -> CampaignCoefficients:
     cycles = [
-        replace(one, oscillator=replace(one.oscillator, **vars(given)))
-        .model()
-        .without(body_of(rig.body))
+        less_known(replace(one, oscillator=replace(one.oscillator, **vars(given))), rig)
         for one, rig in zip(struts, rigs, strict=True)
     ]
     return campaign_coefficients(cycles, Request(nonlinear=nonlinear))

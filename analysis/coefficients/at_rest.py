@@ -1,0 +1,66 @@
+"""The model at rest where the drift sets it: there a zero run is made, and taken off all readings.
+
+What the model weighs and what the water bears at rest is tared with the gauges' offsets. In another
+attitude the same readings are other loads.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from analysis.kinematics.cycle import INSTANTS
+from analysis.kinematics.geometry import Geometry
+from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.projection import ROWS, loads, readings
+from hardware.description.arrays import FloatArray
+
+
+def _unturned() -> FloatArray:
+    return np.eye(len(ROWS))[..., None] * np.ones(INSTANTS)
+
+
+@dataclass(frozen=True, eq=False)
+class AtRest:
+    """Where a run's model rests, and what taring it there takes off; arrays may lead the axes.
+
+    Attributes
+    ----------
+    place_m
+        Of the reference point, as :attr:`analysis.kinematics.motion.MotionWaves.across_m`.
+    of_load
+        Loads in body axes, at each instant of the cycle, of what the gauges read of a unit load at
+        rest: shape ``(..., 3, 2 or 3, INSTANTS)``, by force, moment and surge force at rest.
+    """
+
+    place_m: FloatArray = field(default_factory=lambda: np.zeros(()))
+    of_load: FloatArray = field(default_factory=_unturned)
+
+    @classmethod
+    def of(cls, geometry: Geometry, moved: Driven, gauges: int) -> "AtRest":
+        """Return that of a rig which moves so, with or without the X gauge (3 or 2)."""
+        still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
+        there = motion(geometry, Driven(still, still, still))
+        line = motion(geometry, moved).line_rad
+        turned = []
+        for load in np.eye(len(ROWS))[..., None]:
+            read = readings(geometry, there.line_rad, load)[..., :gauges, :]
+            turned.append(loads(geometry, line, read * np.ones(line.shape[-1])))
+        return cls(there.across_m[..., 0], np.stack(turned, axis=-3))
+
+    @classmethod
+    def stacked(cls, several: Sequence["AtRest"]) -> "AtRest":
+        """Return several as one, with an axis before theirs."""
+        return cls(
+            np.stack([one.place_m for one in several]), np.stack([one.of_load for one in several])
+        )
+
+    def tared(self, load: FloatArray) -> FloatArray:
+        """Return what is missing from the loads of a run that was tared under a load at rest.
+
+        Parameters
+        ----------
+        load
+            Force, moment and surge force of the struts, shape ``(..., 3, INSTANTS)``.
+        """
+        return np.asarray(np.einsum("...kt,...krt->...rt", load, self.of_load))
