@@ -160,6 +160,7 @@ class BodyCycle:
             self.sensitivity if len(self.sensitivity) else self._insensitive(),
             self.channels,
             plane=self.plane,
+            medium=self.medium,
             frequency_hz=self.frequency_hz,
             speed_m_s=self.speed_m_s,
             drift_rad=self.drift_rad,

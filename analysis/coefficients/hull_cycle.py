@@ -1,8 +1,7 @@
 """Hydrodynamic loads on the hull over a cycle: gross loads less those of inertia and weight.
 
-Inertia is taken off exactly, in body axes. A model in water is borne by it: of weight and buoyancy
-``m g z_G sin(pitch)`` is left besides the restoring that is stated; of both a zero run took off
-what the gauges read at rest.
+Inertia is taken off exactly, in body axes, and so are weight, buoyancy and the restoring that is
+stated; of these three a zero run took off what the gauges read at rest.
 """
 
 import math
@@ -21,11 +20,11 @@ from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import INSTANTS, harmonics, per_part, waves
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import MotionWaves
-from analysis.kinematics.rigid_body import inertia_terms
+from analysis.kinematics.rigid_body import inertia_terms, weight_terms
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
-from hardware.description.units import STANDARD_GRAVITY_M_S2
+from hardware.description.setpoint import Medium
 
 if TYPE_CHECKING:
     from analysis.coefficients.body_cycle import BodyCycle
@@ -35,6 +34,7 @@ _MOVING = 4
 _INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
 _OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
 _TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad")
+_KNOWN = len(_INPUTS) + len(_TAKEN)  # what comes after it is not uncertain
 _TIMES = np.array([times for _, times in _INPUTS])
 
 
@@ -60,6 +60,7 @@ def on_hull(
     channels: tuple[str, ...],
     *,
     plane: Plane,
+    medium: Medium,
     frequency_hz: float,
     speed_m_s: float,
     drift_rad: float,
@@ -80,7 +81,7 @@ def on_hull(
     maps = per_part(count, len(channels), _INPUTS, omega)
     parts = interleaved(gross.values)
     moved = parts @ maps
-    stated = _taken(body, drift_rad)
+    stated = _taken(body, drift_rad, plane, medium)
     loads = len(channels) - _MOVING
     values, slope = pointwise(
         lambda waves: _asked(waves, plane, at_rest, restoring)[..., :loads, :],
@@ -90,7 +91,9 @@ def on_hull(
     net = _Net(count, len(channels))
     whole = net.with_loads(by_parts(slope[:, : len(_INPUTS)], maps, orders))
     own = np.zeros((len(parts), len(STATED)))
-    for name, column in zip(_TAKEN, np.moveaxis(slope[:, len(_INPUTS) :], 1, 0), strict=True):
+    for name, column in zip(
+        _TAKEN, np.moveaxis(slope[:, len(_INPUTS) : _KNOWN], 1, 0), strict=True
+    ):
         if body is not None or name not in _OF_BODY:
             own[net.loads, STATED.index(name)] += harmonics(column, orders)
     own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
@@ -133,7 +136,9 @@ def parts_on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence["BodyCycl
         omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
     ]
     moved = np.stack([rates[times][..., channel, :] for channel, times in _INPUTS], axis=-2)
-    stated = np.stack([_taken(cycle.body, cycle.drift_rad) for cycle in cycles])
+    stated = np.stack(
+        [_taken(cycle.body, cycle.drift_rad, plane, cycle.medium) for cycle in cycles]
+    )
     inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
     restoring = np.stack([cycle.restoring for cycle in cycles])
     asked = _asked(np.concatenate(inputs, axis=-2), plane, at_rest, restoring)[..., :loads, :]
@@ -146,12 +151,21 @@ def parts_on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence["BodyCycl
     return turned
 
 
-def _taken(body: Body | None, drift_rad: float) -> FloatArray:
-    """Return the values of :data:`_TAKEN` at each instant."""
+def _taken(body: Body | None, drift_rad: float, plane: Plane, medium: Medium) -> FloatArray:
+    """Return the values of :data:`_TAKEN` at each instant, and then what the struts bear.
+
+    Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments.
+    """
     known = (
         (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
     )
-    return np.array([[*known, 1.0, drift_rad]]).T * np.ones(INSTANTS)
+    borne: tuple[float, ...] = (0.0,) * 5
+    if body is not None and plane is Plane.VERTICAL:
+        in_air, floats = medium is Medium.AIR, body.displaced_kg is None
+        lift = 0.0 if in_air or body.displaced_kg is None else body.displaced_kg
+        levers = (lift, lift * body.buoyancy_x_m, lift * body.buoyancy_z_m)
+        borne = (float(in_air or not floats), 1.0, *levers)
+    return np.array([[*known, 1.0, drift_rad, *borne]]).T * np.ones(INSTANTS)
 
 
 class _Net:
@@ -182,7 +196,8 @@ def _asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -
     Less what the latter two ask at rest, as the gauges read it there.
     """
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
-    mass, ahead, below, turned, factor, drift = np.moveaxis(waves[..., 8:, :], -2, 0)
+    taken = np.moveaxis(waves[..., len(_INPUTS) :, :], -2, 0)
+    mass, ahead, below, turned, factor, drift, whole, under, *lift = taken
     state = MotionWaves(
         rotation,
         rotation,
@@ -192,14 +207,14 @@ def _asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -
     )
     moments = np.stack((mass, mass * ahead, mass * below, turned), axis=-2)
     loads = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
-    hanging = STANDARD_GRAVITY_M_S2 * mass * below * (plane is Plane.VERTICAL)
+    parts = np.stack((whole, whole, under), axis=-2)
+    hanging = parts * moments[..., :3, :] - np.stack(lift, axis=-2)
 
     def static(place: Waves, angle: Waves) -> Waves:
-        held = factor[..., None, :] * np.einsum(
-            "...rc,...ct->...rt", restoring, np.stack((place, angle), axis=-2)
-        )
-        about = held[..., 1, :] + hanging * np.sin(angle)
-        return np.stack((held[..., 0, :], about, np.zeros_like(about)), axis=-2)
+        held = np.einsum("...kt,...krt->...rt", hanging, weight_terms(angle))
+        where = np.stack((place, angle), axis=-2)
+        held[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, where)
+        return np.asarray(held)
 
     still = np.broadcast_to(at_rest.place_m[..., None], translation.shape)
     tared = at_rest.tared(static(still, drift))

@@ -6,8 +6,6 @@ m x_G, m z_G and I: :func:`inertia_terms` and :func:`weight_terms` give what eac
 many runs at once and for bodies that are known with an uncertainty.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from analysis.kinematics.geometry import Geometry, Waves
@@ -17,15 +15,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-
-
-@dataclass(frozen=True)
-class Buoyancy:
-    """Of a body under water: displaced mass and its centre, from the reference point."""
-
-    displaced_kg: float
-    centre_x_m: float = 0.0
-    centre_z_m: float = 0.0
 
 
 def moments(body: Body) -> FloatArray:
@@ -63,28 +52,27 @@ def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
     )
 
 
-def weight(body: Body, motion: MotionWaves, buoyancy: Buoyancy | None = None) -> Waves:
-    """Return the loads on the struts from weight and buoyancy in the vertical plane.
+def weight(body: Body, motion: MotionWaves) -> Waves:
+    """Return the loads on the struts from the weight, in air and in the vertical plane.
 
-    Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)`` of the weight alone.
+    Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)``.
     """
-    hanging = moments(body)[:3]
-    if buoyancy is not None:
-        lever = np.array([1.0, buoyancy.centre_x_m, buoyancy.centre_z_m])
-        hanging = hanging - buoyancy.displaced_kg * lever
-    return _sum(hanging, weight_terms(motion))
+    return _sum(moments(body)[:3], weight_terms(motion.rotation_rad))
 
 
-def weight_terms(motion: MotionWaves) -> Waves:
-    """Return the weight's loads per mass, m x_G and m z_G, shape ``(..., 3, 3, instants)``."""
-    sine = STANDARD_GRAVITY_M_S2 * np.sin(motion.rotation_rad)
-    cosine = STANDARD_GRAVITY_M_S2 * np.cos(motion.rotation_rad)
+def weight_terms(pitch_rad: Waves) -> Waves:
+    """Return the weight's loads per mass, m x_G and m z_G, shape ``(..., 3, 3, instants)``.
+
+    Of buoyancy they are the same per displaced mass and its moments, with the other sign.
+    """
+    sine = STANDARD_GRAVITY_M_S2 * np.sin(pitch_rad)
+    cosine = STANDARD_GRAVITY_M_S2 * np.cos(pitch_rad)
     none = np.zeros_like(sine)
     return _stacked((-cosine, none, sine), (none, cosine, none), (none, sine, none))
 
 
-def zero_readings(geometry: Geometry, body: Body, buoyancy: Buoyancy | None = None) -> Waves:
-    """Return what the gauges read of the body at rest where the drift sets it, shape ``(3,)``.
+def zero_readings(geometry: Geometry, body: Body) -> Waves:
+    """Return what the gauges read of the body at rest in air, where the drift sets it: ``(3,)``.
 
     A zero run takes it off the readings of the runs after it, so it comes back before weight does
     off their loads. Of the vertical plane; in the horizontal one there is nothing.
@@ -93,7 +81,7 @@ def zero_readings(geometry: Geometry, body: Body, buoyancy: Buoyancy | None = No
     at = motion(geometry, Driven(still, still, still))
     if geometry.plane is Plane.HORIZONTAL:
         return np.zeros(3)
-    return readings(geometry, at.line_rad, weight(body, at, buoyancy))[:, 0]
+    return readings(geometry, at.line_rad, weight(body, at))[:, 0]
 
 
 def _sum(values: FloatArray, terms: Waves) -> Waves:

@@ -26,6 +26,7 @@ from pmm.coefficients.tasks import Chain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 
 _BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
+_BORNE = ("displaced_kg", "buoyancy_x_m", "buoyancy_z_m")
 _GAUGES = {
     (FORCES[0], FORCES[0]): "gauge_aft_relative",
     (FORCES[0], FORCES[1]): "cross_talk_aft",
@@ -97,7 +98,7 @@ def body_of(
             )
         return None, ()
     if inertia is not None and inertia != MODEL:
-        return _model_file(Path(inertia))
+        return _model_file(Path(inertia), campaign.model)
     if campaign.model is None:
         raise ConfigurationError(
             f"campaign {campaign.name!r}: no inertia to take off: copy [model] of `pmm inertia "
@@ -130,7 +131,8 @@ def with_own_body(
     return replace(found, flags=(*found.flags, flag))
 
 
-def _model_file(path: Path) -> tuple[Body, tuple[ModelUncertainty, ...]]:
+def _model_file(path: Path, own: Body | None) -> tuple[Body, tuple[ModelUncertainty, ...]]:
+    """Return the file's body; what the water bears, which no swing tells, is the campaign's own."""
     original: dict[str, Any] = read_toml(path)
     table = dict(original)
     faults: list[Fault] = list(limit_faults(table))
@@ -139,7 +141,8 @@ def _model_file(path: Path) -> tuple[Body, tuple[ModelUncertainty, ...]]:
     if not isinstance(model, dict):
         faults.append(Fault(("model",), "is missing; `pmm inertia ... --output` writes it"))
         model = {}
-    body = validate(Body, model, faults)
+    borne = {} if own is None or own.displaced_kg is None else {k: vars(own)[k] for k in _BORNE}
+    body = validate(Body, borne | model, faults)
     if body is None or faults:
         raise as_error(path, faults, original)
     return body, () if uncertainty is None else (uncertainty,)

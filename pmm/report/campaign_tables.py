@@ -296,7 +296,8 @@ def given_table(outcome: Outcome) -> Grid:
     """Return what was stated: the body that was taken off and standard uncertainties."""
     rows = []
     if outcome.body is not None:
-        rows += [(f"model: {key}", f"{value:.6g}") for key, value in asdict(outcome.body).items()]
+        known = {key: value for key, value in asdict(outcome.body).items() if value is not None}
+        rows += [(f"model: {key}", f"{value:.6g}") for key, value in known.items()]
     stated = zip(STATED, outcome.stated.vector, strict=True)
     rows += [(f"u of {key}", f"{value:.3g}") for key, value in stated if value > 0.0]
     if not rows:

@@ -109,10 +109,18 @@ def _fill_body(numbers: FloatArray, hull: ModelParameters) -> None:
     below = body.cg_z_m if vertical else 0.0
     numbers[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
     if vertical:
-        # Buoyancy carries the model in water, at the height of the struts' attachments.
-        hanging = 0.0 if hull.afloat else body.mass_kg
-        weights = np.array([hanging, hanging * body.cg_x_m, body.mass_kg * below])
-        numbers[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * weights
+        weight = body.mass_kg * np.array([1.0, body.cg_x_m, below])
+        numbers[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * (weight - _borne(hull))
+
+
+def _borne(hull: ModelParameters) -> FloatArray:
+    """Return what the water bears: mass, and its moments ahead and below."""
+    body = hull.body
+    if not hull.afloat:
+        return np.zeros(3)
+    if body.displaced_kg is None:
+        return body.mass_kg * np.array([1.0, body.cg_x_m, 0.0])
+    return body.displaced_kg * np.array([1.0, body.buoyancy_x_m, body.buoyancy_z_m])
 
 
 def _fill_water(numbers: FloatArray, hull: ModelParameters, added_mass: FloatArray) -> None:

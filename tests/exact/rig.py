@@ -1,6 +1,6 @@
 """What an exact rig is told, and where its points are."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,17 @@ class ExactBody:
     displaced_kg: float = 0.0
     buoyancy_x_m: float = 0.0
     buoyancy_across_m: float = 0.0
+
+    def afloat(self) -> "ExactBody":
+        """Return a body that the water bears: of weight and buoyancy ``m g z_G`` is left."""
+        below = self.cg_across_m if self.displaced_kg else 0.0  # nothing to the side, z_G below
+        return replace(
+            self,
+            cg_across_m=below,
+            displaced_kg=self.mass_kg,
+            buoyancy_x_m=self.cg_x_m,
+            buoyancy_across_m=0.0,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from tests.exact.rig import ExactBody, ExactRig
 
 FREQUENCY_HZ, SPEED_M_S, HALF_M = 0.3, 1.2, 0.5
 BODY = Body(78.0, 14.0, 0.03, 0.02)
+UNDER_WATER = replace(BODY, displaced_kg=71.0, buoyancy_x_m=0.05, buoyancy_z_m=-0.03)
 HORIZONTAL = {
     "X_u": -1.5, "X_uu": -5.5, "X_vr": 50.0, "X_vv": -12.0, "X_rr": 4.0,
     "Y_vdot": -110.0, "Y_v": -120.0, "Y_rdot": -3.0, "Y_r": 25.0,
@@ -39,7 +40,7 @@ RESTORING = {
 TERMS = {Plane.HORIZONTAL: HORIZONTAL, Plane.VERTICAL: VERTICAL}
 
 
-def simulated(plane: Plane, arrangement: Arrangement) -> SimulatedRig:
+def simulated(plane: Plane, arrangement: Arrangement, body: Body = BODY) -> SimulatedRig:
     """Return a rig without noise, limits or play, whose hull has a term of each kind."""
     v, r = ("v", "r") if plane is Plane.HORIZONTAL else ("w", "q")
     rows, terms = ("YN" if plane is Plane.HORIZONTAL else "ZM"), TERMS[plane]
@@ -58,7 +59,7 @@ def simulated(plane: Plane, arrangement: Arrangement) -> SimulatedRig:
             force_per_strut_n=1e6,
             **vars(arrangement),
         ),
-        body=BODY,
+        body=body,
         water=HullCoefficients(
             added_mass=asked(f"{v}dot", f"{r}dot"),  # type: ignore[arg-type]  # two by two
             damping=asked(v, r),  # type: ignore[arg-type]
@@ -78,14 +79,25 @@ def set_point(arrangement: Arrangement, rotation_rad: float, medium: Medium) -> 
     return SetPoint(FREQUENCY_HZ, size, phase, speed, medium)
 
 
-def exact(plane: Plane, arrangement: Arrangement, point: SetPoint, drift_rad: float) -> ExactRig:
+def exact(
+    plane: Plane,
+    arrangement: Arrangement,
+    point: SetPoint,
+    drift_rad: float,
+    own: Body = BODY,
+) -> ExactRig:
     """Return the exact rig of a run: the same hull, and the body that it floats or hangs with."""
     vertical, water = plane is Plane.VERTICAL, point.medium is Medium.WATER
-    body = ExactBody(
-        BODY.mass_kg, BODY.inertia_kg_m2, BODY.cg_x_m, BODY.cg_z_m if vertical else 0.0
-    )
-    if water:
-        body = replace(body, displaced_kg=BODY.mass_kg, buoyancy_x_m=BODY.cg_x_m)
+    body = ExactBody(own.mass_kg, own.inertia_kg_m2, own.cg_x_m, own.cg_z_m if vertical else 0.0)
+    if water and own.displaced_kg is None:
+        body = replace(body, displaced_kg=own.mass_kg, buoyancy_x_m=own.cg_x_m)
+    elif water and own.displaced_kg is not None:
+        body = replace(
+            body,
+            displaced_kg=own.displaced_kg,
+            buoyancy_x_m=own.buoyancy_x_m,
+            buoyancy_across_m=own.buoyancy_z_m,
+        )
     size = point.eccentricity_m
     struts = np.array([[0.0, 0.0], [size, size * np.exp(1j * point.strut_phase_rad)]])
     return ExactRig(

@@ -20,7 +20,7 @@ from sim.solve.periodic import steady_state
 from tests.exact.forces import at_rest
 from tests.exact.rig import ExactRig
 from tests.exact.run import cycle, readings
-from tests.sim.exact import exact, set_point, simulated
+from tests.sim.exact import UNDER_WATER, exact, set_point, simulated
 
 ORDERS = 3  # harmonics that an analysis uses
 FORCES = (signals.FORCE_AFT.name, signals.FORCE_FORE.name, signals.FORCE_X.name)
@@ -60,6 +60,19 @@ def test_samples_are_the_exact_readings(plane: Plane, arrangement: Arrangement) 
         chain = simulated(plane, arrangement).chain(replace(point, drift_rad=drift_rad))
         _, run = chain.run(chain.start(50.0, 1), 200)
         rig = exact(plane, arrangement, point, drift_rad)
+        expected = readings(rig, run[signals.SHAFT_ANGLE.name], tared=True)
+        for name, row in zip(FORCES, expected, strict=True):
+            assert np.abs(run[name] - row).max() < 1e-12 * np.abs(expected).max()
+
+
+@EVERY
+def test_a_model_below_the_surface_weighs_more_than_its_water(arrangement: Arrangement) -> None:
+    point = set_point(arrangement, LARGEST_RAD[Plane.VERTICAL], Medium.WATER)
+    for medium, drift_rad in product(Medium, (0.0, 0.15)):
+        point = replace(point, medium=medium, drift_rad=drift_rad)
+        chain = simulated(Plane.VERTICAL, arrangement, UNDER_WATER).chain(point)
+        _, run = chain.run(chain.start(50.0, 1), 200)
+        rig = exact(Plane.VERTICAL, arrangement, point, drift_rad, UNDER_WATER)
         expected = readings(rig, run[signals.SHAFT_ANGLE.name], tared=True)
         for name, row in zip(FORCES, expected, strict=True):
             assert np.abs(run[name] - row).max() < 1e-12 * np.abs(expected).max()

@@ -15,7 +15,7 @@ from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plan
 from hardware.description.setpoint import SetPoint
 from tests.analysis.kinematics.exact import body_of
 from tests.exact.hull import polynomial
-from tests.exact.rig import ExactBody, ExactRig
+from tests.exact.rig import ExactRig
 from tests.exact.rigs import exact_rig
 from tests.exact.run import cycle as gauges
 
@@ -48,7 +48,7 @@ RESTORING = {
 }
 
 
-def campaign(plane: Plane, arrangement: Arrangement) -> list[ExactRig]:
+def campaign(plane: Plane, arrangement: Arrangement, *, floats: bool = True) -> list[ExactRig]:
     """Return sway, yaw and both, with drift, to 23 degrees (15 with pitch)."""
     largest = math.radians(15.0 if plane is Plane.VERTICAL else 25.0)
     rigs = [
@@ -62,25 +62,18 @@ def campaign(plane: Plane, arrangement: Arrangement) -> list[ExactRig]:
         )
         for turn, sway, hertz, drift in RUNS
     ]
-    return [afloat(one) for one in rigs]
+    return [(afloat if floats else under_water)(one) for one in rigs]
 
 
 def afloat(rig: ExactRig) -> ExactRig:
     """Return a rig with the plane's hull, that floats."""
     hull, restoring = polynomial(HULLS[rig.plane]), RESTORING[rig.plane]
-    return replace(rig, hull=hull, body=borne(rig.body), restoring=restoring)
+    return replace(rig, hull=hull, body=rig.body.afloat(), restoring=restoring)
 
 
-def borne(body: ExactBody) -> ExactBody:
-    """Return a body that the water bears: of weight and buoyancy ``m g z_G`` is left."""
-    below = body.cg_across_m if body.displaced_kg else 0.0  # nothing to the side, z_G below
-    return replace(
-        body,
-        cg_across_m=below,
-        displaced_kg=body.mass_kg,
-        buoyancy_x_m=body.cg_x_m,
-        buoyancy_across_m=0.0,
-    )
+def under_water(rig: ExactRig) -> ExactRig:
+    """Return a rig with the plane's hull, heavier than the water that it displaces."""
+    return replace(rig, hull=polynomial(HULLS[rig.plane]))
 
 
 def struts_of(rig: ExactRig, name: str, orders: int) -> StrutCycle:

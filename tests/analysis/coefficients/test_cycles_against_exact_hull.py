@@ -11,7 +11,7 @@ from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
-from tests.analysis.coefficients.exact_campaigns import HULLS, borne, campaign, cycle_of
+from tests.analysis.coefficients.exact_campaigns import HULLS, campaign, cycle_of
 from tests.exact.hull import polynomial
 from tests.exact.rigs import ARRANGEMENTS, exact_rig
 
@@ -22,12 +22,15 @@ EVERY = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.parametrize("plane", Plane)
+@pytest.mark.parametrize(
+    ("plane", "floats"),
+    [(Plane.HORIZONTAL, True), (Plane.VERTICAL, True), (Plane.VERTICAL, False)],
+)
 @EVERY
-def test_every_term_comes_back(plane: Plane, arrangement: Arrangement) -> None:
-    cycles = [
-        cycle_of(rig, f"run {k}", ORDERS) for k, rig in enumerate(campaign(plane, arrangement))
-    ]
+def test_every_term_comes_back(plane: Plane, floats: bool, arrangement: Arrangement) -> None:
+    """In the vertical plane with a surface ship's restoring, or heavy and below the surface."""
+    rigs = campaign(plane, arrangement, floats=floats)
+    cycles = [cycle_of(rig, f"run {k}", ORDERS) for k, rig in enumerate(rigs)]
     fit = fit_cycles(cycles, tuple(HULLS[plane]), (0, 1, 2, 3))
     for name, put_in in HULLS[plane].items():
         assert fit[name] == pytest.approx(put_in, rel=1e-6, abs=1e-6), name
@@ -57,7 +60,7 @@ def test_linear_coefficients_of_small_motions(
     hull = polynomial(terms)
     cycles = [
         cycle_of(
-            replace(one, coordinates=one.coordinates[:2], hull=hull, body=borne(one.body)),
+            replace(one, coordinates=one.coordinates[:2], hull=hull, body=one.body.afloat()),
             str(k),
             3,
         )

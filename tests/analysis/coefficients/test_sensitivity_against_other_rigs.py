@@ -20,7 +20,6 @@ from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import (
     HULLS,
     RESTORING,
-    borne,
     campaign,
     less_known,
     struts_of,
@@ -93,7 +92,7 @@ def fitted(
 
 
 def heavier(body: ExactBody, **change: float) -> ExactBody:
-    return borne(replace(body, **{key: getattr(body, key) + by for key, by in change.items()}))
+    return replace(body, **{key: getattr(body, key) + by for key, by in change.items()}).afloat()
 
 
 def moved(rig: ExactRig, by: float) -> ExactRig:
@@ -102,7 +101,7 @@ def moved(rig: ExactRig, by: float) -> ExactRig:
     ahead = body.cg_x_m - by
     own = body.inertia_kg_m2 + body.mass_kg * (ahead**2 - body.cg_x_m**2)
     return replace(
-        held(rig, ahead_m=-by), body=borne(replace(body, cg_x_m=ahead, inertia_kg_m2=own))
+        held(rig, ahead_m=-by), body=replace(body, cg_x_m=ahead, inertia_kg_m2=own).afloat()
     )
 
 

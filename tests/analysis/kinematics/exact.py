@@ -1,5 +1,7 @@
 """What the product is asked of an exact rig, in its own terms."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -39,7 +41,15 @@ def motion_of(rig: ExactRig) -> MotionWaves:
 
 def body_of(body: ExactBody) -> Body:
     """Return the product's word for the body (nothing to the side in the horizontal plane)."""
-    return Body(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_across_m)
+    known = Body(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_across_m)
+    if body == body.afloat():
+        return known
+    return replace(
+        known,
+        displaced_kg=body.displaced_kg,
+        buoyancy_x_m=body.buoyancy_x_m,
+        buoyancy_z_m=body.buoyancy_across_m,
+    )
 
 
 def in_axes(geometry: Geometry, parts: NDArray[np.float64], omega: float) -> NDArray[np.float64]:
