@@ -21,8 +21,7 @@ from benchmarks.campaign_folder import make_campaign
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from pmm.coefficients.settings import Settings
 from pmm.coefficients.solving import TrialBlock, draw_block
-from pmm.coefficients.workflow import Outcome as Found
-from pmm.coefficients.workflow import coefficients_of
+from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
 from pmm.parallel import InThisProcess, LocalProcesses, open_executor
 
 _GIB = 2.0**30
@@ -59,7 +58,7 @@ def run(quick: bool, report: Report) -> Outcome:
     )
 
 
-def _files(folder: Path, report: Report) -> tuple[list[Row], dict[str, float], Found]:
+def _files(folder: Path, report: Report) -> tuple[list[Row], dict[str, float], CampaignOutcome]:
     paths = sorted(folder.glob("*.nc"))
     _read_all(paths)  # the disk's cache is warm for all of them
     report("reading alone")
@@ -100,11 +99,11 @@ def _read_all(paths: list[Path]) -> float:
     return total
 
 
-def _solved(folder: Path, executor: Executor) -> Found:
+def _solved(folder: Path, executor: Executor) -> CampaignOutcome:
     return coefficients_of([folder], Settings(), executor, lambda *_: None)
 
 
-def _in_two(folder: Path) -> Found:
+def _in_two(folder: Path) -> CampaignOutcome:
     with open_executor(jobs=2) as executor:
         return _solved(folder, executor)
 
@@ -143,7 +142,7 @@ def _watched() -> Iterator[list[float]]:
         thread.join()
 
 
-def _trials(found: Found, blocks: int, report: Report) -> tuple[list[Row], float]:
+def _trials(found: CampaignOutcome, blocks: int, report: Report) -> tuple[list[Row], float]:
     """Time blocks of trials of the first group, one worker against two that have started."""
     from analysis.coefficients.campaign_plan import plan
     from analysis.coefficients.linear_fit import linear_fit

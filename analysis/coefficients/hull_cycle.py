@@ -5,9 +5,7 @@ stated; of these three a zero run took off what the gauges read at rest.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +15,7 @@ from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.kinematics.body_frame import CHANNELS, UNITS
 from analysis.kinematics.complex_step import by_parts, pointwise
-from analysis.kinematics.cycle import INSTANTS, harmonics, per_part, waves
+from analysis.kinematics.cycle import INSTANTS, harmonics, per_part
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import MotionWaves
 from analysis.kinematics.rigid_body import inertia_terms, weight_terms
@@ -26,16 +24,13 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
-if TYPE_CHECKING:
-    from analysis.coefficients.body_cycle import BodyCycle
-
-_MOVING = 4
+MOVING = 4
 """Channels of motion; those of the loads follow."""
-_INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
+INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
 _OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
 _TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad")
-_KNOWN = len(_INPUTS) + len(_TAKEN)  # what comes after it is not uncertain
-_TIMES = np.array([times for _, times in _INPUTS])
+_KNOWN = len(INPUTS) + len(_TAKEN)  # what comes after it is not uncertain
+_TIMES = np.array([times for _, times in INPUTS])
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,30 +73,28 @@ def on_hull(
     """
     count = len(gross.names) // len(channels)
     omega = 2.0 * math.pi * frequency_hz
-    maps = per_part(count, len(channels), _INPUTS, omega)
+    maps = per_part(count, len(channels), INPUTS, omega)
     parts = interleaved(gross.values)
     moved = parts @ maps
-    stated = _taken(body, drift_rad, plane, medium)
-    loads = len(channels) - _MOVING
+    stated = stated_at_instants(body, drift_rad, plane, medium)
+    loads = len(channels) - MOVING
     values, slope = pointwise(
-        lambda waves: _asked(waves, plane, at_rest, restoring)[..., :loads, :],
+        lambda waves: loads_asked(waves, plane, at_rest, restoring)[..., :loads, :],
         np.concatenate((moved, stated)),
     )
     orders = count - 1
-    net = _Net(count, len(channels))
-    whole = net.with_loads(by_parts(slope[:, : len(_INPUTS)], maps, orders))
+    net = HullParts(count, len(channels))
+    whole = net.with_loads(by_parts(slope[:, : len(INPUTS)], maps, orders))
     own = np.zeros((len(parts), len(STATED)))
-    for name, column in zip(
-        _TAKEN, np.moveaxis(slope[:, len(_INPUTS) : _KNOWN], 1, 0), strict=True
-    ):
+    for name, column in zip(_TAKEN, np.moveaxis(slope[:, len(INPUTS) : _KNOWN], 1, 0), strict=True):
         if body is not None or name not in _OF_BODY:
             own[net.loads, STATED.index(name)] += harmonics(column, orders)
     own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
-    faster = (slope[:, : len(_INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
+    faster = (slope[:, : len(INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
     own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
     sensitivity = own + whole @ sensitivity
     changes = net.parts(parts, harmonics(values, orders))
-    shift, by_pace, by_speed = _to_point(
+    shift, by_pace, by_speed = to_point(
         count, len(channels), point_ahead_m, plane, omega, speed_m_s
     )
     sensitivity = shift @ sensitivity
@@ -119,39 +112,9 @@ def on_hull(
     )
 
 
-def parts_on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence["BodyCycle"]) -> FloatArray:
-    """Return the interleaved parts of :func:`on_hull` alone, without slopes, of many runs.
-
-    Parameters
-    ----------
-    gross, at_rest
-        In place of the runs' own, with leading axes ``(several, runs)``.
-    cycles
-        Of one plane, with as many orders and the same channels.
-    """
-    channels, plane = cycles[0].channels, cycles[0].plane
-    count, loads = cycles[0].orders + 1, len(channels) - _MOVING
-    omega = np.array([2.0 * math.pi * cycle.frequency_hz for cycle in cycles])
-    rates = [
-        omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
-    ]
-    moved = np.stack([rates[times][..., channel, :] for channel, times in _INPUTS], axis=-2)
-    stated = np.stack(
-        [_taken(cycle.body, cycle.drift_rad, plane, cycle.medium) for cycle in cycles]
-    )
-    inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
-    restoring = np.stack([cycle.restoring for cycle in cycles])
-    asked = _asked(np.concatenate(inputs, axis=-2), plane, at_rest, restoring)[..., :loads, :]
-    net = _Net(count, len(channels)).parts(gross, harmonics(asked, count - 1))
-    turned = np.empty_like(net)
-    for k, cycle in enumerate(cycles):
-        pace, speed = float(omega[k]), cycle.speed_m_s
-        shift, *_ = _to_point(count, len(channels), cycle.point_ahead_m, plane, pace, speed)
-        turned[:, k] = net[:, k] @ shift.T
-    return turned
-
-
-def _taken(body: Body | None, drift_rad: float, plane: Plane, medium: Medium) -> FloatArray:
+def stated_at_instants(
+    body: Body | None, drift_rad: float, plane: Plane, medium: Medium
+) -> FloatArray:
     """Return the values of :data:`_TAKEN` at each instant, and then what the struts bear.
 
     Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments.
@@ -168,12 +131,12 @@ def _taken(body: Body | None, drift_rad: float, plane: Plane, medium: Medium) ->
     return np.array([[*known, 1.0, drift_rad, *borne]]).T * np.ones(INSTANTS)
 
 
-class _Net:
+class HullParts:
     """Where the loads stand among the parts."""
 
     def __init__(self, count: int, channels: int) -> None:
         place = np.arange(2 * count * channels).reshape(count, channels, 2)
-        self.loads = place[:, _MOVING:].ravel()
+        self.loads = place[:, MOVING:].ravel()
         self.is_load = np.zeros(2 * count * channels, dtype=bool)
         self.is_load[self.loads] = True
 
@@ -190,13 +153,13 @@ class _Net:
         return parts
 
 
-def _asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -> Waves:
+def loads_asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -> Waves:
     """What inertia, weight and restoring ask of the struts: force, moment, surge force.
 
     Less what the latter two ask at rest, as the gauges read it there.
     """
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
-    taken = np.moveaxis(waves[..., len(_INPUTS) :, :], -2, 0)
+    taken = np.moveaxis(waves[..., len(INPUTS) :, :], -2, 0)
     mass, ahead, below, turned, factor, drift, whole, under, *lift = taken
     state = MotionWaves(
         rotation,
@@ -223,7 +186,7 @@ def _asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -
     return np.asarray(loads)
 
 
-def _to_point(
+def to_point(
     count: int, channels: int, ahead_m: float, plane: Plane, omega: float, speed_m_s: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return what takes the parts to a point ahead, and its slopes by ln(omega) and the speed.

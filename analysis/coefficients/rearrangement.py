@@ -4,6 +4,7 @@ The fit is a function of the arrangement: joint, pivot, gauges and the way a dri
 of a campaign is made once more under each alternative of one key, with the same weights.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Final
@@ -14,8 +15,16 @@ from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import parts_of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.hull_cycle import parts_on_hull
+from analysis.coefficients.hull_cycle import (
+    INPUTS,
+    MOVING,
+    HullParts,
+    loads_asked,
+    stated_at_instants,
+    to_point,
+)
 from analysis.coefficients.phasors import interleaved
+from analysis.kinematics.cycle import harmonics, waves
 from analysis.kinematics.geometry import Geometry
 from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.arrays import FloatArray
@@ -94,7 +103,7 @@ def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str
     parts_of_key: dict[str, FloatArray] = {}
     for alike in by_shape.values():
         gross, at_rest = zip(*(_gross(alike, way) for way in ways), strict=True)
-        parts = parts_on_hull(np.stack(gross), AtRest.stacked(at_rest), alike)
+        parts = _on_hull(np.stack(gross), AtRest.stacked(at_rest), alike)
         parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
     return parts_of_key
 
@@ -131,3 +140,35 @@ def _evidence(fit: CycleFit, table: Mapping[str, FloatArray]) -> FloatArray:
     stated = fit.chi_square[row]
     dispersion = np.maximum(1.0, np.minimum(squares[:, row], stated) / spare)
     return np.asarray((stated - squares[:, row]) / (2.0 * dispersion))
+
+
+def _on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence[BodyCycle]) -> FloatArray:
+    """Return the parts of :func:`analysis.coefficients.hull_cycle.on_hull` alone, of many runs.
+
+    Parameters
+    ----------
+    gross, at_rest
+        In place of the runs' own, with leading axes ``(several, runs)``.
+    cycles
+        Of one plane, with as many orders and the same channels.
+    """
+    channels, plane = cycles[0].channels, cycles[0].plane
+    count, loads = cycles[0].orders + 1, len(channels) - MOVING
+    omega = np.array([2.0 * math.pi * cycle.frequency_hz for cycle in cycles])
+    rates = [
+        omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
+    ]
+    moved = np.stack([rates[times][..., channel, :] for channel, times in INPUTS], axis=-2)
+    stated = np.stack(
+        [stated_at_instants(cycle.body, cycle.drift_rad, plane, cycle.medium) for cycle in cycles]
+    )
+    inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
+    restoring = np.stack([cycle.restoring for cycle in cycles])
+    asked = loads_asked(np.concatenate(inputs, axis=-2), plane, at_rest, restoring)[..., :loads, :]
+    net = HullParts(count, len(channels)).parts(gross, harmonics(asked, count - 1))
+    turned = np.empty_like(net)
+    for k, cycle in enumerate(cycles):
+        pace, speed = float(omega[k]), cycle.speed_m_s
+        shift, *_ = to_point(count, len(channels), cycle.point_ahead_m, plane, pace, speed)
+        turned[:, k] = net[:, k] @ shift.T
+    return turned

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,12 +18,12 @@ from analysis.threads import cores
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.analyse_options import AnalyseOptions
 from pmm.cli.damaged import tell_damaged, tell_unchecked
-from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.screen import busy, error_line, messages, output, print_flags
+from pmm.document.data import plain
 from pmm.parallel import open_executor
 from pmm.tables import RunRows, run_rows
 
@@ -278,18 +278,15 @@ def document(
     doubts: "Sequence[tuple[Path, tuple[Flag, ...]]]" = (),
 ) -> dict[str, Any]:
     """Return what ``--json`` prints; ``docs/campaigns.md`` describes it."""
-    text: dict[str, Any] = without_nan(
+    text: dict[str, Any] = plain(
         {
             "schema": JSON_SCHEMA,
             "level": level,
-            "runs": [asdict(rows) for rows in done],
-            "campaigns": [
-                {"file": str(path), "flags": list(map(asdict, flags))} for path, flags in doubts
-            ],
+            "runs": done,
+            "campaigns": [{"file": str(path), "flags": flags} for path, flags in doubts],
             "not_recorded": [str(path) for path in found.not_recorded],
             "failed": [
-                {"file": one.file, "message": one.message, "flags": list(map(asdict, one.flags))}
-                for one in failed
+                {"file": one.file, "message": one.message, "flags": one.flags} for one in failed
             ],
         }
     )

@@ -6,11 +6,10 @@ from typing import Any, TypeVar
 
 import click
 
-from pmm.cli.engine_options import jobs_option, scheduler_option
+from pmm.cli.engine_options import DEFAULT_TRIALS, jobs_option, scheduler_option
 
 SYSTEMS = ("dimensional", "prime", "mmg", "seakeeping")
 FORMS = ("manoeuvring", "seakeeping")
-DEFAULT_TRIALS = 20_000
 F = TypeVar("F", bound=Callable[..., Any])
 
 

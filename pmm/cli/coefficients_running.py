@@ -1,6 +1,5 @@
 """What ``pmm coefficients`` does: analyse, then print, plot and write."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -12,8 +11,8 @@ import click
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.being_written import tell_writers
-from pmm.cli.coefficients import DEFAULT_TRIALS
 from pmm.cli.damaged import tell_damaged, tell_unchecked
+from pmm.cli.engine_options import DEFAULT_TRIALS
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.coefficients.references import beside, check_systems, read_references
@@ -28,8 +27,11 @@ from pmm.coefficients.settings import (
 )
 from pmm.coefficients.solving import Progress
 from pmm.coefficients.systems import check_dimensions, in_system
-from pmm.coefficients.workflow import Outcome, coefficients_of
+from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
+from pmm.document.data import as_json
+from pmm.document.terminal import print_document
 from pmm.parallel import open_executor
+from pmm.report.coefficients_document import coefficients_document
 from pmm.version import provenance
 from pmm.whole_file import write_whole
 
@@ -50,20 +52,17 @@ def run(options: Mapping[str, Any]) -> None:
     """
     _check_outputs(options)
     outcome, _ = analysed(options)
+    told = coefficients_document(outcome)
     if options["as_json"]:
-        from pmm.coefficients.document import document
-
-        click.echo(json.dumps(document(outcome), indent=1, allow_nan=False))
+        click.echo(as_json(told))
     else:
-        from pmm.cli.coefficients_printing import print_outcome
-
-        print_outcome(output(), outcome)
+        print_document(output(), told)
     for path in _written(outcome, options):
         messages().print(f"written: {path}")
     finish(outcome)
 
 
-def finish(outcome: Outcome) -> None:
+def finish(outcome: CampaignOutcome) -> None:
     """Name the runs that could not be used or are damaged; end with the status they ask for."""
     for name in outcome.not_recorded:
         messages().print(f"not recorded yet: {name}")
@@ -78,7 +77,7 @@ def finish(outcome: Outcome) -> None:
 
 def analysed(
     options: Mapping[str, Any], *, hashed: bool = False
-) -> tuple[Outcome, tuple[Path, ...]]:
+) -> tuple[CampaignOutcome, tuple[Path, ...]]:
     """Analyse the campaigns of a command; return the files that were read beside recordings."""
     folders = [_folder(text) for text in options["campaigns"]]
     tell_writers(folders)
@@ -95,7 +94,7 @@ def analysed(
     return finished(outcome, settings), tuple(files)
 
 
-def finished(outcome: Outcome, settings: Settings) -> Outcome:
+def finished(outcome: CampaignOutcome, settings: Settings) -> CampaignOutcome:
     """Put reference tables beside the values, and bring both to the system asked for."""
     found = outcome.result
     references = read_references(settings.references, found.plane, found.form)
@@ -185,16 +184,16 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     check_files(files, overwrite=options["overwrite"])
 
 
-def _written(outcome: Outcome, options: Mapping[str, Any]) -> Iterator[str]:
+def _written(outcome: CampaignOutcome, options: Mapping[str, Any]) -> Iterator[str]:
     if options["csv_file"] is not None:
-        from pmm.coefficients.document import csv_text
+        from pmm.coefficients.files import csv_text
 
         path = Path(options["csv_file"])
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, csv_text(outcome.result))
         yield str(path)
     if options["netcdf"] is not None:
-        from pmm.coefficients.document import write_netcdf
+        from pmm.coefficients.files import write_netcdf
 
         path = Path(options["netcdf"])
         path.parent.mkdir(parents=True, exist_ok=True)

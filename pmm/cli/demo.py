@@ -100,8 +100,10 @@ def _write_plots(found: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None
 
 
 def _write_page(found: "Sequence[Analysis]", folder: Path) -> None:
-    from pmm.report.page import write_page
+    from pmm.document.page import write_page
+    from pmm.report.harmonics_document import harmonics_document
 
     title = "Heave, pitch, sway and yaw on the simulated rig"
+    told, command = harmonics_document(found, folder.name), pasted("demo", "--output", folder)
     with busy("writing the page"):
-        write_page(found, folder / PAGE, title=title, command=pasted("demo", "--output", folder))
+        write_page(told, folder / PAGE, title=title, command=command)

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 import click
 
 F = TypeVar("F", bound=Callable[..., Any])
+DEFAULT_TRIALS = 20_000  # of a Monte Carlo
 
 
 def jobs_option(default: str) -> Callable[[F], F]:

@@ -29,7 +29,7 @@ class GapAnswerOptions:
 
 
 @dataclass(frozen=True)
-class Task:
+class CaseTask:
     """A case's folder, absolute, and the effects that are taken out of the catalogue."""
 
     case: Path
@@ -61,7 +61,7 @@ def run(request: GapAnswerOptions) -> None:
     left_out = None if request.leave_out is None else _left_out(Path(request.leave_out))
     cases = [one for one in _cases(board) if left_out is None or one.name in left_out]
     tasks = [
-        Task(case.absolute(), tuple((left_out or {}).get(case.name, ())))
+        CaseTask(case.absolute(), tuple((left_out or {}).get(case.name, ())))
         for case in cases
         if request.overwrite or not (target / f"{case.name}.json").exists()
     ]
@@ -102,7 +102,7 @@ def _left_out(path: Path) -> Mapping[str, Sequence[str]]:
     return dict(table)
 
 
-def _answered(request: GapAnswerOptions, tasks: Sequence[Task], target: Path) -> list[str]:
+def _answered(request: GapAnswerOptions, tasks: Sequence[CaseTask], target: Path) -> list[str]:
     """Write each answer as it comes; return why cases have none, in their order."""
     failed = []
     for one in _work(request, tasks):
@@ -113,7 +113,7 @@ def _answered(request: GapAnswerOptions, tasks: Sequence[Task], target: Path) ->
     return sorted(failed)
 
 
-def _work(request: GapAnswerOptions, tasks: Sequence[Task]) -> Iterator[Answered]:
+def _work(request: GapAnswerOptions, tasks: Sequence[CaseTask]) -> Iterator[Answered]:
     """Yield what came of each case, with progress on a terminal."""
     from rich.progress import Progress
 
@@ -128,7 +128,7 @@ def _work(request: GapAnswerOptions, tasks: Sequence[Task]) -> Iterator[Answered
             yield done
 
 
-def answer_one(task: Task) -> Answered:
+def answer_one(task: CaseTask) -> Answered:
     """Diagnose one case.
 
     Raises

@@ -11,11 +11,11 @@ from typing import Any
 import click
 
 from hardware.description.kinds import RunKind
-from pmm.cli.documents import without_nan
 from pmm.cli.findings import condition_table, finding_lines
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import pasted
 from pmm.cli.screen import output
+from pmm.document.data import plain
 from pmm.document.notation import counted
 from pmm.plan.checks import check_plan
 from pmm.plan.duration import duration_rows, tank_length_m
@@ -106,7 +106,7 @@ def _check_document(
         "rig": str(rig.path),
         "runs": len(plan.runs),
         "possible": not refused,
-        "findings": [without_nan(asdict(one)) for one in found],
+        "findings": [plain(one) for one in found],
     }
 
 

@@ -11,6 +11,8 @@ from pmm.cli.coefficients_running import analysed, finish
 from pmm.cli.folders import check_file
 from pmm.cli.hints import program
 from pmm.cli.screen import busy, output
+from pmm.document.page import write_page
+from pmm.report.coefficients_document import report_document
 
 REPORT_FILE = "report.html"
 
@@ -28,10 +30,8 @@ def run(options: Mapping[str, Any]) -> None:
     outcome, files = analysed(options, hashed=True)
     title = options["title"] or f"Coefficients of {', '.join(outcome.names)}"
     with busy("drawing the page"):
-        from pmm.report.campaign_page import write_campaign_page
-
         command = shlex.join([Path(program()).name, *sys.argv[1:]])
-        write_campaign_page(outcome, path, title=title, command=command, files=files)
+        write_page(report_document(outcome), path, title=title, command=command, read=files)
     output().print(str(path), soft_wrap=True)
     finish(outcome)
 

@@ -1,28 +1,28 @@
 """What ``pmm evaluate`` does: read the runs, write calibration and modes, draw what was found."""
 
-import json
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 import click
 
-from analysis.coefficients.exchange import to_dict
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.campaign.calibration import CALIBRATION_FILE, Calibration, as_table, write_calibration
+from pmm.campaign.calibration import CALIBRATION_FILE, Calibration, write_calibration
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.being_written import tell_writers
-from pmm.cli.documents import without_nan
 from pmm.cli.folders import check_folder
-from pmm.cli.run_evaluate_printing import print_evaluation
+from pmm.cli.screen import error_line, messages, output
+from pmm.document.content import Document
+from pmm.document.data import as_json
+from pmm.document.terminal import print_section
 from pmm.evaluation.check_weights import calibrate, modes_text
 from pmm.evaluation.control_chart import LEAST, control_charts
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import (
-    InPlaceResponse,
+    GaugeResponse,
     RungMode,
     known_mass_responses,
     rung_modes,
@@ -31,9 +31,9 @@ from pmm.evaluation.rig_tests import (
 from pmm.evaluation.run_results import RunResult, of_kind, read_results
 from pmm.evaluation.water_tests import InWater, in_water
 from pmm.recorder.campaign_owner import own_campaign
+from pmm.report.evaluation_document import evaluation_document
 from pmm.whole_file import write_whole
 
-JSON_SCHEMA: Final = "pmm-evaluation-1"
 MODES_FILE: Final = "modes.toml"
 _Found = TypeVar("_Found")
 
@@ -67,12 +67,24 @@ def evaluate_campaign(request: EvaluateOptions) -> None:
     tell_writers([folder])
     found = _evaluate(folder, read_results(folder), request.valid_days)
     found = replace(found, files=(*_keep(found, folder), *_draw(found, request.plot)))
+    told = evaluation_document(found)
     if request.as_json:
-        click.echo(json.dumps(_document(found), indent=1, allow_nan=False))
+        click.echo(as_json(told))
     else:
-        print_evaluation(found)
+        _print(told, found)
     if not found.in_control or found.failed:
         sys.exit(1)
+
+
+def _print(told: Document, found: Evaluation) -> None:
+    """Print what was found; what could not be judged goes where messages go."""
+    console = output()
+    for section in told.sections:
+        print_section(console, section)
+    for note in found.notes:
+        messages().print(note, soft_wrap=True)
+    for text in found.failed:
+        error_line(text)
 
 
 def _evaluate(folder: Path, results: Sequence[RunResult], valid_days: int) -> Evaluation:
@@ -128,7 +140,7 @@ def _in_water(folder: Path) -> InWater:
 
 def _responses(
     folder: Path, known: Sequence[RunResult], dry: Sequence[RunResult]
-) -> tuple[InPlaceResponse, ...]:
+) -> tuple[GaugeResponse, ...]:
     return known_mass_responses(known, dry, _half_spacing(folder)) if known else ()
 
 
@@ -183,23 +195,3 @@ def _draw(found: Evaluation, plot: str | None) -> list[Path]:
                 figure = draw()
             files += write_figure(figure, Path(plot), name)
     return files
-
-
-def _document(found: Evaluation) -> dict[str, Any]:
-    one, water = found.calibration, found.water
-    document = {
-        "schema": JSON_SCHEMA,
-        "zeros": [asdict(each) for each in found.zeros],
-        "calibration": None if one is None else as_table(one),
-        "modes": [asdict(each) for each in found.modes],
-        "known_mass": [asdict(each) for each in found.responses],
-        "restoring": [asdict(each) for each in water.restoring],
-        "tows": [asdict(each) for each in water.tows],
-        "derivatives": None if water.derivatives is None else to_dict(water.derivatives),
-        "control": [{**asdict(each), "values": each.values.tolist()} for each in found.charts],
-        "in_control": found.in_control,
-        "notes": list(found.notes),
-        "failed": list(found.failed),
-        "files": [str(each) for each in found.files],
-    }
-    return {key: without_nan(value) for key, value in document.items()}

@@ -69,7 +69,7 @@ class RunOptions:
 
 
 @dataclass(frozen=True)
-class Job:
+class RunJob:
     """What is to be done."""
 
     plan: Plan
@@ -136,7 +136,7 @@ def _work(request: RunOptions, resume: str) -> None:
 
 
 @contextmanager
-def _job(request: RunOptions) -> Iterator[Job]:
+def _job(request: RunOptions) -> Iterator[RunJob]:
     """Say what is to be done; the folder is owned from before it is read, but for a dry run."""
     plan, rig_file = read_plan_and_rig(request.plan)
     findings = require_possible(plan, rig_file, datetime.now(UTC).date())
@@ -158,7 +158,7 @@ def _job(request: RunOptions) -> Iterator[Job]:
         chosen = {"", *(one.name for one in runs)}
         findings = tuple(one for one in findings if one.run in chosen)
         changes = tuple(change_lines(kept_runs(plan, rig_file, folder, runs)))
-        yield Job(plan, rig_file, folder, runs, findings, real_time, changes)
+        yield RunJob(plan, rig_file, folder, runs, findings, real_time, changes)
 
 
 def _keep_time(stack: ExitStack) -> None:
@@ -169,7 +169,9 @@ def _keep_time(stack: ExitStack) -> None:
         messages().print(standing.advice)
 
 
-def _carry_out(job: Job, terminal: Terminal, *, quiet: bool) -> tuple[list[RunOutcome], bool, str]:
+def _carry_out(
+    job: RunJob, terminal: Terminal, *, quiet: bool
+) -> tuple[list[RunOutcome], bool, str]:
     """Run the loop; return the outcomes, whether Ctrl-C ended it, and the fault."""
     keep_sources(job.plan, job.rig_file, job.folder)
     answers, interrupts = standard_input(), Interrupts()
@@ -226,13 +228,13 @@ def _interrupt(control: RunControl, command: Command) -> None:
         control.request(command)
 
 
-def _write(job: Job) -> None:
+def _write(job: RunJob) -> None:
     done = finished_runs(job.folder, job.plan, job.rig_file)
     write_campaign(job.folder, job.plan, job.rig_file, done)
 
 
 @contextmanager
-def _rig(job: Job, answers: Answers, taps: Taps) -> Iterator[Rig]:
+def _rig(job: RunJob, answers: Answers, taps: Taps) -> Iterator[Rig]:
     configuration = job.rig_file.hardware
     period_s = 1.0 / configuration.sample_rate_hz
     pacer: Pacer = FreeRunning()
@@ -274,14 +276,14 @@ def _utc() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _provenance(job: Job) -> dict[str, str]:
+def _provenance(job: RunJob) -> dict[str, str]:
     from importlib.metadata import version
 
     operator = {"operator": job.plan.operator} if job.plan.operator else {}
     return {"program": f"pmm {version('pmm')}", "plan": job.plan.name, **operator}
 
 
-def _report(request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault: str) -> None:
+def _report(request: RunOptions, job: RunJob, outcomes: Sequence[RunOutcome], fault: str) -> None:
     if request.as_json:
         click.echo(json.dumps(_document(request, job, outcomes, fault), indent=1))
         return
@@ -303,7 +305,7 @@ def _report(request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault
 
 
 def _document(
-    request: RunOptions, job: Job, outcomes: Sequence[RunOutcome], fault: str
+    request: RunOptions, job: RunJob, outcomes: Sequence[RunOutcome], fault: str
 ) -> dict[str, Any]:
     return {
         "schema": JSON_SCHEMA,

@@ -3,6 +3,6 @@
 :mod:`~pmm.coefficients.settings` reads ``coefficients.toml``, :mod:`~pmm.coefficients.tasks` says
 what is to be done with each recording, :mod:`~pmm.coefficients.reading` does it (in any process),
 :mod:`~pmm.coefficients.solving` solves groups and draws trials, and
-:mod:`~pmm.coefficients.workflow` puts it all together. :mod:`~pmm.coefficients.document` writes it.
+:mod:`~pmm.coefficients.workflow` puts it all together. :mod:`~pmm.coefficients.files` writes it.
 ``docs/coefficients-command.md`` has the keys.
 """

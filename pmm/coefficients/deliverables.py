@@ -5,10 +5,10 @@ from pathlib import Path
 from analysis.exchange.simman import SimmanDescription, deliverables_of
 from analysis.exchange.simman_files import write_simman
 from hardware.description.errors import DataError
-from pmm.coefficients.workflow import Outcome
+from pmm.coefficients.workflow import CampaignOutcome
 
 
-def write_deliverables(outcome: Outcome, folder: Path, *, overwrite: bool = False) -> int:
+def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: bool = False) -> int:
     """Write the deliverables of every run that oscillated, a folder each; return how many.
 
     Raises

@@ -22,7 +22,7 @@ from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.model_uncertainty import ModelUncertainty, take_uncertainty
 from pmm.campaign.runs import Run
 from pmm.coefficients.settings import DRY, MODEL, Settings
-from pmm.coefficients.tasks import Chain
+from pmm.coefficients.tasks import MeasuringChain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 
 _BODY = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
@@ -51,7 +51,7 @@ def oscillator_of(campaign: Campaign, folder: Path) -> Oscillator:
     return campaign.oscillator
 
 
-def chain_of(settings: Settings) -> Chain:
+def chain_of(settings: Settings) -> MeasuringChain:
     """Return what is known of the measuring chain.
 
     Raises
@@ -62,7 +62,7 @@ def chain_of(settings: Settings) -> Chain:
     if settings.calibration is not None and settings.calibration_matrix is not None:
         raise ConfigurationError("calibration and calibration_matrix are both given; one is enough")
     by_hand = settings.calibration_matrix
-    return Chain(
+    return MeasuringChain(
         None if settings.calibration is None else _of_both(Path(settings.calibration)),
         None if by_hand is None else np.array(by_hand),
         settings.amplifiers,

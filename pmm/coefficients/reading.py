@@ -32,7 +32,7 @@ from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
-from pmm.coefficients.settings import Amplifier
+from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 
 _USED = (*DISPLACEMENTS, *FORCES)
@@ -164,7 +164,7 @@ def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     return struts.model()
 
 
-def response_of(one: Amplifier) -> Response:
+def response_of(one: AmplifierTable) -> Response:
     """Return an amplifier's response: its lag, gain and filter in a chain."""
     late = Delay(one.lag_s, one.gain)
     if one.cutoff_hz is None:

@@ -31,7 +31,7 @@ class System(StrEnum):
 
 
 @dataclass(frozen=True)
-class Ship:
+class ShipTable:
     """The model, as systems without dimensions and SIMMAN's description need it.
 
     Attributes
@@ -52,7 +52,7 @@ class Ship:
 
 
 @dataclass(frozen=True)
-class Amplifier:
+class AmplifierTable:
     """What is known of one channel's amplifier and sampling; taken out of its harmonics.
 
     Attributes
@@ -135,9 +135,9 @@ class Settings:
     zero_frequency: bool = True
     trials: int = 0
     seed: int = 0
-    ship: Ship = field(default_factory=Ship)
+    ship: ShipTable = field(default_factory=ShipTable)
     uncertainty: StatedUncertainties = field(default_factory=StatedUncertainties)
-    amplifiers: dict[str, Amplifier] = field(default_factory=dict)
+    amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}

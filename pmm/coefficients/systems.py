@@ -10,7 +10,7 @@ from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
-from pmm.coefficients.settings import SETTINGS_FILE, Ship, System
+from pmm.coefficients.settings import SETTINGS_FILE, ShipTable, System
 
 _NEEDS = {
     System.PRIME: ("length_m",),
@@ -22,7 +22,7 @@ _NEEDS = {
 def in_system(
     found: CampaignCoefficients,
     system: System,
-    ship: Ship,
+    ship: ShipTable,
     body: Body | None,
     stated: StatedUncertainties,
 ) -> tuple[CampaignCoefficients, tuple[Flag, ...]]:
@@ -52,7 +52,7 @@ def in_system(
     return without_dimensions(found.taken(moving), by_speed, stated), flags
 
 
-def check_dimensions(system: System, ship: Ship) -> None:
+def check_dimensions(system: System, ship: ShipTable) -> None:
     """Refuse a system whose lengths are not given, before any work is done.
 
     Raises
@@ -72,7 +72,7 @@ def _refuse(system: System, missing: list[str]) -> NoReturn:
     )
 
 
-def system_of(system: System, ship: Ship, body: Body | None) -> BySpeed:
+def system_of(system: System, ship: ShipTable, body: Body | None) -> BySpeed:
     """Return what a table is divided by at each speed; ``system`` is not the dimensional one.
 
     Raises

@@ -18,7 +18,7 @@ from pmm.campaign.calibration import Calibration
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.recording_source import COMPLETE, RecordingSource
 from pmm.campaign.runs import AtRest, Run
-from pmm.coefficients.settings import Amplifier
+from pmm.coefficients.settings import AmplifierTable
 
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 
@@ -44,7 +44,7 @@ class Zero:
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class MeasuringChain:
     """What is known of the measuring chain, the same for all runs.
 
     Attributes
@@ -59,7 +59,7 @@ class Chain:
 
     calibration: Calibration | None = None
     matrix: FloatArray | None = None
-    amplifiers: Mapping[str, Amplifier] = field(default_factory=dict)
+    amplifiers: Mapping[str, AmplifierTable] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ class Task:
     choice: ReferenceChoice
     settings: ResolverSettings
     number: int | None = None
-    chain: Chain = field(default_factory=Chain)
+    chain: MeasuringChain = field(default_factory=MeasuringChain)
     zero_names: tuple[str | None, str | None] = (None, None)
     zeros: tuple[Zero | None, Zero | None] = (None, None)
     tared: bool = False
@@ -168,7 +168,7 @@ def work_of(
     campaign: Campaign,
     folder: Path,
     oscillator: Oscillator,
-    chain: Chain,
+    chain: MeasuringChain,
     *,
     harmonics: int,
     leave_out: Sequence[str] = (),

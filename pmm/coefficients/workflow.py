@@ -35,7 +35,7 @@ from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class CampaignOutcome:
     """A campaign's coefficients and all that they rest on.
 
     Attributes
@@ -111,7 +111,7 @@ def coefficients_of(
     progress: Progress,
     *,
     hashed: bool = False,
-) -> Outcome:
+) -> CampaignOutcome:
     """Analyse all runs of some campaigns and return their coefficients.
 
     Parameters
@@ -143,7 +143,7 @@ def coefficients_of(
     stated = largest([part.stated for part in parts])
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
     runs = tuple(one for part in parts for one in part.runs)
-    return Outcome(
+    return CampaignOutcome(
         tuple(campaign.name for _, campaign in campaigns),
         result,
         cycles,

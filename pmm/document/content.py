@@ -279,10 +279,10 @@ class Document:
         return (one for one in self.contents if isinstance(one, Figure))
 
 
-def pairs(name: str, what: Mapping[str, str]) -> Table[tuple[str, str]]:
+def pairs(name: str, what: Mapping[str, str], *, titled: bool = False) -> Table[tuple[str, str]]:
     """Return a table without headings: names and what they are."""
     columns: Sequence[Column[tuple[str, str]]] = (
         Column("", lambda pair: pair[0]),
         Column("", lambda pair: pair[1]),
     )
-    return Table(name, columns, tuple(what.items()))
+    return Table(name, columns, tuple(what.items()), titled=titled)

@@ -53,7 +53,9 @@ def write_page(
     content = {
         "title": title or f"{document.name}: {document.about}",
         "sections": [
-            (one, _anchor(one), parts) for one in document.sections if (parts := _parts(one))
+            (one, _anchor(one, place), parts)
+            for place, one in enumerate(document.sections)
+            if (parts := _parts(one))
         ],
         "command": command,
         "versions": provenance(),
@@ -88,8 +90,9 @@ def write_template(
     write_whole(path, page.encode("utf-8", errors="replace"))
 
 
-def _anchor(section: Section) -> str:
-    return re.sub(r"\W+", "-", section.title.lower()).strip("-")
+def _anchor(section: Section, place: int) -> str:
+    """Return what links name a section by: titles may be the same, or have no letters."""
+    return f"{re.sub(r'[^a-z0-9]+', '-', section.title.lower()).strip('-')}-{place}"
 
 
 def _parts(section: Section) -> list[_Part]:

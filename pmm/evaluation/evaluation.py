@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pmm.campaign.calibration import Calibration
 from pmm.evaluation.control_chart import Chart
-from pmm.evaluation.rig_tests import GaugeZeros, InPlaceResponse, RungMode
+from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
 from pmm.evaluation.water_tests import InWater
 
 
@@ -26,7 +26,7 @@ class Evaluation:
     zeros: tuple[GaugeZeros, ...]
     calibration: Calibration | None
     modes: tuple[RungMode, ...]
-    responses: tuple[InPlaceResponse, ...]
+    responses: tuple[GaugeResponse, ...]
     charts: tuple[Chart, ...]
     water: InWater = field(default_factory=InWater)
     notes: tuple[str, ...] = ()

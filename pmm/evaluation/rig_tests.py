@@ -47,7 +47,7 @@ class RungMode:
 
 
 @dataclass(frozen=True)
-class InPlaceResponse:
+class GaugeResponse:
     """What a gauge makes of a known inertia force.
 
     Attributes
@@ -91,13 +91,13 @@ def rung_modes(runs: Sequence[RunResult]) -> tuple[RungMode, ...]:
 
 def known_mass_responses(
     known: Sequence[RunResult], dry: Sequence[RunResult], half_spacing_m: float
-) -> tuple[InPlaceResponse, ...]:
+) -> tuple[GaugeResponse, ...]:
     """Return each gauge's gain and lag from what a known mass adds to a dry run.
 
     The difference of two runs in air at one set-point is the inertia force of the mass alone, so
     that nothing has to be known of the model.
     """
-    found: list[InPlaceResponse] = []
+    found: list[GaugeResponse] = []
     for one in known:
         base = next((other for other in dry if _same_condition(one, other)), None)
         if base is not None:
@@ -111,7 +111,7 @@ def _same_condition(one: RunResult, other: RunResult) -> bool:
     return all(mine[key] == theirs[key] for key in keys)
 
 
-def _responses(one: RunResult, base: RunResult, half_m: float) -> list[InPlaceResponse]:
+def _responses(one: RunResult, base: RunResult, half_m: float) -> list[GaugeResponse]:
     point, mass = one.plan["set_point"], one.plan["known_mass"]
     frequency_hz = float(point["frequency_hz"])
     omega = 2.0 * math.pi * frequency_hz
@@ -133,7 +133,7 @@ def _responses(one: RunResult, base: RunResult, half_m: float) -> list[InPlaceRe
         ratio = (one.first[channel] - base.first[channel]) / value
         sign = -1.0 if ratio.real < 0.0 else 1.0
         lag_s = -cmath.phase(sign * ratio) / omega
-        found.append(InPlaceResponse(one.name, channel, frequency_hz, sign * abs(ratio), lag_s))
+        found.append(GaugeResponse(one.name, channel, frequency_hz, sign * abs(ratio), lag_s))
     return found
 
 

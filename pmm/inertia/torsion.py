@@ -79,7 +79,7 @@ def about_rod(rod: Estimate, period: Estimate, seed: int) -> Assessment:
 
 
 @dataclass(frozen=True)
-class Plane:
+class TorsionPlane:
     """Inertia in the x-z plane, and about the axes that it comes from.
 
     Attributes
@@ -137,7 +137,7 @@ def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
 
 def in_plane(
     job: Job[Any], axes: Sequence[TorsionAxis], rod: Estimate, periods: list[PeriodRuns]
-) -> Plane:
+) -> TorsionPlane:
     """Return the inertia in the x-z plane from several axes.
 
     Raises
@@ -155,4 +155,4 @@ def in_plane(
     angles = [one.angle.value for one in axes]
     spread = math.sqrt(sum(one.angle.uncertainty**2 for one in axes) / len(axes))
     found = plane_inertia(about, angles, angle_uncertainty_rad=spread)
-    return Plane(found, tuple(zip(angles, about, strict=True)), rod.relative)
+    return TorsionPlane(found, tuple(zip(angles, about, strict=True)), rod.relative)

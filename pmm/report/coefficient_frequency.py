@@ -10,7 +10,6 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
 from analysis.coefficients.recommendation import recommended
 from pmm.document.style import PALETTE, TRACE, drawing
-from pmm.report.campaign_tables import amplitudes
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
@@ -20,6 +19,7 @@ from pmm.report.coefficient_panels import (
     points,
     settle,
 )
+from pmm.report.coefficient_tables import amplitudes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,8 +11,7 @@ from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.document.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
 from pmm.report.envelope import Trace, overview, zigzag
-from pmm.report.gated import caption, fitted, gate_sums, reading_of
-from pmm.report.tabulate import WINDOWS
+from pmm.report.gated import WINDOWS, caption, fitted, gate_sums, reading_of
 from pmm.tables import window_kind
 
 if TYPE_CHECKING:

@@ -10,6 +10,14 @@ from analysis.resolver.sums import PeriodSums
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
+# What a window is called by how it was come by.
+WINDOWS = {
+    "found steady": "steady stretch",
+    "given": "window given",
+    "run's gate": "the run's own gate",
+    "not steady": "all periods, not steady",
+}
+
 
 def reading_of(analysis: Analysis, reading_index: int) -> Harmonics:
     """Return one reading.

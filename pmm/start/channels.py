@@ -9,19 +9,21 @@ import numpy as np
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from pmm.start import words
 from pmm.start.behaviour import RecordingBehaviour
-from pmm.start.found import CHANNELS, Column
+from pmm.start.found import CHANNELS, FoundColumn
 from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, ColumnRole
 
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres
 
 
-def as_columns(roles: Sequence[ColumnRole], running: Sequence[RecordingBehaviour]) -> list[Column]:
+def as_columns(
+    roles: Sequence[ColumnRole], running: Sequence[RecordingBehaviour]
+) -> list[FoundColumn]:
     """Return the channels, sure or not, and the columns with the line that keep their names."""
-    found: list[Column] = []
+    found: list[FoundColumn] = []
     for kind, channels in ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES)):
         found += _of_struts([one for one in roles if one.kind is kind], channels)
     found += [
-        Column(one.kind.name, one.column, doubt=one.doubt)
+        FoundColumn(one.kind.name, one.column, doubt=one.doubt)
         for one in roles
         if one.kind not in (DISPLACEMENT, FORCE)
     ]
@@ -30,7 +32,7 @@ def as_columns(roles: Sequence[ColumnRole], running: Sequence[RecordingBehaviour
     return [*found, *_keeping_names({one.column for one in found if not one.doubt}, running)]
 
 
-def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator[Column]:
+def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator[FoundColumn]:
     doubts = {one.column: one.doubt for one in roles}
     names = words.struts_in_order(list(doubts))
     told = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
@@ -38,10 +40,10 @@ def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator
         names.sort(key=lambda name: bool(doubts[name]))
     places = channels[1:] if told == [1] else channels
     for channel, name in zip(places, names, strict=False):
-        yield Column(channel, name, doubt=doubts[name])
+        yield FoundColumn(channel, name, doubt=doubts[name])
 
 
-def by_order_of_names(columns: Sequence[Column]) -> bool:
+def by_order_of_names(columns: Sequence[FoundColumn]) -> bool:
     """Tell whether nothing but the order of their names says which of two columns is aft."""
     return any(
         len(pair) == 2 and not any(words.says(name, (*words.FORE, *words.AFT)) for name in pair)
@@ -50,7 +52,7 @@ def by_order_of_names(columns: Sequence[Column]) -> bool:
     )
 
 
-def _with_unit(one: Column, running: Sequence[RecordingBehaviour]) -> Column:
+def _with_unit(one: FoundColumn, running: Sequence[RecordingBehaviour]) -> FoundColumn:
     """Say the unit that the numbers have where the header has none."""
     seen = [watched.columns[one.column] for watched in running if one.column in watched.columns]
     if seen[0].unit or one.name == PULSES.name:
@@ -69,10 +71,10 @@ def _with_unit(one: Column, running: Sequence[RecordingBehaviour]) -> Column:
     return replace(one, remark="no unit in the header")
 
 
-def _keeping_names(taken: set[str], running: Sequence[RecordingBehaviour]) -> Iterator[Column]:
+def _keeping_names(taken: set[str], running: Sequence[RecordingBehaviour]) -> Iterator[FoundColumn]:
     """Yield what carries the line in most runs and is no channel of the rig for sure."""
     names = sorted({name for one in running for name in one.columns} - taken, key=words.natural)
     for name in names:
         held = [one.columns[name] for one in running if name in one.columns]
         if len(held) == len(running) and sum(one.part.carried for one in held) > len(held) / 2:
-            yield Column(name, name)
+            yield FoundColumn(name, name)

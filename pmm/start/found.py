@@ -21,7 +21,7 @@ CHANNELS: Final = (
 
 
 @dataclass(frozen=True)
-class Column:
+class FoundColumn:
     """A channel of the campaign and the column that it is taken from.
 
     Attributes
@@ -108,7 +108,7 @@ class FoundCampaign:
 
     runs: tuple[FoundRun, ...] = ()
     at_rest: tuple[FoundRest, ...] = ()
-    columns: tuple[Column, ...] = ()
+    columns: tuple[FoundColumn, ...] = ()
     others: tuple[str, ...] = ()
     by_order: bool = False
     mapped: bool = True

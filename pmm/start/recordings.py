@@ -19,7 +19,7 @@ from pmm.start import words
 from pmm.start.at_rest import at_rest
 from pmm.start.behaviour import RecordingBehaviour, watch
 from pmm.start.channels import as_columns, by_order_of_names
-from pmm.start.found import CHANNELS, PHOTOCELL, Column, FoundCampaign, FoundRest, FoundRun
+from pmm.start.found import CHANNELS, PHOTOCELL, FoundCampaign, FoundColumn, FoundRest, FoundRun
 from pmm.start.pulse_files import STEM, edges_beside, once_a_period, pulse_files, stem_of
 from pmm.start.roles import find_roles
 from pmm.start.sensors import noise_at_rest, smallest_step, step_of
@@ -128,7 +128,7 @@ def _names(paths: Sequence[Path]) -> list[str]:
     return next((one for one in (stems, folders) if len(set(one)) == len(one)), both)
 
 
-def _reference(columns: Iterable[Column], pulses: bool) -> str:
+def _reference(columns: Iterable[FoundColumn], pulses: bool) -> str:
     """Return the channel that tells the phase where no channel does that is asked by itself."""
     sure = {one.name for one in columns if not one.doubt}
     if pulses or {SHAFT_ANGLE.name, DISPLACEMENTS[0]} & sure:
@@ -139,13 +139,15 @@ def _reference(columns: Iterable[Column], pulses: bool) -> str:
     return next((name for name in guesses if name in sure), "")
 
 
-def _without(columns: Sequence[Column]) -> tuple[str, ...]:
+def _without(columns: Sequence[FoundColumn]) -> tuple[str, ...]:
     """Return the gauges that are not there beside one that is; what may be one is not said."""
     seen = {one.name: one.doubt for one in columns if one.name in FORCES}
     return tuple(name for name in FORCES if name not in seen) if "" in seen.values() else ()
 
 
-def _run(look: _Look, name: str, folder: Path, sure: dict[str, Column], digits: int) -> FoundRun:
+def _run(
+    look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn], digits: int
+) -> FoundRun:
     line, told = look.watched.line, look.set_point
     phasors = {
         one: look.watched.columns[column.column].part.first * column.factor
@@ -192,7 +194,7 @@ def _set_point(frequency_hz: float, phasors: dict[str, complex]) -> SetPoint:
     )
 
 
-def _speed_m_s(look: _Look, sure: dict[str, Column]) -> float | None:
+def _speed_m_s(look: _Look, sure: dict[str, FoundColumn]) -> float | None:
     column = sure.get(CARRIAGE_SPEED.name)
     if column is None or column.column not in look.watched.columns:
         return None
@@ -200,7 +202,7 @@ def _speed_m_s(look: _Look, sure: dict[str, Column]) -> float | None:
     return 0.0 if abs(mean) < _CALM_M_S else _rounded(mean, 4)
 
 
-def _rest(look: _Look, name: str, folder: Path, sure: dict[str, Column]) -> FoundRest:
+def _rest(look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn]) -> FoundRest:
     speed_m_s = _speed_m_s(look, sure)
     known = speed_m_s is not None or words.says(name, _ZERO)
     doubt = "" if known else "nothing says whether the carriage stood"
@@ -215,7 +217,7 @@ def _rest(look: _Look, name: str, folder: Path, sure: dict[str, Column]) -> Foun
 
 
 def _sensors(
-    looks: Sequence[_Look], rests: Sequence[bool], sure: dict[str, Column]
+    looks: Sequence[_Look], rests: Sequence[bool], sure: dict[str, FoundColumn]
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Yield what the numbers of each channel tell of its sensor, in SI."""
     for name, column in sure.items():

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.cli.documents import without_nan
 from pmm.cli.group import CommandGroup
 from pmm.cli.screen import messages, output
 
@@ -193,7 +192,9 @@ def confirm(question: str, *, yes: bool) -> None:
 
 def print_json(job: str, content: dict[str, Any]) -> None:
     """Print a job's document; numbers that are not known are ``null``."""
-    click.echo(json.dumps({"schema": JSON_SCHEMA, "job": job, **without_nan(content)}, indent=2))
+    from pmm.document.data import plain
+
+    click.echo(json.dumps({"schema": JSON_SCHEMA, "job": job, **plain(content)}, indent=2))
 
 
 def print_table(headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = "") -> None:

@@ -236,12 +236,12 @@ def test_known_lag_and_gain_are_taken_out(tmp_path: Path) -> None:
     """A chain that reads 3 % too much and 2 ms late gives the truth once it is named."""
     from analysis.coefficients.corrections import Delay
     from pmm.coefficients.reading import response_of
-    from pmm.coefficients.settings import Amplifier
+    from pmm.coefficients.settings import AmplifierTable
 
-    one = response_of(Amplifier(lag_s=2e-3, gain=1.03))
+    one = response_of(AmplifierTable(lag_s=2e-3, gain=1.03))
     omega = 2.0 * np.pi * 0.6
     assert one(1j * omega) == pytest.approx(Delay(2e-3, 1.03)(1j * omega))
-    filtered = response_of(Amplifier(cutoff_hz=10.0, order=2))
+    filtered = response_of(AmplifierTable(cutoff_hz=10.0, order=2))
     assert abs(filtered(2j * np.pi * 10.0)) == pytest.approx(2.0**-0.5)
 
     folder = tmp_path / "c"

@@ -7,7 +7,13 @@ from pathlib import Path
 
 from pmm.cli.coefficients import coefficients
 from pmm.cli.report import report
-from pmm.coefficients.settings import Amplifier, ReferenceFile, Settings, Ship, read_settings
+from pmm.coefficients.settings import (
+    AmplifierTable,
+    ReferenceFile,
+    Settings,
+    ShipTable,
+    read_settings,
+)
 from tests.sim.devices.benches import ROOT
 
 PAGE = (ROOT / "docs" / "coefficients-command.md").read_text(encoding="utf-8")
@@ -22,7 +28,7 @@ def test_options() -> None:
 
 
 def test_keys() -> None:
-    for kind in (Settings, Ship, Amplifier, ReferenceFile):
+    for kind in (Settings, ShipTable, AmplifierTable, ReferenceFile):
         for one in fields(kind):
             assert re.search(rf"\b{one.name}\b", PAGE), one.name
 

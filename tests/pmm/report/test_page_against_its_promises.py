@@ -2,13 +2,16 @@
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
+from analysis.resolver.analysis import Analysis
 from pmm.document.notation import rounded, rounded_phase
-from pmm.report.page import write_page
+from pmm.document.page import write_page
+from pmm.report.harmonics_document import harmonics_document
 from pmm.tables import floored
 from tests.pmm.report.runs import analysed, run
 
@@ -51,12 +54,16 @@ class _Reader(HTMLParser):
         self.text.append(data)
 
 
+def _write(analyses: Sequence[Analysis], path: Path, *, title: str, command: str) -> None:
+    write_page(harmonics_document(analyses, "page"), path, title=title, command=command)
+
+
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("page") / "new" / "report.html"
     hostile = run(1, names=(HOSTILE,), name=f"{HOSTILE} 1")
     analyses = [analysed(hostile), analysed(run(2), gate_periods=5)]
-    write_page(analyses, path, title=f"Title & {HOSTILE}", command="pmm analyse 'a <b>.csv'")
+    _write(analyses, path, title=f"Title & {HOSTILE}", command="pmm analyse 'a <b>.csv'")
     return path.read_text(encoding="utf-8")
 
 
@@ -107,7 +114,7 @@ def test_the_table_has_every_number(read: _Reader) -> None:
 
 def test_flags_are_said(tmp_path: Path) -> None:
     analysis = analysed(opens_s=2.0, periods=1)
-    write_page([analysis], tmp_path / "one.html", title="t", command="c")
+    _write([analysis], tmp_path / "one.html", title="t", command="c")
     page = (tmp_path / "one.html").read_text(encoding="utf-8")
     assert '<li class="warning">' in page
     assert "no_interval" in page
@@ -116,13 +123,13 @@ def test_flags_are_said(tmp_path: Path) -> None:
 
 def test_a_name_that_is_no_text_does_not_cost_the_page(tmp_path: Path) -> None:
     analysis = analysed(run(1, names=("force\x00\udc80",), name="run\udcff"))
-    write_page([analysis], tmp_path / "a.html", title="\udcff", command="pmm \udcff")
+    _write([analysis], tmp_path / "a.html", title="\udcff", command="pmm \udcff")
     assert "force" in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
 def test_the_same_analysis_gives_the_same_page(tmp_path: Path) -> None:
     for name in ("a", "b"):
-        write_page([analysed(run(1, 8.0))], tmp_path / name, title="t", command="c")
+        _write([analysed(run(1, 8.0))], tmp_path / name, title="t", command="c")
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
 
 
@@ -148,7 +155,7 @@ def test_a_phase_that_may_be_any_is_open() -> None:
 
 
 def test_a_single_period_has_no_intervals_in_good_english(tmp_path: Path) -> None:
-    write_page([analysed(opens_s=2.0, periods=1)], tmp_path / "a.html", title="t", command="c")
+    _write([analysed(opens_s=2.0, periods=1)], tmp_path / "a.html", title="t", command="c")
     page = (tmp_path / "a.html").read_text(encoding="utf-8")
     assert "No intervals: too few periods." in page
     assert "from the none" not in page

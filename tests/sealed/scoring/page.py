@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from pmm.document.inline import inline_svg
+from pmm.document.page import write_template
 from pmm.document.style import render
-from pmm.report.page import write_template
-from pmm.report.tabulate import versions
+from pmm.version import provenance
 from tests.sealed.scoring.figure import score_figure
 from tests.sealed.scoring.score import Score
 from tests.sealed.scoring.tables import tables
@@ -28,6 +28,6 @@ def write_page(score: Score, path: Path, *, title: str, command: str) -> None:
         "score": score,
         "tables": tables(score),
         "drawing": inline_svg(svg, "score", "what each row reaches"),
-        "versions": versions(),
+        "versions": provenance(),
     }
     write_template("page.html.jinja", content, path, "tests.sealed.scoring")

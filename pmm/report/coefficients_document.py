@@ -1,0 +1,271 @@
+"""What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Any, Final
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.campaign_budget import budget
+from analysis.coefficients.campaign_records import (
+    ConsistencyCheck,
+    FormChoice,
+    OtherArrangement,
+    Outlier,
+    ReferenceRow,
+)
+from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.exchange import to_dict
+from analysis.coefficients.form_choice import BEYOND_DOUBT
+from analysis.coefficients.recommendation import recommended, table
+from analysis.coefficients.stated_uncertainties import STATED
+from pmm.coefficients.tasks import Done
+from pmm.coefficients.workflow import CampaignOutcome
+from pmm.document.content import (
+    Column,
+    Content,
+    Data,
+    Document,
+    Figure,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    number,
+    pairs,
+    word,
+)
+from pmm.document.flag_lines import flag_lines, flag_notes, joined
+from pmm.document.notation import NOT_KNOWN, counted, rounded, written
+from pmm.report.coefficient_plots import figures
+from pmm.report.coefficient_tables import (
+    alternatives_tables,
+    amplitudes,
+    budget_table,
+    frequency,
+    recommended_table,
+)
+
+SCHEMA: Final = "pmm-coefficients-1"
+_LIKELIHOOD = (
+    "Evidence ratio: likelihood of the recordings under the other over that under what is stated. "
+    "Moves are in half-widths."
+)
+
+
+def coefficients_document(outcome: CampaignOutcome) -> Document:
+    """Return what ``pmm coefficients`` shows; ``docs/coefficients-command.md`` has the keys."""
+    found = outcome.result
+    used = counted(len(outcome.cycles), "run")
+    return Document(
+        ", ".join(outcome.names),
+        "coefficients",
+        (
+            Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
+            Section("", (*conclusion(found), Notes(flag_notes(outcome.noticed)))),
+            Section("", (*_beside(found), *alternatives_tables(found))),
+            Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
+        ),
+        SCHEMA,
+    )
+
+
+def report_document(outcome: CampaignOutcome) -> Document:
+    """Return what ``pmm report`` writes: the same values, and all that they rest on."""
+    found = outcome.result
+    drawn = tuple(Figure(*one) for one in figures(found))
+    flags: Content = Notes(flag_notes(outcome.all_flags))
+    return Document(
+        ", ".join(outcome.names),
+        "coefficients",
+        (
+            Section("", (pairs("Summary", _summary(outcome)),)),
+            Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
+            Section("Figures", drawn),
+            Section("What was found", tuple(_findings(found))),
+            Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
+            Section("Uncertainty", (_given(outcome), budget_table(found))),
+            Section("Runs", (_runs(outcome),)),
+        ),
+        SCHEMA,
+    )
+
+
+def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:
+    """Return the values to be used first, and what was found about them."""
+    forms: dict[tuple[str, str], list[str]] = {}
+    for choice in found.choices:
+        forms.setdefault((choice.load, choice.message), []).extend(choice.runs)
+    lines = [f"form    {load} of {joined(runs)}: {said}" for (load, said), runs in forms.items()]
+    if found.checks:
+        agree = sum(one.agrees for one in found.checks)
+        lines.append(f"checks  {agree} of {len(found.checks)} between runs agree")
+    apart = [one.message for one in found.checks if not one.agrees]
+    apart += [one.message for one in found.outliers]
+    return (
+        recommended_table(found),
+        Text(("", *lines)),
+        Notes([Note("warning", said) for said in apart]),
+        Text([f"missing {one.name}: {one.message}" for one in found.missing]),
+    )
+
+
+def _data(outcome: CampaignOutcome) -> dict[str, Any]:
+    found = outcome.result
+    told = ("name", "file", "periods", "sample_rate_hz", "duration_s", "flags")
+    return {
+        "campaigns": outcome.names,
+        "recommended": [row for row in table(found) if row["recommended"]],
+        "coefficients": to_dict(found),
+        "budgets": [budget(found, k) for k in range(len(found.entries))],
+        "stated": outcome.stated,
+        "body": outcome.body,
+        "runs": [{key: getattr(one, key) for key in told} for one in outcome.runs],
+        "failed": outcome.failed,
+        "not_recorded": outcome.not_recorded,
+        "left_out": outcome.left_out,
+    }
+
+
+def _summary(outcome: CampaignOutcome) -> dict[str, str]:
+    found = outcome.result
+    agree = sum(one.agrees for one in found.checks)
+    outside = sum(not one.within for one in found.references)
+    rows = {
+        "campaign": ", ".join(outcome.names),
+        "runs": f"{len(outcome.cycles)} used, {len(outcome.failed)} could not be",
+        "plane and form": f"{found.plane}, {found.form}",
+        "system": found.normalisation,
+        "values": f"{len(recommended(found))} recommended, of {len(found.entries)} in all",
+        "repeats that stand off": str(len(found.outliers)),
+        "kinds of flags": str(len(flag_lines(outcome.all_flags))),
+    }
+    if found.checks:
+        rows["checks between runs"] = f"{agree} of {len(found.checks)} agree"
+    if found.references:
+        rows["beside tables"] = f"{outside} of {len(found.references)} outside"
+    return rows
+
+
+def _ratio(value: float) -> str:
+    """Return an evidence ratio; what is beyond any doubt is not counted out."""
+    return f"over {BEYOND_DOUBT:g}" if value >= BEYOND_DOUBT else written(".3g")(value)
+
+
+_FORMS: Final[tuple[Column[FormChoice], ...]] = (
+    word("load", "load"),
+    word("verdict", "verdict"),
+    word("fitted", "fitted"),
+    number("evidence ratio", "evidence_ratio", _ratio),
+    word("runs", "runs", ", ".join),
+    word("", "message"),
+)
+_OUTLIERS: Final[tuple[Column[Outlier], ...]] = (
+    word("run", "run"),
+    word("load", "load"),
+    number("distance", "ratio", written(".3g"), "u"),
+    number("limit", "limit", written(".3g")),
+    word("", "message"),
+)
+_CHECKS: Final[tuple[Column[ConsistencyCheck], ...]] = (
+    word("coefficient", "name"),
+    word("unit", "unit"),
+    number("first", "first_value", written(".5g")),
+    number("second", "second_value", written(".5g")),
+    Column("difference ± u", lambda one: f"{one.difference:+.2g} ± {one.standard_uncertainty:.2g}",
+           number=True),
+    Column("", lambda one: "agree" if one.agrees else "DIFFER"),
+    Column("of", lambda one: f"{one.first}; {one.second}"),
+)  # fmt: skip
+_ARRANGEMENTS: Final[tuple[Column[OtherArrangement], ...]] = (
+    word("key", "key"),
+    word("stated", "stated"),
+    word("other", "other"),
+    word("the other", "verdict"),
+    number("evidence ratio", "evidence_ratio", _ratio),
+    number("largest move", "largest", written(".3g")),
+    word("moved beyond half-width", "coefficients", lambda names: ", ".join(names) or NOT_KNOWN),
+)
+
+
+_REFERENCES: Final[tuple[Column[ReferenceRow], ...]] = (
+    word("coefficient", "name"),
+    word("unit", "unit"),
+    number("f", "frequency_hz", frequency, "Hz"),
+    number("U", "speed_m_s", written("g"), "m/s"),
+    Column("measured", lambda one: rounded(one.measured, one.half_width), number=True),
+    number("table", "expected", written(".5g")),
+    number("off", "difference", written("+.3g")),
+    Column("", lambda one: "within" if one.within else "OUTSIDE"),
+    word("of", "reference"),
+)
+
+
+def _findings(found: CampaignCoefficients) -> Iterator[Content]:
+    """Yield forms, outliers, what is missing, tables beside and checks, where there are any."""
+    missing = (word("coefficient", "name"), word("why", "message"))
+    yield Table("Which form the data support", _FORMS, found.choices, titled=True)
+    yield Table("Repeats that stand off", _OUTLIERS, found.outliers, titled=True)
+    yield Table("What these runs do not tell", missing, found.missing, titled=True)
+    yield from _beside(found)
+    for kind in dict.fromkeys(one.kind for one in found.checks):
+        rows = [one for one in found.checks if one.kind == kind]
+        agree = sum(one.agrees for one in rows)
+        name = f"Checks in SI units, {kind}: {agree} of {len(rows)} agree"
+        yield Table(name, _CHECKS, rows, titled=True, folded=agree == len(rows))
+
+
+def _beside(found: CampaignCoefficients) -> tuple[Content, ...]:
+    """Return the values beside other arrangements' and tables' from elsewhere."""
+    name = "Other arrangements of the rig"
+    return (
+        Table(name, _ARRANGEMENTS, found.arrangements, titled=True, notes=(_LIKELIHOOD,)),
+        Table("Beside tables from elsewhere", _REFERENCES, found.references, titled=True),
+    )
+
+
+def _runs(outcome: CampaignOutcome) -> Table[Done]:
+    """Return the runs that were used, with the hash of each recording."""
+    used = {cycle.name: cycle for cycle in outcome.cycles}
+
+    def cycle(one: Done) -> BodyCycle | None:
+        return used.get(one.name) or one.cycle
+
+    def medium(one: Done) -> str:
+        known = cycle(one)
+        return "zero" if known is None else str(known.medium) if one.name in used else "dry"
+
+    def motion(one: Done) -> str:
+        known = cycle(one)
+        moved = known is not None and known.frequency_hz > 0.0
+        return amplitudes(*(float(abs(part)) for part in known.motion)) if moved else NOT_KNOWN  # type: ignore[union-attr]
+
+    columns: tuple[Column[Done], ...] = (
+        word("run", "name"),
+        Column("medium", medium),
+        Column("f", lambda one: cycle(one), unit="Hz", number=True,
+               written=lambda one: frequency(one.frequency_hz) if one else NOT_KNOWN),
+        Column("U", lambda one: cycle(one), unit="m/s", number=True,
+               written=lambda one: f"{one.speed_m_s:g}" if one else NOT_KNOWN),
+        Column("motion", motion, number=True),
+        Column("periods", lambda one: str(one.periods or NOT_KNOWN), number=True),
+        number("record", "duration_s", written(".1f"), "s"),
+        number("rate", "sample_rate_hz", written("g"), "Hz"),
+        Column("SHA-256 begins", lambda one: one.sha256[:16]),
+    )  # fmt: skip
+    return Table("Recordings", columns, outcome.runs, titled=True)
+
+
+def _given(outcome: CampaignOutcome) -> Table[tuple[str, str]]:
+    """Return what was stated: the body that was taken off and standard uncertainties."""
+    body = {} if outcome.body is None else asdict(outcome.body)
+    stated = zip(STATED, outcome.stated.vector, strict=True)
+    known = {key: value for key, value in body.items() if value is not None}
+    rows = [(f"model: {key}", f"{value:.6g}") for key, value in known.items()]
+    rows += [(f"u of {key}", f"{value:.3g}") for key, value in stated if value > 0.0]
+    columns = (
+        Column[tuple[str, str]]("what", lambda row: row[0]),
+        Column[tuple[str, str]]("value", lambda row: row[1], number=True),
+    )
+    nothing = [("inertia", "taken off by dry runs")]
+    return Table("Given", columns, rows or nothing, titled=True)
