@@ -2,14 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
-from hardware.description.oscillator import Plane
-from pmm.inertia.air import AirTable, air_rules
+from pmm.inertia.air import air_rules
 from pmm.inertia.bifilar_axes import TiltedTable
+from pmm.inertia.job_table import JobTable
 from pmm.inertia.lines import line_rules
-from pmm.inertia.outcome import TargetTable
-from pmm.inertia.properties import ModelTable, PartTable
 from pmm.inertia.reading import one_of, together
 from pmm.inertia.sources import PeriodSource
 
@@ -118,29 +116,17 @@ class KnownTable(FrameTable):
             yield "known_inertia_kg_m2", "is missing: the known body's, about the vertical axis"
 
 
-@dataclass(frozen=True)
-class BifilarTable:
+@dataclass(frozen=True, kw_only=True)
+class BifilarTable(JobTable):
     """The file of ``pmm inertia bifilar``."""
 
     suspensions: tuple[SuspensionTable, ...]
     name: str = "bifilar"
-    gravity_m_s2: float | None = None
-    u_gravity_m_s2: float = 0.0
-    air_density_kg_m3: float = 0.0
-    body_density_kg_m3: float | None = None
     method: Literal["period", "ratio", "beats"] | None = None
     tilted: tuple[TiltedTable, ...] = ()
-    entrained_air: AirTable | None = None
     tare: FrameTable | None = None
     check: KnownTable | None = None
     tare_again: FrameTable | None = None
-    model: ModelTable = field(default_factory=ModelTable)
-    take_off: tuple[PartTable, ...] = ()
-    targets: tuple[TargetTable, ...] = ()
-    plane: Plane | None = None
-    monte_carlo_seed: int = 0
-
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -1,27 +1,27 @@
 """``pmm inertia pendulum``: a body swinging about one axis or two, or on a torsion rod."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from dataclasses import dataclass
+from typing import Any, Literal
 
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
-from pmm.inertia.air import AirTable, air_rules, without_air
+from pmm.inertia.air import air_rules, without_air
 from pmm.inertia.free_decay import decay_findings
 from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
+from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import (
     Finding,
     Outcome,
     PlaneAxes,
-    TargetTable,
     assessed,
     compare,
     once,
 )
-from pmm.inertia.properties import ModelTable, PartTable, properties
+from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, one_of, read_job
 from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
@@ -36,8 +36,8 @@ class SecondAxis:
     u_apart_m: float = 0.0
 
 
-@dataclass(frozen=True)
-class PendulumJob:
+@dataclass(frozen=True, kw_only=True)
+class PendulumJob(JobTable):
     """The file of ``pmm inertia pendulum``.
 
     Attributes
@@ -50,23 +50,11 @@ class PendulumJob:
 
     period: PeriodSource | None = None
     name: str = "pendulum"
-    gravity_m_s2: float | None = None
-    u_gravity_m_s2: float = 0.0
-    air_density_kg_m3: float = 0.0
-    body_density_kg_m3: float | None = None
     axis: Literal["roll", "pitch", "yaw"] = "pitch"
     depth_m: float | None = None
     u_depth_m: float = 0.0
     second: SecondAxis | None = None
     torsion: TorsionTable | None = None
-    entrained_air: AirTable | None = None
-    model: ModelTable = field(default_factory=ModelTable)
-    take_off: tuple[PartTable, ...] = ()
-    targets: tuple[TargetTable, ...] = ()
-    plane: Plane | None = None
-    monte_carlo_seed: int = 0
-
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -3,15 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import radians
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from analysis.inertia.swing_static import LeverSeries
-from hardware.description.oscillator import Plane
-from pmm.inertia.air import AirTable, air_rules
-from pmm.inertia.outcome import TargetTable
-from pmm.inertia.properties import ModelTable, PartTable
+from pmm.inertia.air import air_rules
+from pmm.inertia.job_table import JobTable
+from pmm.inertia.properties import ModelTable
 from pmm.inertia.reading import one_of, together
 from pmm.inertia.sources import PeriodSource
 
@@ -113,28 +112,17 @@ class OnSwing(ModelTable):
     u_pivot_above_midpoint_m: float = 0.0
 
 
-@dataclass(frozen=True)
-class SwingTable:
+@dataclass(frozen=True, kw_only=True)
+class SwingTable(JobTable):
     """The file of ``pmm inertia swing``."""
 
     tare: StateTable
     name: str = "swing"
-    gravity_m_s2: float | None = None
-    u_gravity_m_s2: float = 0.0
-    air_density_kg_m3: float = 0.0
-    body_density_kg_m3: float | None = None
-    entrained_air: AirTable | None = None
     loaded: StateTable | None = None
     model: OnSwing = field(default_factory=OnSwing)
     second_pivot: SecondPivotTable | None = None
     check: CheckTable | None = None
     tare_again: StateTable | None = None
-    take_off: tuple[PartTable, ...] = ()
-    targets: tuple[TargetTable, ...] = ()
-    plane: Plane | None = None
-    monte_carlo_seed: int = 0
-
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,38 @@
+"""What the files of all swung and hung tests have in common."""
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from hardware.description.oscillator import Plane
+from pmm.inertia.air import AirTable
+from pmm.inertia.outcome import TargetTable
+from pmm.inertia.properties import ModelTable, PartTable
+
+
+@dataclass(frozen=True, kw_only=True)
+class JobTable:
+    """The file of one test: its name, gravity and air, what was on it, and what is wanted of it.
+
+    Attributes
+    ----------
+    take_off
+        What moved too and is no part of the model.
+    targets
+        What the results are held against.
+    plane
+        Whose inertia ``--output`` writes, pitch or yaw; ``None`` for the one that was measured.
+    """
+
+    name: str
+    gravity_m_s2: float | None = None
+    u_gravity_m_s2: float = 0.0
+    air_density_kg_m3: float = 0.0
+    body_density_kg_m3: float | None = None
+    entrained_air: AirTable | None = None
+    model: ModelTable = field(default_factory=ModelTable)
+    take_off: tuple[PartTable, ...] = ()
+    targets: tuple[TargetTable, ...] = ()
+    plane: Plane | None = None
+    monte_carlo_seed: int = 0
+
+    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
