@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.ideal_rig import IdealRun, LinearHull, ideal_run
 from analysis.readers import write_recording
 from analysis.recording import Recording
 from hardware.description.channels import STANDARD, Channel
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
+from tests.analysis.ideal_run import IdealRun, LinearHull, ideal_run
 
 RATE_HZ, SECONDS, SPEED = 200.0, 60.0, 1.2
 CHANNELS = (*STANDARD, Channel("wave", "m"))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError
 from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
@@ -19,7 +19,6 @@ from sim.mechanism.linkage import Mechanism, Setting
 from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 from sim.solve.period import Period
 from sim.solve.periodic import steady_state
-from sim.solve.smoother import Smoother, from_harmonics
 from sim.stage import Block
 
 RATE = 200.0
@@ -165,37 +164,6 @@ def test_carriage_and_stop_ramp() -> None:
     assert abs(shaft["shaft_speed"][-1]) < 1e-12
     slope = np.gradient(shaft["shaft_angle"], 0.01)
     np.testing.assert_allclose(slope[1:-1], shaft["shaft_speed"][1:-1], atol=2e-3)
-
-
-def test_smoother_has_the_gain_it_states() -> None:
-    smoother, frequency = Smoother(8, 5), 1.3
-    time = np.arange(400) / RATE
-    s = 2j * math.pi * frequency
-    found = smoother.motion(np.real(np.exp(s * time)), RATE)
-    for d, values in enumerate(found):
-        gain = smoother.gain(d, np.array([frequency]), RATE)[0]
-        expected = np.real(gain * s**d * np.exp(s * time))[8:-8]
-        np.testing.assert_allclose(values, expected, atol=1e-9 * abs(s) ** d)
-        assert abs(gain - 1.0) < 1e-3
-    noise = np.random.default_rng(0).normal(size=100_000)
-    for d, values in enumerate(smoother.motion(noise, RATE)):
-        assert values.std() == pytest.approx(smoother.noise_gain(d, RATE), rel=0.02)
-    with pytest.raises(DataError, match="at least 17 samples"):
-        smoother.motion(np.zeros(5), RATE)
-    with pytest.raises(DataError, match="1 of 400"):
-        smoother.motion(np.where(time == 0.0, np.nan, 1.0), RATE)
-    with pytest.raises(ConfigurationError, match="half_width = 1"):
-        Smoother(1, 4)
-
-
-def test_motion_from_harmonics_is_differentiated_exactly() -> None:
-    time = np.arange(50) / RATE
-    motion = from_harmonics(np.array([0.1, 0.0, -2j]), 0.7, time)
-    omega = 4 * math.pi * 0.7
-    np.testing.assert_allclose(motion.displacement, 0.1 + 2 * np.sin(omega * time))
-    np.testing.assert_allclose(
-        motion.acceleration, -2 * omega**2 * np.sin(omega * time), atol=1e-12
-    )
 
 
 def test_parameters_out_of_range_are_refused() -> None:

@@ -13,12 +13,12 @@ from analysis.coefficients.body_axes import labels
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
-from analysis.ideal_rig import LinearHull, ideal_run
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
 from tests.analysis.coefficients.sources import of_draws
+from tests.analysis.ideal_run import LinearHull, ideal_run
 
 SMALL = 1e-4
 ECCENTRICITY_M = 0.02 * SMALL

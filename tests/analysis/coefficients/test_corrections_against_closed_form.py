@@ -18,7 +18,6 @@ from analysis.coefficients.corrections import (
     zero_reading,
 )
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.in_place_calibration import in_place_response
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import Phasors
@@ -28,7 +27,6 @@ from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCES
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium, SetPoint
 from tests.analysis.coefficients.ideal import (
-    BODY,
     ECCENTRICITY_M,
     READ,
     SMALL,
@@ -155,35 +153,6 @@ def test_zero_runs_that_cannot_serve() -> None:
     gap.samples[0:1, 0:1][0, 0] = np.nan  # type: ignore[index]
     with pytest.raises(DataError, match="1 of them missing"):
         zero_reading(gap, at_s=0.0)
-
-
-@pytest.mark.parametrize("phase", [0.0, 1.3, math.pi])
-def test_gain_and_lag_from_a_run_in_air(phase: float) -> None:
-    clean = ideal_struts(replace(AIR, strut_phase_rad=phase))
-    factors = 1.02 * np.exp(-0.003j * OMEGA), 0.97 * np.exp(-0.001j * OMEGA)
-    found = in_place_response(with_factors(clean, *factors), BODY)
-    np.testing.assert_allclose(found.gain, [1.02, 0.97], rtol=5e-11)  # the second order
-    np.testing.assert_allclose(found.lag_s, [0.003, 0.001], rtol=1e-9)
-    again = with_factors(clean, *factors).without_response(found.responses)
-    np.testing.assert_allclose(again.phasors.values, clean.phasors.values, rtol=5e-11)
-
-
-def test_uncertainty_of_gain_and_lag_against_trials() -> None:
-    generator = np.random.default_rng(5)
-    clean = ideal_struts(AIR, name="air")
-    runs = [scattered(clean, covariance(), 200, generator) for _ in range(400)]
-    found = [in_place_response(run, BODY) for run in runs]
-    drawn = np.std([[one.gain, one.lag_s] for one in found], axis=0)
-    stated = np.mean([one.standard_uncertainty.T for one in found], axis=0)
-    np.testing.assert_allclose(stated, drawn, rtol=0.12)
-
-
-def test_in_place_refusals() -> None:
-    with pytest.raises(ConfigurationError, match="in air is needed"):
-        in_place_response(ideal_struts(HEAVE), BODY)
-    ahead = replace(BODY, cg_x_m=0.5, inertia_kg_m2=70.0 * 0.25, cg_z_m=0.0)
-    with pytest.raises(DataError, match="one strut carries"):
-        in_place_response(ideal_struts(AIR), ahead)
 
 
 def test_referred_to_its_own_motion_against_trials() -> None:

@@ -14,7 +14,6 @@ from analysis.coefficients.corrections import (
     response_at,
     zero_reading,
 )
-from analysis.coefficients.in_place_calibration import in_place_response
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.coefficients.strut_phasors import reading_phasors
@@ -145,19 +144,6 @@ def test_a_dry_run_leaves_the_waters_loads() -> None:
     np.testing.assert_allclose(own, expected, atol=0.1)
     with pytest.raises(ConfigurationError, match="a dry run was taken off"):
         left.without(RIG.body)
-
-
-def test_a_known_mass_in_air_gives_gain_and_lag_for_all_orders() -> None:
-    """Gain and lag of the air run, taken out of a run in water at another frequency."""
-    gauges = {"force_aft": Delay(2e-3, 1.03), "force_fore": Delay(1e-3, 0.99)}
-    ideal = RIG.ideal()
-    inverse = {name: Delay(-one.lag_s, 1.0 / one.gain) for name, one in gauges.items()}
-    air = read(replace(POINT, medium=Medium.AIR, carriage_speed_m_s=0.0), ideal)
-    through = measured_cycle(air, RIG.oscillator).without_response(inverse)
-    found = in_place_response(through, RIG.body)
-    wet = measured_cycle(read(replace(POINT, frequency_hz=0.5), ideal), RIG.oscillator)
-    corrected = wet.without_response(inverse).without_response(found.responses)
-    np.testing.assert_allclose(corrected.phasors.values, wet.phasors.values, rtol=1e-6, atol=1e-6)
 
 
 def test_set_points_stand_in_for_displacements() -> None:
