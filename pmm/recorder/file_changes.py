@@ -14,7 +14,6 @@ from pmm.recorder.files import (
     TEXTS,
     contents_of,
 )
-from pmm.recorder.header import RunHeader
 from pmm.recorder.marker import read_marker, read_recovered
 from pmm.recorder.recording import RunData, marker_is_whole
 
@@ -30,7 +29,11 @@ def changed_files(run: RunData) -> dict[str, str]:
     found = {name: _difference(run.folder / name, told) for name, told in written(run).items()}
     if run.samples and run.samples.changes and found.get(SAMPLES) in (None, "", _OTHER):
         found[SAMPLES] = "; ".join(run.samples.changes)
-    if run.samples and run.samples.is_headed and _differs(run.folder / HEADER, run.samples.header):
+    if (
+        run.samples
+        and run.samples.is_headed
+        and _differs(run.folder / HEADER, run.samples.header_text)
+    ):
         found[HEADER] = f"is not the header that {SAMPLES} carries"
     if (run.folder / MARKER).exists() and not marker_is_whole(run.marker):
         found[MARKER] = "is not what its checksum says"
@@ -93,7 +96,7 @@ def _difference(path: Path, told: Mapping[str, Any]) -> str:
     return "" if contents_of(path) == told else _OTHER
 
 
-def _differs(path: Path, header: RunHeader) -> bool:
+def _differs(path: Path, header: str) -> bool:
     """Tell whether a header's file is there and not whole, or another one."""
     try:
         text = path.read_text(encoding="utf-8")
@@ -101,4 +104,4 @@ def _differs(path: Path, header: RunHeader) -> bool:
         return False
     except UnicodeDecodeError:
         return True
-    return text != header.to_json()
+    return text != header

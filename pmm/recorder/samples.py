@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 from zlib import crc32
 
 import numpy as np
@@ -86,6 +86,8 @@ class JournalSamples:
 
     Attributes
     ----------
+    header_text
+        The header as it was written, perhaps by another version, which knew fewer keys.
     first_sync
         SYNC of sample number 0.
     sample_count
@@ -101,6 +103,7 @@ class JournalSamples:
     """
 
     header: RunHeader
+    header_text: str
     first_sync: int
     sample_count: int
     gaps: tuple[tuple[int, int], ...]
@@ -134,7 +137,7 @@ class JournalSamples:
 def read_header(path: Path) -> RunHeader | None:
     """Return the header that a stream carries; ``None`` if its beginning is not whole."""
     opened = _open(path)
-    return opened and opened[0]
+    return opened and opened.header
 
 
 def read_samples(path: Path) -> JournalSamples | None:
@@ -142,8 +145,8 @@ def read_samples(path: Path) -> JournalSamples | None:
     opened = _open(path)
     if opened is None:
         return None
-    header, schema, start, head_sum = opened
-    found = list(batches.read_batches(path, schema, start))
+    header, head_sum = opened.header, opened.checksum
+    found = list(batches.read_batches(path, opened.schema, opened.end))
     kept = _in_order(found)
     if not kept:
         return None
@@ -152,6 +155,7 @@ def read_samples(path: Path) -> JournalSamples | None:
     changes = tuple(_changes(found, kept, head_sum, header))
     return JournalSamples(
         header,
+        opened.text,
         first,
         last - first + 1,
         _gaps(syncs),
@@ -189,8 +193,17 @@ def _changes(
             yield f"what lay between is damaged or missing: SYNC {lost[0]} to {lost[1]} ({times})"
 
 
-def _open(path: Path) -> tuple[RunHeader, Any, int, int] | None:
-    """Return a whole beginning's header and schema, where it ends, and its checksum."""
+class _Beginning(NamedTuple):
+    """A whole beginning of a stream: its header, where it ends, and its checksum."""
+
+    header: RunHeader
+    text: str
+    schema: Any
+    end: int
+    checksum: int
+
+
+def _open(path: Path) -> _Beginning | None:
     import pyarrow as pa
 
     if not path.exists() or not path.stat().st_size:
@@ -204,7 +217,7 @@ def _open(path: Path) -> tuple[RunHeader, Any, int, int] | None:
             return None
         end = file.tell()
         file.seek(0)
-        return header, schema, end, crc32(file.read(end))
+        return _Beginning(header, text, schema, end, crc32(file.read(end)))
 
 
 def _gaps(syncs: Sequence[IntArray]) -> tuple[tuple[int, int], ...]:

@@ -14,7 +14,7 @@ from analysis.readers import read_recording
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.cli import cli
 from pmm.recorder.files import STREAMS
-from pmm.recorder.header import LiveSettings
+from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.run_recorder import RunEnd
 from pmm.recorder.samples import JournalSamples, read_samples
 from tests.pmm.recorder.recorded import session
@@ -231,3 +231,22 @@ def test_a_text_that_was_cut_is_damage_to_whoever_opens_the_recording(
 @pytest.mark.parametrize("command", ["recover", "replay"])
 def test_an_unharmed_run_is_no_matter(run: Path, command: str) -> None:
     assert pmm(command, run).exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["recover", "replay"])
+def test_a_run_of_a_version_that_knew_fewer_keys_is_no_matter(tmp_path: Path, command: str) -> None:
+    of_today = RunHeader.to_json
+
+    def of_then(header: RunHeader) -> str:
+        known = json.loads(of_today(header))
+        del known["set_point"]["drift_rad"]
+        return json.dumps(known, indent=1)
+
+    with pytest.MonkeyPatch.context() as then, session() as rig:
+        then.setattr(RunHeader, "to_json", of_then)
+        recorder, _ = rig.record(tmp_path / "heave", 200, LiveSettings(periods=2))
+        with recorder:
+            recorder.close(RunEnd.COMPLETE)
+    assert "drift_rad" not in (tmp_path / "heave" / "header.json").read_text(encoding="utf-8")
+    found = pmm(command, tmp_path / "heave")
+    assert found.exit_code == 0, found.output
