@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 
-from analysis.gap.components import GapRun, Stack
+from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
@@ -151,15 +151,16 @@ def _problem(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
     stack = Stack.of(pooled(runs, rig))
-    on = (*settings.on, *_always(rig, settings.priors))
+    on = (*settings.on, *_always(rig, stack, settings.priors))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = Nuisances(columns(simulator, free, settings.priors))
     return Problem(simulator, nuisances, tuple(one.name for one in free))
 
 
-def _always(rig: SimulatedRig, priors: Priors) -> tuple[Effect, ...]:
-    """Return what every rig has: pulses that scatter a little."""
-    if rig.photocell is None or not priors.pulse_scatter_rad:
+def _always(rig: SimulatedRig, stack: Stack, priors: Priors) -> tuple[Effect, ...]:
+    """Return what every photocell has: pulses that scatter a little; an encoder's turns do not."""
+    pulsed = any(one.part in (Part.PULSES, Part.PERIOD_SCATTER) for one in stack.components)
+    if rig.photocell is None or not pulsed or not priors.pulse_scatter_rad:
         return ()
     return (TriggerJitter(priors.pulse_scatter_rad),)
 

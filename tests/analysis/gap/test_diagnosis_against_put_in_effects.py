@@ -11,12 +11,16 @@ from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.priors import Priors
+from analysis.gap.sensors import as_recorded
 from analysis.gap.verdict import NONE, UNKNOWN, coefficient_twins
+from analysis.resolver.reference_choice import ReferenceChoice
+from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
 from pmm.gap.answer import effect_rows
+from sim.acquisition.channels import Digitiser
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig
-from tests.analysis.gap.small import record
+from tests.analysis.gap.small import POINTS, one_run, record
 
 FEW = ("coulomb-friction", "amplifier-lag")
 
@@ -35,6 +39,18 @@ def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -
     assert found.best is None
     assert sum(found.probabilities.by_answer.values()) == pytest.approx(1.0)
     assert not any(one.beyond for one in found.walk.steps)
+
+
+def test_an_encoder_tells_the_phase_without_scatter(rig: SimulatedRig) -> None:
+    """Forces that scatter less from cycle to cycle than a photocell's pulses would let them."""
+    quiet = Digitiser(noise_rms=1e-4)
+    sensors = replace(rig.acquisition, shaft_angle=Digitiser(), force_aft=quiet, force_fore=quiet)
+    real = replace(rig, photocell=None, acquisition=sensors)
+    told = ReferenceChoice(channel=SHAFT_ANGLE.name)
+    runs = [one_run(real, (), 15, k, point, told) for k, point in enumerate(POINTS)]
+    believed = as_recorded(real, runs, None)
+    found = diagnose(believed, runs, Settings({name: find(name) for name in FEW}))
+    assert found.probabilities.best == NONE
 
 
 def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
