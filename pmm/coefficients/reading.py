@@ -1,6 +1,7 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
 import hashlib
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime
@@ -30,6 +31,7 @@ from hardware.description.channels import (
 )
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.settings import AmplifierTable
@@ -37,6 +39,7 @@ from pmm.coefficients.tasks import Done, Failed, Task, Zero
 
 _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
+_SAME_TRIM_RAD = 1e-4
 _BLOCK = 1 << 20
 
 
@@ -119,7 +122,8 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 
 def _at_rest(task: Task, recording: Recording) -> Done:
     reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
-    zero = Zero(task.name, _utc_s(recording), task.number, reading)
+    drift_rad = task.set_point.drift_rad
+    zero = Zero(task.name, _utc_s(recording), task.number, reading, drift_rad)
     return _done(task, recording, None, zero)
 
 
@@ -178,19 +182,45 @@ def _zeroed(
 ) -> tuple[StrutCycle, tuple[Flag, ...]]:
     """Take the zero runs off the means, with their drift between them."""
     before, after = task.zeros
+    elsewhere = _elsewhere(task)
     if before is None and after is None:
         return replace(struts, mean_known=task.tared), ()
     if before is None or after is None or before.name == after.name:
         only = before or after
         assert only is not None  # noqa: S101 - one of them is there
         text = f"only one zero run, {only.name}: what drifted since is not known"
-        return _taken(struts, only.reading.offsets), (_note("zero_one_sided", text, task.name),)
+        one_sided = _note("zero_one_sided", text, task.name)
+        return _taken(struts, only.reading.offsets), (one_sided, *elsewhere)
     places = _places(before, after, task, recording)
     first, last = (
         ZeroReading(at, zero.reading.offsets)
         for at, zero in ((places[0], before), (places[2], after))
     )
-    return _taken(struts, zero_at(first, last, places[1])), ()
+    return _taken(struts, zero_at(first, last, places[1])), elsewhere
+
+
+def _elsewhere(task: Task) -> tuple[Flag, ...]:
+    """Warn of zero runs at another trim, where weight and restoring ask something else at rest."""
+    if task.oscillator.plane is Plane.HORIZONTAL:
+        return ()
+    own = task.set_point.drift_rad
+    apart = {
+        zero.name: zero.drift_rad
+        for zero in task.zeros
+        if zero is not None and abs(zero.drift_rad - own) > _SAME_TRIM_RAD
+    }
+    return tuple(
+        Flag(
+            "zero_elsewhere",
+            Severity.WARNING,
+            f"zero run {name} stood at a trim of {math.degrees(there):.3g} deg, the run at "
+            f"{math.degrees(own):.3g} deg: what weight and restoring ask at rest differs; make a "
+            "zero run at the run's trim, or state its drift_deg in [[at_rest]]",
+            None,
+            (task.name,),
+        )
+        for name, there in apart.items()
+    )
 
 
 def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:

@@ -35,12 +35,15 @@ class Zero:
         Place among all runs of the campaign; ``None`` where the file does not tell.
     reading
         Its ``at_s`` says nothing.
+    drift_rad
+        Drift (trim) at which the model stood.
     """
 
     name: str
     utc_s: float | None
     number: int | None
     reading: ZeroReading
+    drift_rad: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -120,3 +120,25 @@ def test_a_centre_of_buoyancy_needs_a_displacement(tmp_path: Path) -> None:
     run = CliRunner().invoke(cli, ["coefficients", str(folder)])
     assert run.exit_code == 2
     assert "give displaced_kg as well" in run.stderr
+
+
+def test_a_zero_run_at_another_trim_is_told(tmp_path: Path) -> None:
+    folder = campaign(tmp_path, ARRANGEMENTS[0], floats=True)
+    head, *runs = (folder / "campaign.toml").read_text().split("[[runs]]")
+    named = "\n".join(['zero_before = "zero"', 'zero_after = "zero"', ""])
+    rest = '[[at_rest]]\nname = "zero"\nfile = "zero.csv"\nkind = "zero"\nduration_s = 10.0\n'
+    text = head + "".join(f"[[runs]]{one.rstrip()}\n{named}" for one in runs) + rest
+    (folder / "campaign.toml").write_text(text)
+    time = np.arange(400) / RATE_HZ
+    noise = 1e-3 * np.random.default_rng(5).standard_normal((6, len(time)))
+    names = ",".join(["time [s]", "shaft_angle [rad]", *CHANNELS])
+    table = np.column_stack([time, *noise])
+    np.savetxt(folder / "zero.csv", table, delimiter=",", header=names, comments="")
+    run = CliRunner().invoke(cli, ["coefficients", str(folder), "--json"])
+    assert run.exit_code == 0, run.stderr
+    told = [
+        one["name"]
+        for one in json.loads(run.stdout)["runs"]
+        if any(flag["code"] == "zero_elsewhere" for flag in one["flags"])
+    ]
+    assert told == [f"run-{k}" for k, (_, _, trim) in enumerate(RUNS) if trim]
