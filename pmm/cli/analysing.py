@@ -17,15 +17,15 @@ from analysis.resolver.settings import ResolverSettings
 from analysis.threads import cores
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.cli.analyse_options import AnalyseOptions
-from pmm.cli.damaged import tell_damaged, tell_unchecked
+from pmm.cli.file_notices import tell_damaged, tell_unchecked
 from pmm.cli.folders import check_folder
 from pmm.cli.hints import COLUMN_LEFT_OUT, NO_REFERENCE
 from pmm.cli.inputs import Found, Source, chosen_columns, find_sources, read_source
 from pmm.cli.printing import print_run
 from pmm.cli.screen import busy, error_line, messages, output, print_flags
 from pmm.document.data import plain
+from pmm.document.run_rows import RunRows, run_rows
 from pmm.parallel import open_executor
-from pmm.tables import RunRows, run_rows
 
 if TYPE_CHECKING:
     from analysis.plausibility import RunHarmonics
@@ -205,7 +205,7 @@ def _try_source(
 def _analyse_recording(
     recording: "Recording", source: Source, request: AnalyseOptions, columns: "ColumnMap | None"
 ) -> Analysed:
-    from analysis.first_harmonics import first_harmonics
+    from analysis.resolver.first_harmonics import first_harmonics
 
     campaign = source.as_recorded
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
@@ -219,9 +219,10 @@ def _analyse_recording(
         recording = _detected(recording, settings.channels, request.carrier, request.bandwidth)
     analysis = analyse(recording, choice, settings)
     if request.plot is not None:
-        from pmm.report.plots import save_figures
+        from pmm.document.style import write_figures
+        from pmm.report.plots import figures
 
-        save_figures(analysis, Path(request.plot), source.stem)
+        write_figures(figures(analysis), Path(request.plot), source.stem)
     rows = run_rows(
         analysis,
         file=str(source.path),

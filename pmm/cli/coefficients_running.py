@@ -10,9 +10,8 @@ import click
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.cli.being_written import tell_writers
-from pmm.cli.damaged import tell_damaged, tell_unchecked
 from pmm.cli.engine_options import DEFAULT_TRIALS
+from pmm.cli.file_notices import tell_damaged, tell_unchecked, tell_writers
 from pmm.cli.folders import check_files, check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.coefficients.references import beside, check_systems, read_references
@@ -200,9 +199,10 @@ def _written(outcome: CampaignOutcome, options: Mapping[str, Any]) -> Iterator[s
         write_netcdf(outcome, path, dict(provenance()))
         yield str(path)
     if options["plot"] is not None:
-        from pmm.report.coefficient_plots import save_figures
+        from pmm.document.style import write_figures
+        from pmm.report.coefficient_plots import figures
 
-        written = save_figures(outcome.result, Path(options["plot"]))
+        written = write_figures(figures(outcome.result), Path(options["plot"]), "coefficients")
         yield f"{len(written)} figures in {options['plot']}"
     if options["simman"] is not None:
         from pmm.coefficients.deliverables import write_deliverables

@@ -86,17 +86,18 @@ def _print(found: "Sequence[tuple[Path, Analysis]]") -> None:
     from hardware.description.channels import FORCE_AFT, FORCE_FORE
     from pmm.cli.analyse import DEFAULT_LEVEL
     from pmm.cli.printing import print_compact
-    from pmm.tables import run_rows
+    from pmm.document.run_rows import run_rows
 
     rows = [run_rows(one, file=str(path), level=DEFAULT_LEVEL) for path, one in found]
     print_compact(output(), rows, (FORCE_AFT.name, FORCE_FORE.name))
 
 
 def _write_plots(found: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None:
-    from pmm.report.plots import save_figures
+    from pmm.document.style import write_figures
+    from pmm.report.plots import figures
 
     for path, analysis in show_progress(found, "plotting"):
-        save_figures(analysis, folder, path.parent.name)
+        write_figures(figures(analysis), folder, path.parent.name)
 
 
 def _write_page(found: "Sequence[Analysis]", folder: Path) -> None:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from analysis.threads import cores
-from pmm.cli.being_written import tell_writers
-from pmm.cli.damaged import tell_damaged, tell_unchecked
+from pmm.cli.file_notices import tell_damaged, tell_unchecked, tell_writers
 from pmm.cli.folders import check_files
 from pmm.cli.gap_options import Looks
 from pmm.cli.hints import pasted

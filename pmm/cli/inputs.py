@@ -12,7 +12,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RAW, RecordingSource, open_recording
-from pmm.cli.being_written import tell_writers
+from pmm.cli.file_notices import tell_writers
 from pmm.recorder.files import RECORDING
 
 if TYPE_CHECKING:

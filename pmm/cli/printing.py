@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from pmm.cli.screen import print_flags
 from pmm.document.labels import display
 from pmm.document.notation import counted, is_open
-from pmm.tables import floored, format_value
+from pmm.document.run_rows import floored, format_value
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from pmm.tables import ChannelRows, GateRows, HarmonicRow, RunRows, Value
+    from pmm.document.run_rows import ChannelRows, GateRows, HarmonicRow, RunRows, Value
 
 OPEN_MEANS = "open: the interval of that phase is wider than ± 90 degrees, or nothing is there"
 _WIDTH = 17  # of a column of values: "-12.345 ± 0.012" and room for a longer one

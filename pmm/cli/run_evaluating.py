@@ -12,7 +12,7 @@ import click
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.calibration import CALIBRATION_FILE, Calibration, write_calibration
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.cli.being_written import tell_writers
+from pmm.cli.file_notices import tell_writers
 from pmm.cli.folders import check_folder
 from pmm.cli.screen import error_line, messages, output
 from pmm.document.content import Document

@@ -18,9 +18,9 @@ from analysis.coefficients.corrections import (
 )
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
-from analysis.first_harmonics import first_harmonics
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
+from analysis.resolver.first_harmonics import first_harmonics
 from hardware.description.arrangement import Joint
 from hardware.description.channels import (
     CARRIAGE_SPEED,

@@ -19,7 +19,10 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.plausibility import implausible
 from pmm.campaign.runs import nearest_run
-from pmm.coefficients.given import (
+from pmm.coefficients.reading import read_cycle, read_zero
+from pmm.coefficients.settings import Settings
+from pmm.coefficients.solving import Progress, solve_campaign
+from pmm.coefficients.stated_inputs import (
     body_of,
     chain_of,
     largest,
@@ -28,9 +31,6 @@ from pmm.coefficients.given import (
     with_own_body,
     without_dry,
 )
-from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import Settings
-from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
 
 

@@ -18,9 +18,9 @@ from hardware.description.errors import PmmError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
-from pmm.coefficients.given import chain_of, oscillator_of, stated_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import Settings, settings_of
+from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
 from pmm.coefficients.tasks import Done, Failed, Task, work_of
 from pmm.coefficients.workflow import request_of
 

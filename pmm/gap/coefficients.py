@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from pmm.gap.examine import Examined
-from pmm.gap.reported import HULL, Convention, Reported, reported
+from pmm.gap.hull_report import HULL, Convention, Reported, reported
 from sim.rig import SimulatedRig
 
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}

@@ -8,7 +8,7 @@ from analysis.inertia.corrections import without_entrained_air
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.monte_carlo import Assessment, assess
-from pmm.inertia.given import given, given_or_none
+from pmm.inertia.stated_values import given, given_or_none
 
 
 @dataclass(frozen=True)

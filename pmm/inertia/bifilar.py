@@ -15,7 +15,6 @@ from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.bifilar_workflow import workflow
-from pmm.inertia.given import flags_of, given, gravity_of
 from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import (
     Finding,
@@ -28,7 +27,8 @@ from pmm.inertia.outcome import (
 from pmm.inertia.properties import AXES, properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
-from pmm.inertia.suspended import Suspended, hang
+from pmm.inertia.stated_values import flags_of, given, gravity_of
+from pmm.inertia.suspension import Suspended, hang
 
 _APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
 

@@ -10,11 +10,11 @@ from analysis.inertia.estimate import Estimate
 from analysis.inertia.workflow import Step
 from hardware.description.flags import Flag
 from pmm.inertia.bifilar_tables import BifilarTable
-from pmm.inertia.given import given, gravity_of
 from pmm.inertia.outcome import Finding
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
-from pmm.inertia.suspended import Suspended
+from pmm.inertia.stated_values import given, gravity_of
+from pmm.inertia.suspension import Suspended
 from pmm.inertia.workflow import guide
 
 _TABLES = {

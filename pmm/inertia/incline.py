@@ -8,9 +8,9 @@ from analysis.inertia.estimate import Estimate
 from analysis.inertia.inclining_test import incline_from_both_ends, incline_from_one_end
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
-from pmm.inertia.given import given, without_uncertainty
 from pmm.inertia.outcome import Outcome, TargetTable, assessed, compare
 from pmm.inertia.reading import one_of, read_job
+from pmm.inertia.stated_values import given, without_uncertainty
 
 _LARGEST_RAD = 0.7
 

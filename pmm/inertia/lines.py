@@ -9,7 +9,7 @@ from analysis.inertia.double_pendulum import PendulumResult
 from analysis.inertia.elementary_functions import Value
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
-from pmm.inertia.given import given
+from pmm.inertia.stated_values import given
 
 # Lines over body: up to it rods stand for strings to 4.3e-4 of the gyradius; at twice, 1.4e-3.
 _MOST = 0.1

@@ -14,10 +14,10 @@ from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.combine_budget import combined_budgets
-from pmm.inertia.given import without_uncertainty
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, TargetTable, assessed, compare
 from pmm.inertia.properties import AXES, PartTable
 from pmm.inertia.reading import one_of, read_job
+from pmm.inertia.stated_values import without_uncertainty
 
 Triple = tuple[float, float, float]
 

@@ -11,7 +11,6 @@ from analysis.inertia.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import air_rules, without_air
 from pmm.inertia.free_decay import decay_findings
-from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import (
     Finding,
@@ -24,6 +23,7 @@ from pmm.inertia.outcome import (
 from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, one_of, read_job
 from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
+from pmm.inertia.stated_values import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
 
 

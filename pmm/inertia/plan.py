@@ -12,9 +12,9 @@ from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspen
 from analysis.inertia.swing import SwingState, forecast_swing
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
-from pmm.inertia.given import flags_of, given, gravity_of
 from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once
 from pmm.inertia.reading import read_job
+from pmm.inertia.stated_values import flags_of, given, gravity_of
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import InertiaResult
 from hardware.description.flags import Flag
-from pmm.inertia.given import given, given_or_none
 from pmm.inertia.reading import one_of
+from pmm.inertia.stated_values import given, given_or_none
 
 AXES = ("roll", "pitch", "yaw")
 _PLACES = {"cg_x_m": "x_m", "cg_z_m": "z_m"}  # a result's name -> a part's

@@ -18,8 +18,8 @@ from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from pmm.inertia.channels import chosen_series, true_angles
-from pmm.inertia.given import given
 from pmm.inertia.reading import Job, one_of
+from pmm.inertia.stated_values import given
 
 _PARTS = 6  # of a single light gates' run
 

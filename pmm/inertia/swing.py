@@ -24,11 +24,11 @@ from analysis.inertia.workflow import Step
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
-from pmm.inertia.given import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
 from pmm.inertia.properties import correlation, properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.stated_values import flags_of, given, given_or_none, gravity_of
 from pmm.inertia.swing_moment import Moment, first_moment
 from pmm.inertia.swing_tables import StateTable, SwingTable
 from pmm.inertia.workflow import guide

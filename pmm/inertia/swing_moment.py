@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing_static import StaticResult, fit_static
-from pmm.inertia.given import given
+from pmm.inertia.stated_values import given
 from pmm.inertia.swing_tables import StateTable
 
 

@@ -11,10 +11,10 @@ from analysis.inertia.estimate import Estimate
 from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
 from hardware.description.errors import DataError
-from pmm.inertia.given import given
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.reading import Job, one_of
 from pmm.inertia.sources import AngledPeriod, PeriodRuns, PeriodSource, read_period
+from pmm.inertia.stated_values import given
 
 
 @dataclass(frozen=True)

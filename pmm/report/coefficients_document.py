@@ -25,7 +25,6 @@ from pmm.document.content import (
     Content,
     Data,
     Document,
-    Figure,
     Note,
     Notes,
     Section,
@@ -73,7 +72,6 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
 def report_document(outcome: CampaignOutcome) -> Document:
     """Return what ``pmm report`` writes: the same values, and all that they rest on."""
     found = outcome.result
-    drawn = tuple(Figure(*one) for one in figures(found))
     flags: Content = Notes(flag_notes(outcome.all_flags))
     return Document(
         ", ".join(outcome.names),
@@ -81,7 +79,7 @@ def report_document(outcome: CampaignOutcome) -> Document:
         (
             Section("", (pairs("Summary", _summary(outcome)),)),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
-            Section("Figures", drawn),
+            Section("Figures", tuple(figures(found))),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),

@@ -1,7 +1,7 @@
 """What a page says about analyses: per recording what was noticed, a table per gate, figures."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Final
 
 import numpy as np
@@ -12,7 +12,6 @@ from pmm.document.content import (
     Column,
     Content,
     Document,
-    Figure,
     Notes,
     Section,
     Table,
@@ -24,18 +23,10 @@ from pmm.document.content import (
 from pmm.document.flag_lines import flag_notes
 from pmm.document.labels import display, loads_first, plain
 from pmm.document.notation import rounded, rounded_phase
-from pmm.report.gated import WINDOWS, caption
-from pmm.report.plots import FIGURES
-from pmm.tables import floored, window_kind
+from pmm.document.run_rows import floored, window_kind
+from pmm.report.gate_fit import WINDOWS, caption
+from pmm.report.plots import figures
 
-_CAPTIONS: Final = {
-    "gate": "The record, the window that was found or given and the gate, with the fit over the "
-    "trace; beside it the end of the gate, and the residual of the fit.",
-    "phasors": "Harmonics as phasors with their 95 % regions: in phase to the right, quadrature "
-    "up. Below each, how the gate's single periods spread about it, magnified.",
-    "spectrum": "Amplitude spectrum over the gate, and the part of a vibration that the resolver "
-    "lets through into each harmonic.",
-}
 _INTRODUCTION: Final = (
     "Each recording is resolved into its mean and harmonics over whole periods of the motion, each "
     "value with its 95 % interval. For every run there are what was noticed, a table per gate, the "
@@ -85,17 +76,14 @@ def harmonics_document(analyses: Sequence[Analysis], name: str) -> Document:
 
 def _section(analysis: Analysis, anchor: str) -> Section:
     count = len(analysis.readings)
-    figures = (
-        Figure(f"{anchor}-{kind}", _CAPTIONS[kind], lambda draw=draw: draw(analysis))  # type: ignore[misc]
-        for kind, draw in FIGURES.items()
-    )
+    drawn = (replace(one, name=f"{anchor}-{one.name}") for one in figures(analysis))
     return Section(
         plain(analysis.recording.name),
         (
             Notes(flag_notes(analysis.flags)),
             *(one for k in range(count) for one in _gate(analysis, k)),
             Text(("The figures show gate 1.",) if count > 1 else (), faint=True),
-            *figures,
+            *drawn,
             pairs("Where it comes from", dict(_provenance(analysis)), titled=True),
         ),
     )

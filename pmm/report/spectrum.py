@@ -13,7 +13,7 @@ from hardware.description.arrays import FloatArray
 from pmm.document.labels import axis_label, display, loads_first, shown_name
 from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.report.envelope import tops
-from pmm.report.gated import caption, gate_sums, in_words, reading_of
+from pmm.report.gate_fit import caption, gate_sums, in_words, reading_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,7 +9,7 @@ import numpy as np
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from pmm.start import words
 from pmm.start.behaviour import RecordingBehaviour
-from pmm.start.found import CHANNELS, FoundColumn
+from pmm.start.found_campaign import CHANNELS, FoundColumn
 from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, ColumnRole
 
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres

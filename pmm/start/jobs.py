@@ -9,7 +9,7 @@ from typing import Any, Final
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import PRESETS
 from pmm.campaign.campaign_file import read_campaign
-from pmm.start.found import FoundRun
+from pmm.start.found_campaign import FoundRun
 from pmm.start.recordings import find_campaign
 from pmm.start.writing import check_free, render, write_tried
 

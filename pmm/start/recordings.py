@@ -19,7 +19,14 @@ from pmm.start import words
 from pmm.start.at_rest import at_rest
 from pmm.start.behaviour import RecordingBehaviour, watch
 from pmm.start.channels import as_columns, by_order_of_names
-from pmm.start.found import CHANNELS, PHOTOCELL, FoundCampaign, FoundColumn, FoundRest, FoundRun
+from pmm.start.found_campaign import (
+    CHANNELS,
+    PHOTOCELL,
+    FoundCampaign,
+    FoundColumn,
+    FoundRest,
+    FoundRun,
+)
 from pmm.start.pulse_files import STEM, edges_beside, once_a_period, pulse_files, stem_of
 from pmm.start.roles import find_roles
 from pmm.start.sensors import noise_at_rest, smallest_step, step_of

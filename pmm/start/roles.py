@@ -21,7 +21,7 @@ from hardware.description.channels import (
 )
 from pmm.start import words
 from pmm.start.behaviour import Behaviour, RecordingBehaviour
-from pmm.start.found import CHANNELS
+from pmm.start.found_campaign import CHANNELS
 
 # Powers of ten of odds, judged and tried on made-up laboratories
 # (tests/pmm/start/test_roles_against_made_up_laboratories.py counts what they get wrong).

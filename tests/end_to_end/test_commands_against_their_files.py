@@ -18,7 +18,7 @@ import pmm.cli.analysing
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.cli.simulating import seed_of
-from pmm.tables import format_value
+from pmm.document.run_rows import format_value
 
 HOUSE = Path(__file__).parents[2]
 SHIPPED = HOUSE / "examples"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pmm.document.notation import is_open
-from pmm.tables import format_value
+from pmm.document.run_rows import format_value
 
 
 @pytest.mark.parametrize(

@@ -25,9 +25,9 @@ from pmm.document.terminal import print_document
 from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.conclusion import Conclusion, Weighing, verdict_of
 from pmm.gap.document import document
+from pmm.gap.hull_report import Convention
 from pmm.gap.pendulum_conclusion import conclude
 from pmm.gap.report import GapReport
-from pmm.gap.reported import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.sizes import HowLarge, Size, spoiled
 from pmm.gap.steps import StepRow

@@ -11,8 +11,8 @@ from matplotlib import _pylab_helpers
 
 from analysis.resolver.analysis import Analysis
 from hardware.description.errors import ConfigurationError
-from pmm.document.style import render
-from pmm.report.plots import FIGURES, save_figures
+from pmm.document.style import render, write_figures
+from pmm.report.plots import FIGURES, figures
 from tests.pmm.report.runs import analysed, run
 
 HOSTILE = ("<script>alert(1)</script>", '_hidden $x^2$ \\frac & \'q" id="a"', "力\x00\n\x1b")
@@ -58,9 +58,9 @@ def test_hostile_names_are_drawn_as_they_are(kind: str) -> None:
 
 def test_the_same_analysis_gives_the_same_bytes(tmp_path: Path) -> None:
     analysis = analysed()
-    first = save_figures(analysis, tmp_path / "a" / "b", "run", ("svg", "png"))
+    first = write_figures(figures(analysis), tmp_path / "a" / "b", "run", ("svg", "png"))
     with mpl.rc_context({"font.size": 20.0, "text.parse_math": True}):
-        second = save_figures(analysis, tmp_path / "c", "run", ("svg", "png"))
+        second = write_figures(figures(analysis), tmp_path / "c", "run", ("svg", "png"))
     assert [path.name for path in first] == [
         f"run-{kind}.{suffix}" for kind in FIGURES for suffix in ("svg", "png")
     ]
@@ -71,19 +71,21 @@ def test_a_channel_of_nothing_is_drawn(tmp_path: Path) -> None:
     recording = run(1)
     values = np.array(recording.samples[:, 0 : recording.sample_count])
     values[1] = 0.0
-    written = save_figures(analysed(replace(recording, samples=values)), tmp_path, "z", ("pdf",))
+    written = write_figures(
+        figures(analysed(replace(recording, samples=values))), tmp_path, "z", ("pdf",)
+    )
     assert all(path.read_bytes().startswith(b"%PDF") for path in written)
 
 
 def test_no_setting_and_no_figure_stays_behind(tmp_path: Path) -> None:
     before = dict(mpl.rcParams)
-    save_figures(analysed(), tmp_path, "run", ("svg",))
+    write_figures(figures(analysed()), tmp_path, "run", ("svg",))
     assert dict(mpl.rcParams) == before
     assert not _pylab_helpers.Gcf.figs
 
 
 def test_wrong_requests_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match="choose from svg, png, pdf"):
-        save_figures(analysed(), tmp_path, "run", ("bmp",))
+        write_figures(figures(analysed()), tmp_path, "run", ("bmp",))
     with pytest.raises(ConfigurationError, match="without a folder"):
-        save_figures(analysed(), tmp_path, "../run")
+        write_figures(figures(analysed()), tmp_path, "../run")

@@ -11,8 +11,8 @@ import pytest
 from analysis.resolver.analysis import Analysis
 from pmm.document.notation import rounded, rounded_phase
 from pmm.document.page import write_page
+from pmm.document.run_rows import floored
 from pmm.report.harmonics_document import harmonics_document
-from pmm.tables import floored
 from tests.pmm.report.runs import analysed, run
 
 HOSTILE = "<script>alert('x')</script>"

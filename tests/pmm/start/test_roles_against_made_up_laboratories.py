@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pmm.start.found import CHANNELS, FoundCampaign
+from pmm.start.found_campaign import CHANNELS, FoundCampaign
 from pmm.start.recordings import find_campaign
 from tests.pmm.start.laboratories import NAMES, STYLES, Laboratory, laboratory, write
 

@@ -31,10 +31,10 @@ from pmm.inertia.bifilar_tables import (
     YawTable,
 )
 from pmm.inertia.channels import chosen_series
-from pmm.inertia.given import given, gravity_of
 from pmm.inertia.lines import line_share, pitch_off_lines, slower, yaw_off_lines
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.stated_values import given, gravity_of
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
-from pmm.classic_rows import ClassicRow, classic_rows
+from pmm.document.classic_rows import ClassicRow, classic_rows
 from pmm.document.labels import units_loads_first
 
 if TYPE_CHECKING:
