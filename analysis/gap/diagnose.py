@@ -138,7 +138,7 @@ def diagnose(
     if len(runs) < 3:
         raise DataError(f"{len(runs)} runs: a diagnosis needs 3 or more")
     free = free_numbers(rig, settings.priors)
-    problem = _problem(rig, runs, settings, free)
+    problem = problem_of(rig, runs, settings, free)
     progress("walking along the chain")
     walked = walk(problem)
     weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress, free)
@@ -147,9 +147,10 @@ def diagnose(
     return refuted(done, _not_foretelling(done, settings), settings.catalogue)
 
 
-def _problem(
+def problem_of(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
+    """Return what every hypothesis about a campaign is held against."""
     stack = Stack.of(pooled(runs, rig))
     on = (*settings.on, *_always(rig, stack, settings.priors))
     simulator = Simulator(rig, stack, on, settings.reference_channel)

@@ -96,8 +96,9 @@ def _coefficients(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
 def _of_matrix(rig: SimulatedRig, term: str, priors: Priors) -> Iterator[Free]:
     matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
     # Where a table or nothing at all states what the water does, the body says what is much.
-    if not matrix.any() and term != "restoring":
-        matrix = np.diag([rig.body.mass_kg, rig.body.inertia_kg_m2])
+    if term != "restoring":
+        own, body = np.diagonal(matrix), (rig.body.mass_kg, rig.body.inertia_kg_m2)
+        matrix = np.diag(np.where(own > 0.0, own, body))
     for row in range(2):
         for column in range(2):
             scale = float(np.sqrt(matrix[row, row] * matrix[column, column]))

@@ -22,6 +22,7 @@ from sim.model.water.tables import RadiationTable
 # Relative to the diagonal: below it a table's coupling is rounding, and the two degrees of freedom
 # are fitted one by one.
 COUPLING_IS_NOISE: Final = 1e-4
+_FEWEST: Final = 2  # states
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,8 @@ def fit_memory(
     Parameters
     ----------
     states
-        States for each degree of freedom, 2 to 10: 4 to 6 serve most hulls.
+        States for each degree of freedom, 2 to 10: 4 to 6 serve most hulls. Where no memory of so
+        many fades, as with a table that has a slow tail, it is one of as many as do.
     floor
         Part of its peak below which a value counts as that, in the weights and in the errors.
     starts, seed
@@ -81,7 +83,17 @@ def fit_memory(
     """
     _check(table, states, floor, starts)
     targets = _Targets(table.symmetrised(), floor)
-    generator = np.random.default_rng(seed)
+    for count in range(states, _FEWEST, -1):
+        try:
+            return _fitted(targets, count, starts, np.random.default_rng(seed))
+        except DataError:  # none of that many fades: a slow tail asks for fewer
+            continue
+    return _fitted(targets, _FEWEST, starts, np.random.default_rng(seed))
+
+
+def _fitted(
+    targets: "_Targets", states: int, starts: int, generator: np.random.Generator
+) -> FittedMemory:
     fits = {
         i: best_ladder(targets.of((i,)), states, starts, generator) for i in targets.with_damping
     }
@@ -182,7 +194,7 @@ class _Targets:
 
 
 def _check(table: RadiationTable, states: int, floor: float, starts: int) -> None:
-    if not 2 <= states <= 10:
+    if not _FEWEST <= states <= 10:
         raise ConfigurationError(f"states = {states} must be 2 to 10 for each degree of freedom")
     if not 0.0 < floor <= 1.0:
         raise ConfigurationError(f"floor = {floor} must be above 0 and at most 1")

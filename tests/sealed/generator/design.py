@@ -122,7 +122,7 @@ def _eccentricity(rig: Rig, frequency_hz: float, share: float) -> float:
     inertia = 150.0 * (2.0 * math.pi * frequency_hz) ** 2
     stiffness = 7000.0 if rig.plane == "vertical" else 0.0
     force = max(inertia, stiffness, 800.0)
-    top = 0.014 if rig.plane == "vertical" else 0.05
+    top = 0.014 if rig.plane == "vertical" else 0.015
     return round(float(min(max(share * 100.0 / force, 0.002), top)), 4)
 
 

@@ -1,0 +1,58 @@
+"""Every number that decides, with its unit and where it comes from.
+
+Tolerances in physical units are not among them: they are the user's (:mod:`analysis.gap.priors`).
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+TAUS: Final = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0)
+"""Sizes of a deviation of no particular form, relative to a channel's predicted first harmonic: a
+grid of orders of magnitude, from what no record resolves to the whole of it."""
+
+TOLERATED: Final = 1e-3
+"""Size up to which a deviation that is smooth over set-points is no gap: ITTC asks 1 % of forces
+for an accepted test; a tenth of it is what a good model leaves."""
+
+VISIBLE: Final = 3.0
+"""Nats of information that runs have to carry of a deviation; one that they hardly show is none."""
+
+OWN: Final = 0.2
+"""Share of a smooth deviation's variance that is every run's own."""
+
+PLAIN: Final = 1e-3
+"""Share of a deviation's variance that has no effect's shape: a thirtieth of its size."""
+
+SHAPED: Final = 0.7
+"""Probability that what is unknown looks like a stage's effects; else it shows in one kind of
+observation alone."""
+
+WITHIN: Final = 0.5
+"""Probability that what a named effect leaves is within ``TOLERATED``."""
+
+WIDE: Final = 10.0
+"""Tolerances by which coefficients are off where they are the answer: a decade."""
+
+ETA: Final = 0.5
+"""Power of the evidence: fitted on development boards of worlds A and B (seed 11, 42 cases each);
+between 0.35 and 0.7 the mean log loss there changes by 0.03 and by 0.15."""
+
+ALIKE: Final = 0.99
+"""Cosine of two effects' signatures, beside the tolerances, above which one is left out of what
+stands beside the other."""
+
+
+@dataclass(frozen=True)
+class Odds:
+    """Prior probabilities; the catalogue's share is spread evenly over its effects.
+
+    Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
+    that no catalogue knows it, one in ten is two effects; in one campaign of sixteen coefficients
+    are off by more than anybody thought.
+    """
+
+    none: float = 0.12
+    single: float = 0.61
+    pair: float = 0.09
+    unknown: float = 0.18
+    coefficients: float = 0.06

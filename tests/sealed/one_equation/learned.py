@@ -1,0 +1,96 @@
+"""The shapes that a deviation may have: those of the catalogue's effects, as these runs show them.
+
+What nobody knows looks like physics: it moves, pushes or delays something that is there. So the
+covariance of what is unknown is that of the effects' signatures in this very campaign.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.look import Looked
+from hardware.description.arrays import FloatArray
+from tests.sealed.one_equation.constants import ALIKE, PLAIN
+from tests.sealed.one_equation.metric import Metric
+
+_LEAST: Final = 0.03  # of an effect's largest direction, below which one is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """Directions in which effects move the observations.
+
+    Attributes
+    ----------
+    columns
+        Each effect's signature and slopes, orthogonal, in sigma at a root mean square of 1 in the
+        kernel's units, shape ``(observations, directions)``.
+    effects, stages
+        Whose they are, and where that one acts, shape ``(directions,)``.
+    alike
+        For each effect those whose signatures these runs hardly tell from its own, itself included.
+    """
+
+    columns: FloatArray
+    effects: tuple[str, ...]
+    stages: tuple[str, ...]
+    alike: dict[str, frozenset[str]]
+
+    @classmethod
+    def of(cls, looked: Sequence[Looked], scale: FloatArray, tolerances: Metric) -> "Learned":
+        """Learn from first looks at effects.
+
+        Parameters
+        ----------
+        scale
+            How large a deviation of 1 is at each observation, in sigma.
+        """
+        columns, effects, stages = [np.zeros((len(scale), 0))], [], []
+        for one in looked:
+            if one.fit is not None:
+                found = _directions(np.column_stack((one.fit.signature, one.fit.columns)), scale)
+                columns.append(found)
+                effects += [one.name] * found.shape[1]
+                stages += [one.fit.candidates[0].kind.stage.value] * found.shape[1]
+        return cls(np.hstack(columns), tuple(effects), tuple(stages), _alike(looked, tolerances))
+
+    def beside(self, names: Sequence[str]) -> FloatArray:
+        """Return the shapes of what may stand beside effects: of all that is not like them."""
+        out = frozenset[str]().union(*(self.alike.get(name, frozenset((name,))) for name in names))
+        return self._of(lambda at: self.effects[at] not in out)
+
+    def at(self, stage: str) -> FloatArray:
+        """Return the shapes of what is unknown in a stage."""
+        return self._of(lambda at: self.stages[at] == stage)
+
+    def _of(self, chosen: Callable[[int], bool]) -> FloatArray:
+        """Return some directions, so weighed that together they have a mean square of 1."""
+        kept = [at for at in range(len(self.effects)) if chosen(at)]
+        count = len({self.effects[at] for at in kept})
+        share = math.sqrt((1.0 - PLAIN) / max(count, 1))
+        return np.asarray(share * self.columns[:, kept], np.float64)
+
+
+def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
+    sizes = np.sqrt(np.mean((changes / scale[:, None]) ** 2, axis=0))
+    seen = changes[:, sizes > 0.0] / sizes[sizes > 0.0] / np.sqrt(max(int((sizes > 0.0).sum()), 1))
+    left, values, _ = np.linalg.svd(seen, full_matrices=False)
+    kept = values > _LEAST * values.max(initial=0.0)
+    return np.asarray(left[:, kept] * values[kept], np.float64)
+
+
+def _alike(looked: Sequence[Looked], tolerances: Metric) -> dict[str, frozenset[str]]:
+    seen = [(one.name, one.fit.signature) for one in looked if one.fit is not None]
+    if not seen:
+        return {}
+    names, signatures = [name for name, _ in seen], np.column_stack([own for _, own in seen])
+    gram = signatures.T @ tolerances.whiten(signatures)
+    size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))
+    near = np.abs(gram) > ALIKE * np.outer(size, size)
+    return {
+        name: frozenset((name, *(names[at] for at in np.flatnonzero(row))))
+        for name, row in zip(names, near, strict=True)
+    }
