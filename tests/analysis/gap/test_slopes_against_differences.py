@@ -1,5 +1,7 @@
 """The columns that a fit is linear in are the simulator's own derivatives."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,12 @@ def test_of_the_free_numbers(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> No
         off = np.linalg.norm(problem.nuisances.columns[:, at_] - slope)
         assert off <= 0.02 * np.linalg.norm(slope) + 1e-6, one.name
     assert np.isfinite(base).all()
+
+
+def test_water_that_a_table_states_has_coefficients_to_be_free(rig: SimulatedRig) -> None:
+    """A table leaves to the constants what it lacks: a coupling alone tells no size."""
+    lent = replace(rig.water, added_mass=((0.0, 0.3), (0.3, 0.0)))
+    found = {one.name: one.deviation for one in free_numbers(replace(rig, water=lent), Priors())}
+    assert found["a11"] == pytest.approx(Priors().added_mass_relative * rig.body.mass_kg)
+    assert found["a22"] == pytest.approx(Priors().added_mass_relative * rig.body.inertia_kg_m2)
+    assert found["b11"] == pytest.approx(Priors().damping_relative * rig.water.damping[0][0])
