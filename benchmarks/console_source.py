@@ -58,7 +58,7 @@ class Source:
         self.address = f"http://127.0.0.1:{port}/"
         door = Door("127.0.0.1", port)
         rig = self._folder / "rig.toml"
-        hashes = read_rig_file(rig).hashes
+        hashes = read_rig_file(rig).hashes if rig.exists() else {}  # no rig, no plans
         settings = ConsoleSettings(rig, hashes, self._folder, None, self._folder, door)
         context = get_context("spawn")
         ours, theirs = context.Pipe()
