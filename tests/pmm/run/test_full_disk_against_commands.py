@@ -4,30 +4,40 @@ The limit on a file's size stands for the disk: what is written beyond it fails 
 """
 
 import errno
-import os
 import re
 import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
+from click.testing import CliRunner, Result
 
 from hardware.description.room import is_full, said
+from pmm.cli import cli
 from pmm.recorder.campaign_owner import LOCK
 from pmm.whole_file import write_whole
-from tests.pmm.run.processes import READINGS, SHORT, pmm, written_plan
+from tests.pmm.run.processes import READINGS, SHORT, written_plan
 from tests.sim.devices.benches import ROOT
 
 CAMPAIGN = ROOT / "examples" / "vertical" / "campaign.toml"
 RUN = "heave-0.83"
 
 
-def _full(size_bytes: int) -> dict[str, Any]:
-    """What a command is started with; without git, which the limit kills with its lock held."""
-    return {
-        "preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, size_bytes)),
-        "env": {**os.environ, "PATH": ""},
-    }
+@contextmanager
+def _full(size_bytes: int) -> Iterator[None]:
+    """Let no file of this process grow beyond a size."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def pmm(*words: str | Path, given: str = "") -> Result:
+    """Run a command; without git, which the limit kills with its lock held."""
+    return CliRunner().invoke(cli, [*map(str, words)], input=given, env={"PATH": ""})
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +45,7 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign of one run."""
     folder = tmp_path_factory.mktemp("full") / "simulated"
     made = pmm("simulate", CAMPAIGN, "--run", RUN, "--output", folder)
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     return folder
 
 
@@ -57,8 +67,9 @@ def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
     to = tmp_path / "to"
     to.mkdir()
     words = [str(one).format(**{"from": simulated, "to": to}) for one in COMMANDS[command]]
-    done = pmm(*words, **_full(size_bytes))
-    assert done.returncode == 1, done.stderr
+    with _full(size_bytes):
+        done = pmm(*words)
+    assert done.exit_code == 1, done.stderr
     assert "Errno" not in done.stderr
     assert re.search(rf"{re.escape(str(to))}\S*: no room on the disk \(", done.stderr), done.stderr
     assert "make room" in done.stderr
@@ -69,8 +80,9 @@ def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
 def test_a_run_ends_with_the_hint_to_resume(size_bytes: int, tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     words = ("run", plan, "--output", folder, "--only", SHORT)
-    done = pmm(*words, given=READINGS, **_full(size_bytes))
-    assert done.returncode == 1, done.stderr
+    with _full(size_bytes):
+        done = pmm(*words, given=READINGS)
+    assert done.exit_code == 1, done.stderr
     assert "Errno" not in done.stderr
     assert f"{plan} --resume --output {folder}" in done.stderr
     assert "ake room" in done.stderr
@@ -79,28 +91,24 @@ def test_a_run_ends_with_the_hint_to_resume(size_bytes: int, tmp_path: Path) -> 
 def test_recover_says_so_and_keeps_what_there_is(tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     made = pmm("run", plan, "--output", folder, "--only", SHORT, given=READINGS)
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     run = folder / SHORT
     for name in ("run.nc", "complete.json"):
         (run / name).unlink()
     kept = {one.name: one.read_bytes() for one in run.iterdir()}
-    done = pmm("recover", run, **_full(10_000))
-    assert done.returncode == 1, done.stderr
+    with _full(10_000):
+        done = pmm("recover", run)
+    assert done.exit_code == 1, done.stderr
     assert f"{run / 'run.nc'}: no room on the disk (" in done.stderr
     assert {one.name: one.read_bytes() for one in run.iterdir()} == kept
-    assert pmm("recover", run).returncode == 0
+    assert pmm("recover", run).exit_code == 0
 
 
 def test_a_file_is_as_it_was_when_its_successor_cannot_be_written(tmp_path: Path) -> None:
     path = tmp_path / "page.html"
     write_whole(path, "before")
-    resource_before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (3, resource_before[1]))
-    try:
-        with pytest.raises(OSError, match="File too large") as caught:
-            write_whole(path, "after that")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, resource_before)
+    with _full(3), pytest.raises(OSError, match="File too large") as caught:
+        write_whole(path, "after that")
     assert caught.value.filename == str(path)
     assert is_full(caught.value)
     assert path.read_text(encoding="utf-8") == "before"

@@ -1,0 +1,53 @@
+"""What one command found of a campaign is given to the next: a diagnosis takes seconds."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from pmm.cli import gap_add_work, gap_diagnose_work
+from pmm.gap.examine import Examined, Options, examine
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A campaign's folder, the same as another with the same name and bytes."""
+
+    name: str
+    contents: str
+    asked: Path = field(compare=False)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _one_diagnosis_of_one_campaign() -> Iterator[None]:
+    """Let commands in this process share what is found of the same campaign, asked the same."""
+    with pytest.MonkeyPatch.context() as patch:
+        for work in (gap_diagnose_work, gap_add_work):
+            patch.setattr(work, "examine", _shared)
+        yield
+
+
+def _shared(
+    asked: Path, options: Options, executor: Executor | None, progress: Callable[[str], None]
+) -> Examined:
+    own = any(one.endswith(".py") for one in options.effects)  # may have changed
+    if executor is not None or own or not asked.exists():
+        return examine(asked, options, executor, progress)
+    return _once(Folder(asked.name, _contents(asked), asked), options)
+
+
+@lru_cache(maxsize=4)
+def _once(folder: Folder, options: Options) -> Examined:
+    return examine(folder.asked, options)
+
+
+def _contents(asked: Path) -> str:
+    folder = asked if asked.is_dir() else asked.parent
+    found = sha256()
+    for path in sorted(one for one in folder.rglob("*") if one.is_file()):
+        found.update(str(path.relative_to(folder)).encode() + b"\0" + path.read_bytes())
+    return found.hexdigest()
