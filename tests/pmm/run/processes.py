@@ -1,14 +1,18 @@
-"""``pmm run`` in processes of their own, to be watched, stopped and killed."""
+"""``pmm`` in this process, and ``pmm run`` in one of its own: watched, stopped and killed."""
 
 import os
+import resource
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
 from tests.sim.devices.benches import ROOT
 
 RIG = (ROOT / "examples" / "manual" / "rig.toml").read_text(encoding="utf-8")
@@ -45,18 +49,20 @@ def written_plan(folder: Path, plan: str = PLAN, rig: str = RIG) -> Path:
     return path
 
 
-def pmm(*words: str | Path, given: str = "", **more) -> subprocess.CompletedProcess[str]:
-    """Run a command to its end."""
-    return subprocess.run(
-        [sys.executable, "-m", "tests.pmm.run.command", *map(str, words)],
-        input=given,
-        text=True,
-        capture_output=True,
-        cwd=ROOT,
-        timeout=_PATIENCE_S,
-        check=False,
-        **more,
-    )
+def pmm(*words: str | Path, given: str = "", env: Mapping[str, str] | None = None) -> Result:
+    """Run a command to its end, in this process."""
+    return CliRunner().invoke(cli, [*map(str, words)], input=given, env=env)
+
+
+@contextmanager
+def full_disk(size_bytes: int) -> Iterator[None]:
+    """Let no file of this process grow beyond a size: what is written fails as on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from analysis.readers import read_recording
 from pmm.recorder.recording import read_run
 from sim.devices.bench_file import read_bench
 from sim.solve.periodic import steady_run
-from tests.pmm.run.processes import READINGS, pmm, written_plan
+from tests.pmm.run.processes import READINGS, full_disk, pmm, written_plan
 from tests.sim.devices.benches import ROOT
 
 PLAN = """
@@ -48,18 +48,18 @@ def test_a_plan_with_piped_readings_is_recorded_analysed_and_resumed(
     folder = tmp_path / "campaign"
     words = ("run", plan, "--output", folder, "--json")
     first = pmm(*words, "--only", "heave-f0.8-a20", given=READINGS)
-    assert first.returncode == 0, first.stderr
+    assert first.exit_code == 0, first.stderr
     assert [one["outcome"] for one in json.loads(first.stdout)["runs"]] == ["complete"]
     again = pmm(*words, given=READINGS)
-    assert again.returncode == 2
+    assert again.exit_code == 2
     assert "--resume" in again.stderr
     rest = pmm(*words, "--resume", given=READINGS)
-    assert rest.returncode == 0, rest.stderr
+    assert rest.exit_code == 0, rest.stderr
     made = json.loads(rest.stdout)
     assert len(made["runs"]) == len(made["planned"]) == 2
     assert "heave-f0.8-a20" not in made["planned"]
     analysed = pmm("analyse", folder, "--json")
-    assert analysed.returncode == 0, analysed.stderr
+    assert analysed.exit_code == 0, analysed.stderr
     header = json.loads((folder / "heave-f0.8-a20" / "header.json").read_text(encoding="utf-8"))
     assert header["readings"]["eccentricity"]["source"] == "micrometer"
     assert header["readings"]["eccentricity"]["value"] == pytest.approx(0.02)
@@ -84,27 +84,23 @@ def _check_against_chain(plan: Path, folder: Path) -> None:
 
 def test_a_dry_run_moves_nothing(plan: Path, tmp_path: Path) -> None:
     done = pmm("run", plan, "--output", tmp_path / "none", "--dry-run")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     assert "3 runs would be recorded" in done.stdout
     assert not (tmp_path / "none").exists()
 
 
 def test_an_unknown_run_names_the_nearest(plan: Path, tmp_path: Path) -> None:
     done = pmm("run", plan, "--output", tmp_path / "none", "--only", "heave-f0.8")
-    assert done.returncode == 2
+    assert done.exit_code == 2
     assert "did you mean heave-f0.8-a20" in done.stderr
 
 
 def test_a_full_disk_ends_the_run_and_what_was_flushed_is_there(plan: Path, tmp_path: Path) -> None:
-    def small() -> None:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
-
     folder = tmp_path / "campaign"
     words = ("run", plan, "--output", folder, "--real-time")
-    done = pmm(*words, given=READINGS, preexec_fn=small)
-    assert done.returncode == 1
+    with full_disk(40_000):
+        done = pmm(*words, given=READINGS)
+    assert done.exit_code == 1
     assert "no room" in done.stderr or "full" in done.stderr or "File too large" in done.stderr
     runs = [one for one in folder.iterdir() if (one / "samples.arrows").exists()]
     assert len(runs) == 1
@@ -138,7 +134,7 @@ def test_a_killed_controller_leaves_what_was_flushed(plan: Path, tmp_path: Path)
     samples = read_run(run).samples
     assert samples is not None
     recovered = pmm("recover", run)
-    assert recovered.returncode == 0, recovered.stderr
+    assert recovered.exit_code == 0, recovered.stderr
     assert read_recording(run / "run.nc").sample_count > 0
 
 

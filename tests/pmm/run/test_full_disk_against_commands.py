@@ -5,39 +5,21 @@ The limit on a file's size stands for the disk: what is written beyond it fails 
 
 import errno
 import re
-import resource
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
 from hardware.description.room import is_full, said
-from pmm.cli import cli
 from pmm.recorder.campaign_owner import LOCK
 from pmm.whole_file import write_whole
-from tests.pmm.run.processes import READINGS, SHORT, written_plan
+from tests.pmm.run.processes import READINGS, SHORT, full_disk, pmm, written_plan
 from tests.sim.devices.benches import ROOT
 
 CAMPAIGN = ROOT / "examples" / "vertical" / "campaign.toml"
 RUN = "heave-0.83"
 
 
-@contextmanager
-def _full(size_bytes: int) -> Iterator[None]:
-    """Let no file of this process grow beyond a size."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
-def pmm(*words: str | Path, given: str = "") -> Result:
-    """Run a command; without git, which the limit kills with its lock held."""
-    return CliRunner().invoke(cli, [*map(str, words)], input=given, env={"PATH": ""})
+NO_GIT = {"PATH": ""}  # which the limit would kill with its lock held
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +49,8 @@ def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
     to = tmp_path / "to"
     to.mkdir()
     words = [str(one).format(**{"from": simulated, "to": to}) for one in COMMANDS[command]]
-    with _full(size_bytes):
-        done = pmm(*words)
+    with full_disk(size_bytes):
+        done = pmm(*words, env=NO_GIT)
     assert done.exit_code == 1, done.stderr
     assert "Errno" not in done.stderr
     assert re.search(rf"{re.escape(str(to))}\S*: no room on the disk \(", done.stderr), done.stderr
@@ -80,8 +62,8 @@ def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
 def test_a_run_ends_with_the_hint_to_resume(size_bytes: int, tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     words = ("run", plan, "--output", folder, "--only", SHORT)
-    with _full(size_bytes):
-        done = pmm(*words, given=READINGS)
+    with full_disk(size_bytes):
+        done = pmm(*words, given=READINGS, env=NO_GIT)
     assert done.exit_code == 1, done.stderr
     assert "Errno" not in done.stderr
     assert f"{plan} --resume --output {folder}" in done.stderr
@@ -96,8 +78,8 @@ def test_recover_says_so_and_keeps_what_there_is(tmp_path: Path) -> None:
     for name in ("run.nc", "complete.json"):
         (run / name).unlink()
     kept = {one.name: one.read_bytes() for one in run.iterdir()}
-    with _full(10_000):
-        done = pmm("recover", run)
+    with full_disk(10_000):
+        done = pmm("recover", run, env=NO_GIT)
     assert done.exit_code == 1, done.stderr
     assert f"{run / 'run.nc'}: no room on the disk (" in done.stderr
     assert {one.name: one.read_bytes() for one in run.iterdir()} == kept
@@ -107,7 +89,7 @@ def test_recover_says_so_and_keeps_what_there_is(tmp_path: Path) -> None:
 def test_a_file_is_as_it_was_when_its_successor_cannot_be_written(tmp_path: Path) -> None:
     path = tmp_path / "page.html"
     write_whole(path, "before")
-    with _full(3), pytest.raises(OSError, match="File too large") as caught:
+    with full_disk(3), pytest.raises(OSError, match="File too large") as caught:
         write_whole(path, "after that")
     assert caught.value.filename == str(path)
     assert is_full(caught.value)

@@ -24,21 +24,21 @@ def _files(folder: Path) -> dict[str, bytes]:
 def test_a_campaign_being_recorded_has_one_writer_and_readers_are_told(tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     first = pmm("run", plan, "--output", folder, "--only", SHORT, given=READINGS)
-    assert first.returncode == 0, first.stderr
+    assert first.exit_code == 0, first.stderr
     with recording(plan, folder, "--resume", run=LONG) as process:
         before = _files(folder)
         for words in (("run", plan, "--output", folder, "--resume"), ("recover", folder / LONG)):
             refused = pmm(*words, given=READINGS)
-            assert refused.returncode == 1, refused.stderr
+            assert refused.exit_code == 1, refused.stderr
             assert f"process {process.pid}" in refused.stderr
             assert "), since 20" in refused.stderr
             assert "wait for it or stop it" in refused.stderr
         analysed = pmm("analyse", folder, "--json")
-        assert analysed.returncode == 0, analysed.stderr
+        assert analysed.exit_code == 0, analysed.stderr
         assert [one["run"] for one in json.loads(analysed.stdout)["runs"]] == [SHORT]
         assert f"is being written by process {process.pid}" in analysed.stderr
         live = pmm("replay", folder / LONG)
-        assert live.returncode == 1
+        assert live.exit_code == 1
         assert f"is being recorded by process {process.pid}" in live.stderr
         assert {name: _files(folder)[name] for name in before} == before
         process.send_signal(signal.SIGINT)
@@ -61,10 +61,10 @@ def test_a_killed_owner_is_no_owner_and_its_name_in_the_lock_no_obstacle(tmp_pat
     assert writer_of(folder) is None
     words = ("run", plan, "--output", folder, "--resume", "--only", SHORT, "--json")
     resumed = pmm(*words, given=READINGS)
-    assert resumed.returncode == 0, resumed.stderr
+    assert resumed.exit_code == 0, resumed.stderr
     assert [one["outcome"] for one in json.loads(resumed.stdout)["runs"]] == ["complete"]
     recovered = pmm("recover", folder / f"{SHORT}.try1")
-    assert recovered.returncode == 0, recovered.stderr
+    assert recovered.exit_code == 0, recovered.stderr
     assert (folder / LOCK).read_bytes() == b""
 
 
