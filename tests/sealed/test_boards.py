@@ -21,12 +21,12 @@ from tests.sealed.generator.rig import Run
 from tests.sealed.generator.worth import Told
 
 HERE = Path(__file__).parent
-SEED, CASES, NULLS = 5, 2, 8
+SEED, CASES, NULLS = 5, 2, 3
 
 
 @pytest.fixture(scope="module")
 def board(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a board of ten cases."""
+    """Return a board of five cases."""
     folder = tmp_path_factory.mktemp("sealed") / "board"
     names = list(generate(jobs_of(SEED, CASES, NULLS, folder)))
     assert names == [f"case-{index:04d}" for index in range(1, CASES + NULLS + 1)]
