@@ -15,6 +15,7 @@ from analysis.gap.free import free_numbers
 from analysis.gap.hypotheses import weigh
 from analysis.gap.look import look
 from analysis.gap.priors import Priors
+from analysis.gap.unknown import likeness
 from hardware.description.arrays import FloatArray
 from pmm.gap.load import unlimited
 from sim.effects.catalogue import build, find
@@ -22,7 +23,7 @@ from sim.rig import SimulatedRig, vertical_rig
 from tests.analysis.gap.small import problem_of, record
 from tests.sealed.one_equation.constants import PLAIN, TAUS, TOLERATED, VISIBLE, WIDE
 from tests.sealed.one_equation.evidence import Beside
-from tests.sealed.one_equation.kernel import Kernel, likeness, units
+from tests.sealed.one_equation.kernel import Kernel, units
 from tests.sealed.one_equation.metric import Metric
 from tests.sealed.one_equation.weights import Weights, weigh_again
 

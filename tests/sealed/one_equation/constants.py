@@ -17,9 +17,6 @@ for an accepted test; a tenth of it is what a good model leaves."""
 VISIBLE: Final = 3.0
 """Nats of information that runs have to carry of a deviation; one that they hardly show is none."""
 
-OWN: Final = 0.2
-"""Share of a smooth deviation's variance that is every run's own."""
-
 PLAIN: Final = 1e-3
 """Share of a deviation's variance that has no effect's shape: a thirtieth of its size."""
 

@@ -1,7 +1,6 @@
 """A deviation of no particular form: alike for runs alike in set-point, and of each run's own."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -11,12 +10,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from analysis.gap.components import Component, Part, Stack
+from analysis.gap.unknown import likeness
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
-from hardware.description.setpoint import Medium, SetPoint
-from tests.sealed.one_equation.constants import OWN
 
-_DRIFT_RAD: Final = 0.1  # of drift, after which runs are hardly alike
 _TRENDS: Final = (Part.TREND, Part.TREND_IN_PHASE, Part.TREND_QUADRATURE)
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *_TRENDS)
 # What a deviation of 1 is of what has no harmonics: an e-fold of noise, every pulse; of the
@@ -127,23 +124,3 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
         else:
             out[at] = _UNITS.get(one.part, 1.0)
     return out
-
-
-def likeness(set_points: Sequence[SetPoint]) -> FloatArray:
-    """Return how alike a deviation is between runs, shape ``(runs, runs)``; 1 on the diagonal."""
-    places = np.array([_place(one) for one in set_points])
-    distance = np.sum((places[:, None, :] - places[None, :, :]) ** 2, axis=2)
-    shared = (1.0 - OWN) * np.exp(-0.5 * distance)
-    return np.asarray(shared + OWN * np.eye(len(places)))
-
-
-def _place(one: SetPoint) -> tuple[float, ...]:
-    return (
-        math.log(one.frequency_hz),
-        math.log(max(one.eccentricity_m, 1e-6)),
-        math.cos(one.strut_phase_rad),
-        math.sin(one.strut_phase_rad),
-        one.carriage_speed_m_s,
-        2.0 * (one.medium is Medium.AIR),
-        one.drift_rad / _DRIFT_RAD,
-    )
