@@ -3,38 +3,28 @@
 ``docs/sealed.md`` has the keys; :data:`SCHEMA` names them.
 """
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
+from analysis.gap.answer import NamedAnswer, named_answer, predicted_shrinkage, probabilities_about
 from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
-from analysis.gap.forecast import Forecast, forecast, further, planned
+from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import Free, free_numbers
 from analysis.gap.measurements import INJECTED_HZ
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
 from analysis.gap.recentre import Recentred
-from analysis.gap.verdict import answer_of
 from hardware.description.arrays import FloatArray
-from hardware.description.channels import FORCES
 from pmm.gap.case import HeldOut
-from pmm.gap.prepare import shares_of
 from sim.effects.effect import FurtherMeasurement
 
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
-_DRAWS = 400
-_FORM_KNOWN = 1.0  # standard deviation of the logarithm of by how much a form is off
-_ELSE = 0.2  # standard deviation of what a wrong effect makes go away, about what it did so far
-_LESS = 0.32  # and by how much less that is at other set-points, at mean
-_SURE = 0.85  # of the names above 0.9, 86 % were right on a sealed board
-_SEED = 20260
 
 
 def answer(
@@ -56,12 +46,9 @@ def answer(
         Runs whose outcome is to be foretold.
     """
     free = free_numbers(there.rig, priors)
-    best = None if diagnosis.best is None else diagnosis.best.fit
-    rival = None if diagnosis.rival is None else diagnosis.rival.fit
-    shares = shares_of(diagnosis, there)
-    share = 0.0 if best is None else shares[answer_of(best)]
-    tried = 0.0 if diagnosis.shrinkage is None else diagnosis.shrinkage.share
-    named = _Named(best, rival, share, tried)
+    shares = probabilities_about(diagnosis, there)
+    named = named_answer(diagnosis, shares)
+    best = named.best
     foretold = _Foretold(diagnosis.problem, named, held_out, free, priors)
     found: dict[str, Any] = {
         "schema": SCHEMA,
@@ -128,29 +115,13 @@ def _besides(one: Proposal) -> dict[str, Any]:
     return {}
 
 
-@dataclass(frozen=True, eq=False)
-class _Named:
-    """What the answer names, the second best, how probable the first is, and what it did so far.
-
-    Attributes
-    ----------
-    tried
-        Part of the gap that went away on regimes of the campaign that were withheld from it.
-    """
-
-    best: Fit | None
-    rival: Fit | None
-    share: float
-    tried: float
-
-
 class _Foretold:
     """The withheld runs as foretold without an effect, with the best answer, and by controls."""
 
     def __init__(
         self,
         problem: Problem,
-        named: _Named,
+        named: NamedAnswer,
         held_out: Sequence[HeldOut],
         free: Sequence[Free],
         priors: Priors,
@@ -162,45 +133,19 @@ class _Foretold:
 
     def as_dict(self) -> dict[str, Any]:
         if self._there is None:
-            return {"before": {}, "after": {}, "shrinkage": _share(0.0, 0.0, 0.0)}
+            nothing = {"value": 0.0, "low": 0.0, "high": 0.0}
+            return {"before": {}, "after": {}, "shrinkage": nothing}
         stack = self._there.simulator.stack
         plain = forecast(self._problem, self._there, None)
         best = self._named.best
         cured = plain if best is None else forecast(self._problem, self._there, best)
-        low, middle, high = (
-            (0.0, 0.0, 0.0) if best is None else self._shrinkage(stack, plain, cured)
-        )
+        low, middle, high = predicted_shrinkage(self._named, stack, plain, cured)
         return {
             "before": self._runs(stack, plain.values(self._there)),
             "after": self._runs(stack, cured.values(self._there)),
             **self._controls(self._there),
-            "shrinkage": _share(float(middle), float(low), float(high)),
+            "shrinkage": {"value": middle, "low": low, "high": high},
         }
-
-    def _shrinkage(
-        self, stack: Stack, plain: Forecast, cured: Forecast
-    ) -> tuple[float, float, float]:
-        """Return the median and the 95 % interval of the part of the forces' gap that goes away.
-
-        By how much a form is off is itself known to a factor of three only; and where the answer is
-        another one, as much goes away at most, but for some scatter, as on the regimes that were
-        withheld from it.
-        """
-        rows = np.array([one.channel in FORCES for one in stack.components])
-        gap, root, form = (cured.mean - plain.mean)[rows], cured.root[rows], cured.form[rows]
-        rng, shares = np.random.default_rng(_SEED), []
-        named = min(self._named.share, _SURE) * _DRAWS
-        for number in range(_DRAWS):
-            if number >= named:
-                other = _ELSE * rng.standard_normal() - _LESS * rng.exponential()
-                shares.append(min(self._named.tried + float(other), 1.0))
-                continue
-            off = root @ rng.standard_normal(root.shape[1])
-            size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))
-            off = off + size * (form @ rng.standard_normal(form.shape[1]))
-            shares.append(_shrinks(gap + off, off))
-        low, middle, high = np.quantile(shares, (0.025, 0.5, 0.975))
-        return float(low), float(middle), float(high)
 
     def _controls(self, there: Problem) -> dict[str, Any]:
         """Return what the second best answer and a free polynomial foretell."""
@@ -214,16 +159,6 @@ class _Foretold:
 
     def _runs(self, stack: Stack, values: FloatArray) -> dict[str, Any]:
         return {name: harmonics(stack, values, number) for number, name in enumerate(self._names)}
-
-
-def _shrinks(before: FloatArray, after: FloatArray) -> float:
-    """Return the part of a gap that goes away; negative where it grows."""
-    old, new = float(np.sqrt(np.mean(before**2))), float(np.sqrt(np.mean(after**2)))
-    return 1.0 - new / old if old > 0.0 else 0.0
-
-
-def _share(value: float, low: float, high: float) -> dict[str, float]:
-    return {"value": value, "low": min(low, value), "high": max(high, value)}
 
 
 def harmonics(stack: Stack, values: FloatArray, run: int) -> dict[str, Any]:

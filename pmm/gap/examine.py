@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.answer import probabilities_about
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
 from analysis.gap.diagnose import Diagnosis, diagnose, refuted
@@ -29,7 +30,7 @@ from hardware.description.arrays import FloatArray
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
-from pmm.gap.prepare import Prepared, Progress, prepare, shares_of
+from pmm.gap.prepare import Prepared, Progress, prepare
 from pmm.gap.steps import remains, walk_rows
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
@@ -127,7 +128,7 @@ class Examined:
     @property
     def shares(self) -> Mapping[str, float]:
         """Probabilities of the answers, most probable first."""
-        found = shares_of(self.diagnosis, self.recentred)
+        found = probabilities_about(self.diagnosis, self.recentred)
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))
 
     @cached_property

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Final
 
 from analysis.gap.components import GapRun
-from analysis.gap.diagnose import Diagnosis, Settings
+from analysis.gap.diagnose import Settings
 from analysis.gap.observe import COMPARED
 from analysis.gap.quality import doubts, judged
 from analysis.gap.recentre import Recentred
-from analysis.gap.verdict import COEFFICIENTS, NONE
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
@@ -144,19 +143,6 @@ def _check_sensors(sensors: Sequence[str]) -> None:
             near = get_close_matches(name, SENSORS, n=1, cutoff=0.4)
             hint = f"did you mean {near[0]!r}?" if near else f"channels: {', '.join(SENSORS)}"
             raise ConfigurationError(f"--sensors: no channel {name!r}; {hint}")
-
-
-def shares_of(found: Diagnosis, there: Recentred) -> Mapping[str, float]:
-    """Return the answers' probabilities; about a rig that was moved, "none" is "coefficients".
-
-    Where nothing differs from the moved rig, the coefficients by which it was moved are what
-    differs from the stated one.
-    """
-    shares = dict(found.probabilities.by_answer)
-    if there.units:
-        shares[COEFFICIENTS] = shares.get(COEFFICIENTS, 0.0) + shares[NONE]
-        shares[NONE] = 0.0
-    return shares
 
 
 def _without_hull(campaign: Campaign) -> str:
