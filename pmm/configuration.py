@@ -157,6 +157,7 @@ _SECONDS: Final = 1e6  # eleven days
 # What a number of that name must be, in whichever table it stands. Ten times more would ask for
 # what no tank does and no memory holds; ten times less would refuse long swings and fast gauges.
 _BOUNDS: Final[Mapping[str, Bounds]] = {
+    "displaced_kg": Bounds(0.0, _MOST, from_low=True),
     "duration_s": Bounds(0.0, _SECONDS),
     "eccentricity_m": Bounds(0.0, _MOST, from_low=True),
     "eccentricity_mm": Bounds(0.0, _MOST, from_low=True),
@@ -211,7 +212,7 @@ def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
 def as_error(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> ConfigurationError:
     """Return all faults of a file as one error: for each its path in the file and the message."""
     told = (f"{place_text(fault.place, table)}{fault.message}" for fault in faults)
-    lines = list(dict.fromkeys(told))
+    lines = list({line.lower(): line for line in told}.values())  # nan and NaN are one fault
     if len(lines) == 1:
         return ConfigurationError(f"{path}: {lines[0]}")
     return ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))

@@ -18,6 +18,10 @@ CASES = [
     ("[model]\nmass_kg = true\ninertia_kg_m2 = 3", "model.mass_kg = true should be a valid number"),
     ("[model]\nmass_kg = -70\ninertia_kg_m2 = 3", "model.mass_kg = -70 should be above 0"),
     ("[model]\nmass_kg = nan\ninertia_kg_m2 = 3", "model.mass_kg = NaN should be a finite number"),
+    (
+        "[model]\nmass_kg = 70\ninertia_kg_m2 = 3\ndisplaced_kg = -3",
+        "model.displaced_kg = -3 should be 0 or more",
+    ),
     ("[model]\nmass_kg = 70", "model.inertia_kg_m2 is missing"),
     ("[hull]\ndamping = [[1, 2], [3]]", "hull.damping[2][2] is missing"),
     (
@@ -111,3 +115,11 @@ def test_an_unreadable_file(content: bytes | None, message: str, tmp_path: Path)
         path.write_bytes(content)
     with pytest.raises(ConfigurationError, match=message):
         read_campaign(path)
+
+
+def test_a_number_that_is_none_is_one_error(tmp_path: Path) -> None:
+    path = tmp_path / "campaign.toml"
+    path.write_text(RIG + "[model]\nmass_kg = 70\ninertia_kg_m2 = 3\ncg_x_m = nan\n")
+    with pytest.raises(ConfigurationError) as caught:
+        read_campaign(path)
+    assert str(caught.value).lower().count("cg_x_m") == 1
