@@ -96,15 +96,8 @@ class UncertainValues:
     @property
     def degrees_of_freedom(self) -> FloatArray:
         """Effective degrees of freedom (Welch and Satterthwaite), shape ``(n,)``."""
-        by_input = self.variances()
         freedom = np.array([contribution.degrees_of_freedom for contribution in self.contributions])
-        known = np.where(freedom > 0.0, freedom, np.inf)
-        loss = (by_input**2 / known[:, None]).sum(axis=0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            freedom_of_values = by_input.sum(axis=0) ** 2 / loss
-        return np.asarray(
-            np.where(loss > 0.0, freedom_of_values, np.where(np.isnan(loss), np.nan, np.inf))
-        )
+        return effective_freedom(self.variances(), freedom)
 
     def half_width(self, level: float = 0.95) -> FloatArray:
         """Return the half-width of each one's interval (Student's t), shape ``(n,)``."""
@@ -233,6 +226,28 @@ def _one_input(parts: Sequence[Contribution]) -> Contribution:
             )
     rows = np.concatenate([part.rows for part in parts])
     return replace(first, rows=rows, parts=np.concatenate([part.parts for part in parts]))
+
+
+def effective_freedom(variances: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
+    """Return the degrees of freedom of sums of independent inputs (Welch and Satterthwaite).
+
+    Parameters
+    ----------
+    variances
+        Each input's part of each sum's variance, shape ``(inputs, n)``.
+    degrees_of_freedom
+        Of the inputs, shape ``(inputs,)``; an input without any counts as known for certain.
+
+    Returns
+    -------
+    FloatArray
+        Shape ``(n,)``; infinite where no input that is known by repeats has a part.
+    """
+    known = np.where(degrees_of_freedom > 0.0, degrees_of_freedom, np.inf)
+    loss = (variances**2 / known[:, None]).sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        freedom = variances.sum(axis=0) ** 2 / loss
+    return np.asarray(np.where(loss > 0.0, freedom, np.where(np.isnan(loss), np.nan, np.inf)))
 
 
 def student_factor(degrees_of_freedom: ArrayLike, level: float = 0.95) -> FloatArray:

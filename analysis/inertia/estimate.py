@@ -1,10 +1,12 @@
 """A value with its standard uncertainty, as all results of this package are given."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from analysis.uncertainty import student_factor
+import numpy as np
+
+from analysis.uncertainty import effective_freedom, student_factor
 from hardware.description.errors import ConfigurationError
 
 
@@ -58,6 +60,16 @@ class Estimate:
         """Return the ends of the two-sided interval of this level."""
         half = self.coverage_factor(level) * self.uncertainty
         return self.value - half, self.value + half
+
+    def widened(self, uncertainty: float, degrees_of_freedom: float = math.inf) -> "Estimate":
+        """Return the same value with one more independent standard uncertainty, in ``unit``."""
+        variances = np.array([[self.uncertainty**2], [uncertainty**2]])
+        freedom = np.array([self.degrees_of_freedom, degrees_of_freedom])
+        return replace(
+            self,
+            uncertainty=math.hypot(self.uncertainty, uncertainty),
+            degrees_of_freedom=float(effective_freedom(variances, freedom)[0]),
+        )
 
     @property
     def relative(self) -> float:

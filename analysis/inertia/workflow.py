@@ -1,7 +1,7 @@
 """The guided workflow: tare, test, known-weight check, tare again."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 from analysis.inertia.estimate import Estimate
@@ -114,8 +114,10 @@ def assess_workflow(
         first.unit,
         first.degrees_of_freedom + second.degrees_of_freedom,
     )
-    model, body = (_scaled(_difference(total, tare), scale_relative) for total in (test, check))
-    tare = _scaled(tare, scale_relative)
+    model, body, tare = (
+        one.widened(scale_relative * one.value)
+        for one in (_difference(test, tare), _difference(check, tare), tare)
+    )
     apart = _difference(body, known)
     error = apart.value / (apart.coverage_factor() * apart.uncertainty)
     drifted = abs(drift.value) > drift.coverage_factor() * drift.uncertainty
@@ -123,22 +125,11 @@ def assess_workflow(
     return WorkflowResult(tare, drift, model, body, error, abs(error) <= 1.0, flags)
 
 
-def _scaled(value: Estimate, relative: float) -> Estimate:
-    """Add an uncertainty of the scale, known for certain, by Welch's degrees of freedom."""
-    total = math.hypot(value.uncertainty, relative * value.value)
-    part = value.uncertainty / total if total > 0.0 else 1.0
-    freedom = value.degrees_of_freedom / part**4 if part > 0.0 else math.inf
-    return replace(value, uncertainty=total, degrees_of_freedom=freedom)
-
-
 def _difference(first: Estimate, second: Estimate) -> Estimate:
-    """Difference of two independent values, with Welch's degrees of freedom."""
-    variances = (first.uncertainty**2, second.uncertainty**2)
-    total = sum(variances)
-    loss = variances[0] ** 2 / first.degrees_of_freedom
-    loss += variances[1] ** 2 / second.degrees_of_freedom
-    freedom = total**2 / loss if loss > 0.0 else math.inf
-    return Estimate(first.value - second.value, math.sqrt(total), first.unit, freedom)
+    """Return the difference of two independent values."""
+    value = first.value - second.value
+    alone = Estimate(value, first.uncertainty, first.unit, first.degrees_of_freedom)
+    return alone.widened(second.uncertainty, second.degrees_of_freedom)
 
 
 def _flags(

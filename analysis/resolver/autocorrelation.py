@@ -28,6 +28,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from analysis.uncertainty import student_factor
 from hardware.description.arrays import FloatArray
 
 Doubled = Callable[[FloatArray], FloatArray]
@@ -170,9 +171,9 @@ def _half_width(weight: FloatArray, scale: FloatArray, freedom: int) -> FloatArr
     The spectra are on the second axis. The probability within is concave in the half-width, so
     Newton's steps from below stay there.
     """
-    from scipy.special import gammaln, stdtr, stdtrit
+    from scipy.special import gammaln, stdtr
 
-    alone = float(stdtrit(freedom, 0.5 + LEVEL / 2.0))
+    alone = float(student_factor(freedom, LEVEL))
     log_peak = gammaln((freedom + 1) / 2.0) - gammaln(freedom / 2.0) - np.log(freedom * np.pi) / 2.0
     half = alone * scale.min(axis=1)
     for _ in range(60):

@@ -1,7 +1,7 @@
 """The first moment of a swing's state, and what the moments of two states have in common."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -59,10 +59,6 @@ def _by_tilts(table: StateTable) -> Moment:
     )
     own = static.pooled.moment
     lever = float(np.mean([one.u_lever_m / one.lever_m for one in table.levers]))
-    spread = math.hypot(own.uncertainty, own.value * math.hypot(lever, table.u_tilt_relative))
-    # Welch and Satterthwaite: only the fit's own part has finite degrees of freedom
-    part = own.uncertainty / spread if spread > 0.0 else 1.0
-    freedom = own.degrees_of_freedom / part**4 if part > 0.0 else math.inf
-    estimate = replace(own, uncertainty=spread, degrees_of_freedom=freedom)
+    estimate = own.widened(own.value * math.hypot(lever, table.u_tilt_relative))
     levers = frozenset((one.name, one.lever_m) for one in table.levers)
     return Moment(estimate, static, table.u_tilt_relative, lever, levers)
