@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.stated_uncertainties import STATED
+from analysis.coefficients.tare import Tare
 from analysis.kinematics.body_frame import CHANNELS, UNITS, in_body_axes
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
@@ -47,13 +47,13 @@ class InBodyAxes:
         the drift sets the model.
     sensitivity
         Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
-    at_rest
+    tare
         Where the drift sets the model, and what a zero run there takes off.
     """
 
     phasors: Phasors
     sensitivity: FloatArray
-    at_rest: AtRest
+    tare: Tare
 
 
 def of_struts(
@@ -104,13 +104,13 @@ def of_struts(
     moved = _moved(harmonics_of_body.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
     moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
-    return InBodyAxes(phasors, sensitivity, AtRest.of(geometry, moving, channels - 2))
+    return InBodyAxes(phasors, sensitivity, Tare.of(geometry, moving, channels - 2))
 
 
 def parts_of_struts(
     readings: ComplexArray, geometry: Geometry, omega: FloatArray
-) -> tuple[FloatArray, AtRest]:
-    """Return the interleaved parts and the ``at_rest`` of :func:`of_struts` alone, of many runs.
+) -> tuple[FloatArray, Tare]:
+    """Return the interleaved parts and the ``tare`` of :func:`of_struts` alone, of many runs.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def parts_of_struts(
     read = waves(interleaved(readings[..., 2:].reshape(runs, -1)), channels - 2)
     parts = harmonics(in_body_axes(geometry, moved, read), count - 1)
     parts[:, 2] -= np.ravel(geometry.drift_rad)
-    return parts, AtRest.of(geometry, moved, channels - 2)
+    return parts, Tare.of(geometry, moved, channels - 2)
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:

@@ -11,11 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.hull_cycle import HullCycle, on_hull
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated_uncertainties import STATED
+from analysis.coefficients.tare import Tare
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.kinematics.body_frame import CHANNELS
 from hardware.description.arrangement import Arrangement
@@ -71,7 +71,7 @@ class BodyCycle:
     restoring
         Hydrostatic restoring that is taken off, N/m, N and N m; about the midpoint, per
         displacement from where the model floats without drift.
-    at_rest
+    tare
         Where the drift sets the model, and what a zero run there took off.
     point_ahead_m
         Where coefficients are wanted, ahead of the midpoint.
@@ -99,7 +99,7 @@ class BodyCycle:
     mean_known: bool = False
     flags: tuple[Flag, ...] = ()
     sensitivity: FloatArray = field(default_factory=lambda: np.zeros((0, len(STATED))))
-    at_rest: AtRest = field(default_factory=AtRest)
+    tare: Tare = field(default_factory=Tare)
     arrangement: Arrangement = field(default_factory=Arrangement)
     readings: ComplexArray = field(default_factory=_unread)
 
@@ -164,7 +164,7 @@ class BodyCycle:
             frequency_hz=self.frequency_hz,
             speed_m_s=self.speed_m_s,
             drift_rad=self.drift_rad,
-            at_rest=self.at_rest,
+            tare=self.tare,
             body=self.body,
             restoring=self.restoring,
             point_ahead_m=self.point_ahead_m,

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
 from analysis.coefficients.stated_uncertainties import STATED
+from analysis.coefficients.tare import Tare
 from analysis.kinematics.body_frame import CHANNELS, UNITS
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import INSTANTS, harmonics, per_part
@@ -59,7 +59,7 @@ def on_hull(
     frequency_hz: float,
     speed_m_s: float,
     drift_rad: float,
-    at_rest: AtRest,
+    tare: Tare,
     body: Body | None,
     restoring: FloatArray,
     point_ahead_m: float,
@@ -79,7 +79,7 @@ def on_hull(
     stated = stated_at_instants(body, drift_rad, plane, medium)
     loads = len(channels) - MOVING
     values, slope = pointwise(
-        lambda waves: loads_asked(waves, plane, at_rest, restoring)[..., :loads, :],
+        lambda waves: loads_asked(waves, plane, tare, restoring)[..., :loads, :],
         np.concatenate((moved, stated)),
     )
     orders = count - 1
@@ -153,7 +153,7 @@ class HullParts:
         return parts
 
 
-def loads_asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArray) -> Waves:
+def loads_asked(waves: Waves, plane: Plane, tare: Tare, restoring: FloatArray) -> Waves:
     """What inertia, weight and restoring ask of the struts: force, moment, surge force.
 
     Less what the latter two ask at rest, as the gauges read it there.
@@ -179,8 +179,8 @@ def loads_asked(waves: Waves, plane: Plane, at_rest: AtRest, restoring: FloatArr
         held[..., :2, :] += factor[..., None, :] * np.einsum("...rc,...ct->...rt", restoring, where)
         return np.asarray(held)
 
-    still = np.broadcast_to(at_rest.place_m[..., None], translation.shape)
-    tared = at_rest.tared(static(still, drift))
+    still = np.broadcast_to(tare.place_m[..., None], translation.shape)
+    tared = tare.tared(static(still, drift))
     loads += static(translation, rotation + drift)
     loads[..., : tared.shape[-2], :] -= tared
     return np.asarray(loads)

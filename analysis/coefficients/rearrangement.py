@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.at_rest import AtRest
 from analysis.coefficients.body_axes import parts_of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
@@ -24,6 +23,7 @@ from analysis.coefficients.hull_cycle import (
     to_point,
 )
 from analysis.coefficients.phasors import interleaved
+from analysis.coefficients.tare import Tare
 from analysis.kinematics.cycle import harmonics, waves
 from analysis.kinematics.geometry import Geometry
 from hardware.description.arrangement import Arrangement, Joint
@@ -102,17 +102,17 @@ def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str
         by_shape.setdefault(cycle.readings.shape, []).append(cycle)
     parts_of_key: dict[str, FloatArray] = {}
     for alike in by_shape.values():
-        gross, at_rest = zip(*(_gross(alike, way) for way in ways), strict=True)
-        parts = _on_hull(np.stack(gross), AtRest.stacked(at_rest), alike)
+        gross, tares = zip(*(_gross(alike, way) for way in ways), strict=True)
+        parts = _on_hull(np.stack(gross), Tare.stacked(tares), alike)
         parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
     return parts_of_key
 
 
-def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, AtRest]:
-    """Return gross parts and ``at_rest``; NaN where the alternative does not let them be had."""
+def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, Tare]:
+    """Return gross parts and ``tare``; NaN where the alternative does not let them be had."""
     speed, drift = np.array([[cycle.speed_m_s, cycle.drift_rad] for cycle in cycles]).T[..., None]
     own = np.stack([interleaved(cycle.phasors.values) for cycle in cycles])
-    rests = AtRest.stacked([cycle.at_rest for cycle in cycles])
+    rests = Tare.stacked([cycle.tare for cycle in cycles])
     stated = cycles[0].arrangement
     if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
         return own, rests
@@ -142,12 +142,12 @@ def _evidence(fit: CycleFit, table: Mapping[str, FloatArray]) -> FloatArray:
     return np.asarray((stated - squares[:, row]) / (2.0 * dispersion))
 
 
-def _on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence[BodyCycle]) -> FloatArray:
+def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> FloatArray:
     """Return the parts of :func:`analysis.coefficients.hull_cycle.on_hull` alone, of many runs.
 
     Parameters
     ----------
-    gross, at_rest
+    gross, tare
         In place of the runs' own, with leading axes ``(several, runs)``.
     cycles
         Of one plane, with as many orders and the same channels.
@@ -164,7 +164,7 @@ def _on_hull(gross: FloatArray, at_rest: AtRest, cycles: Sequence[BodyCycle]) ->
     )
     inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
     restoring = np.stack([cycle.restoring for cycle in cycles])
-    asked = loads_asked(np.concatenate(inputs, axis=-2), plane, at_rest, restoring)[..., :loads, :]
+    asked = loads_asked(np.concatenate(inputs, axis=-2), plane, tare, restoring)[..., :loads, :]
     net = HullParts(count, len(channels)).parts(gross, harmonics(asked, count - 1))
     turned = np.empty_like(net)
     for k, cycle in enumerate(cycles):

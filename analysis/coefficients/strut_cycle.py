@@ -120,7 +120,7 @@ class StrutCycle:
             mean_known=self.mean_known,
             flags=self.flags,
             sensitivity=model.sensitivity,
-            at_rest=model.at_rest,
+            tare=model.tare,
             arrangement=oscillator.arrangement,
             readings=ordered.values.reshape(self.orders + 1, -1),
         )

@@ -12,7 +12,7 @@ from pmm.cli.gap_options import Chosen
 from pmm.cli.hints import pasted
 from pmm.gap.appending import Added, refuse_twice
 from pmm.gap.pendulum_conclusion import conclusion_of
-from pmm.gap.pendulum_examine import Options, examine_pendulum, fitted_causes
+from pmm.gap.pendulum_examine import PendulumOptions, examine_pendulum, fitted_causes
 from pmm.gap.pendulum_file import read_case
 from pmm.gap.pendulum_words import what_is_wrong
 
@@ -55,7 +55,7 @@ def run(request: GapAddPendulumOptions) -> None:
 
 def _settled(request: GapAddPendulumOptions, path: Path) -> Settled:
     """Return the causes to add, fitted."""
-    options = Options(request.effects, request.without, request.most)
+    options = PendulumOptions(request.effects, request.without, request.most)
     if request.causes:
         return fitted_causes(path, request.causes, options)
     with progress() as shown:

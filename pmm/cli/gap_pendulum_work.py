@@ -16,7 +16,7 @@ from pmm.document.data import as_json
 from pmm.document.terminal import print_document
 from pmm.gap.pendulum_conclusion import conclusion_of
 from pmm.gap.pendulum_document import RECORD, document
-from pmm.gap.pendulum_examine import Options, examine_pendulum
+from pmm.gap.pendulum_examine import PendulumOptions, examine_pendulum
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,9 @@ class GapPendulumOptions(Chosen):
     as_json: bool
 
     @property
-    def options(self) -> Options:
+    def options(self) -> PendulumOptions:
         """What the diagnosis is told."""
-        return Options(self.effects, self.without, self.most)
+        return PendulumOptions(self.effects, self.without, self.most)
 
     def words(self) -> Iterator[str]:
         """Yield the options that decide what is found, as they are typed."""

@@ -18,7 +18,7 @@ _LEAST: Final = 1e-4  # probability that is worth a row
 
 
 @dataclass(frozen=True)
-class Conclusion:
+class PendulumConclusion:
     """What is said of a record, and what it rests on.
 
     Attributes
@@ -45,7 +45,7 @@ class Conclusion:
         return self.verdict == CAUSE
 
 
-def conclusion_of(found: Diagnosis) -> Conclusion:
+def conclusion_of(found: Diagnosis) -> PendulumConclusion:
     """Return what a diagnosis comes to."""
     gap = any(one.gap for one in found.where)
     return conclude(found.verdict.best, found.best.names, found.foretells, gap=gap)
@@ -53,7 +53,7 @@ def conclusion_of(found: Diagnosis) -> Conclusion:
 
 def conclude(
     best: tuple[str, ...], names: tuple[str, ...], foretells: float, *, gap: bool
-) -> Conclusion:
+) -> PendulumConclusion:
     """Hold what the evidence says against what the tables show.
 
     Parameters
@@ -66,14 +66,14 @@ def conclude(
         Whether any observable is beyond noise without a cause.
     """
     if not gap:
-        return Conclusion(NONE, (), math.nan, best)
+        return PendulumConclusion(NONE, (), math.nan, best)
     if not best:
-        return Conclusion(NONE, (), math.nan)
+        return PendulumConclusion(NONE, (), math.nan)
     if best == (UNKNOWN,):
         verdict = CAUSE if names and foretells >= TAKES_IT else UNKNOWN
     else:
         verdict = CAUSE if foretells >= SURE else UNTOLD
-    return Conclusion(verdict, names, foretells)
+    return PendulumConclusion(verdict, names, foretells)
 
 
 def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:

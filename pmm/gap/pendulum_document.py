@@ -26,7 +26,7 @@ from pmm.document.content import (
 from pmm.document.notation import percent, written
 from pmm.gap import pendulum_figures as figures
 from pmm.gap.pendulum_conclusion import classes, conclusion_of, parameters, ranking
-from pmm.gap.pendulum_examine import Examined
+from pmm.gap.pendulum_examine import ExaminedPendulum
 from pmm.gap.pendulum_words import sentences
 
 SCHEMA: Final = "pmm-gap-pendulum-1"
@@ -79,7 +79,7 @@ NEXT: Final[tuple[Column[Any], ...]] = (
 )
 
 
-def document(name: str, examined: Examined) -> Document:
+def document(name: str, examined: ExaminedPendulum) -> Document:
     """Return what is shown of a diagnosis.
 
     Parameters
@@ -90,7 +90,7 @@ def document(name: str, examined: Examined) -> Document:
     return Document(name, "measured and simulated", tuple(_sections(name, examined)), SCHEMA)
 
 
-def _sections(name: str, examined: Examined) -> Iterator[Section]:
+def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
     """Yield what there is to show, in the order in which it is read."""
     found = examined.diagnosis
     yield Section(

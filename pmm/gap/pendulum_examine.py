@@ -21,7 +21,7 @@ from pmm.gap.pendulum_file import PendulumCase, read_case
 
 
 @dataclass(frozen=True)
-class Options:
+class PendulumOptions:
     """What is asked for.
 
     Attributes
@@ -40,7 +40,7 @@ class Options:
 
 
 @dataclass(frozen=True, eq=False)
-class Examined:
+class ExaminedPendulum:
     """A diagnosis, and which of the effects that were asked for these records cannot show."""
 
     diagnosis: Diagnosis
@@ -57,8 +57,8 @@ class Examined:
 
 
 def examine_pendulum(
-    path: Path, options: Options, progress: Callable[[str], None] = lambda _: None
-) -> Examined:
+    path: Path, options: PendulumOptions, progress: Callable[[str], None] = lambda _: None
+) -> ExaminedPendulum:
     """Read a file with its records and diagnose it.
 
     Raises
@@ -76,10 +76,10 @@ def examine_pendulum(
     if not causes:
         raise ConfigurationError(f"--effects: these records cannot show {', '.join(hidden)}")
     found = diagnose_trials(problem, causes, most=options.most, reach=case.reach, progress=progress)
-    return Examined(found, hidden)
+    return ExaminedPendulum(found, hidden)
 
 
-def fitted_causes(path: Path, names: Sequence[str], options: Options) -> Settled:
+def fitted_causes(path: Path, names: Sequence[str], options: PendulumOptions) -> Settled:
     """Fit some causes together, whatever others there may be.
 
     Raises
@@ -97,7 +97,7 @@ def fitted_causes(path: Path, names: Sequence[str], options: Options) -> Settled
 
 
 def _prepared(
-    case: PendulumCase, path: Path, options: Options
+    case: PendulumCase, path: Path, options: PendulumOptions
 ) -> tuple[Problem, dict[str, type[Any]]]:
     """Return the records, and the effects to consider; the user's own have been tried."""
     kinds, more = chosen_of_pendulums(options.effects, options.without)

@@ -20,7 +20,7 @@ from analysis.gap.pendulum.verdict import (
     remainder,
 )
 from analysis.inertia.spread import cause_statement
-from pmm.gap.pendulum_conclusion import Conclusion, conclusion_of, parameters
+from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE
 
 FASTER: Final = "damping that grows faster than linearly"
@@ -33,12 +33,12 @@ def sentences(found: Diagnosis) -> tuple[str, str, str]:
     return what_is_wrong(found, concluded), how_large_it_is(found), what_to_do(found, concluded)
 
 
-def what_is_wrong(found: Diagnosis, concluded: Conclusion) -> str:
+def what_is_wrong(found: Diagnosis, concluded: PendulumConclusion) -> str:
     """Return what separates the record from its simulation, and what of it is open."""
     return f"{'; '.join(_wrong(found, concluded))}."
 
 
-def _wrong(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
+def _wrong(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
     if concluded.verdict == NONE:
         yield from _no_gap(found, concluded)
         return
@@ -58,7 +58,7 @@ def _wrong(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
         yield from _undecided(found.laws[0], rivals)
 
 
-def _no_gap(found: Diagnosis, concluded: Conclusion) -> Iterator[str]:
+def _no_gap(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
     left = [one.kind for one in found.where if one.out_of_tolerance]
     if left:
         yield f"Nothing that was considered explains the difference in {' and '.join(left)}"
@@ -121,7 +121,7 @@ def _place(found: Diagnosis, at: int) -> str:
     return f" ({trial.name}, {problem.centre_s[at]:.3g} s)"
 
 
-def what_to_do(found: Diagnosis, concluded: Conclusion) -> str:
+def what_to_do(found: Diagnosis, concluded: PendulumConclusion) -> str:
     """Return what to do next."""
     tell = _would_tell(found)
     if concluded.adds:

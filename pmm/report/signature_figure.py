@@ -36,7 +36,7 @@ _RECORDED: Final = tuple(recorded(one).name for one in (FORCE_AFT, FORCE_FORE))
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class SignatureGrid:
     """Signatures over frequency and amplitude.
 
     Attributes
@@ -56,7 +56,7 @@ class Grid:
     units: dict[str, str]
 
 
-def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Grid:
+def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> SignatureGrid:
     """Solve the rig with and without the effect about a set-point, within the oscillator's limits.
 
     Harmonics that the effect changes by no more than rounding are left out.
@@ -88,7 +88,7 @@ def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Gr
             stated[key][place] = theory.get(key, 0.0)
     kept = [key for key in keys if _is_there(found[key], stated[key], size[key[0]])]
     signals = {one.name: one.unit for one in rig.chain(set_point).signals}
-    return Grid(
+    return SignatureGrid(
         frequencies,
         amplitudes,
         {key: found[key] for key in kept},
@@ -108,7 +108,7 @@ def _is_there(found: ComplexArray, stated: ComplexArray, size: float) -> bool:
     return float(max(np.abs(found).max(), np.abs(stated).max())) > _NOTHING * size
 
 
-def signature_figure(effect: Effect, grid: Grid, title: str) -> "Figure":
+def signature_figure(effect: Effect, grid: SignatureGrid, title: str) -> "Figure":
     """Draw the largest parts of a signature: one row a harmonic, in phase and quadrature.
 
     Circles are simulated, lines are theory; colours are amplitudes. An effect that does not repeat
@@ -130,7 +130,7 @@ def signature_figure(effect: Effect, grid: Grid, title: str) -> "Figure":
     return figure
 
 
-def _largest(grid: Grid) -> list[Key]:
+def _largest(grid: SignatureGrid) -> list[Key]:
     """Return the parts to draw, forces first; the strut that does not differ is left out."""
     keys = [key for key in grid.simulated if not _is_twin(key, grid)]
     for channel in dict.fromkeys(name for name, _ in keys):
@@ -142,11 +142,11 @@ def _largest(grid: Grid) -> list[Key]:
     return sorted(by_size[:_ROWS], key=lambda key: (order.index(key[0]), key[1]))
 
 
-def _peak(grid: Grid, key: Key) -> float:
+def _peak(grid: SignatureGrid, key: Key) -> float:
     return float(max(np.abs(grid.simulated[key]).max(), np.abs(grid.theory[key]).max()))
 
 
-def _is_twin(key: Key, grid: Grid) -> bool:
+def _is_twin(key: Key, grid: SignatureGrid) -> bool:
     name, order = key
     other = (name.replace("_fore", "_aft"), order)
     if not name.endswith("_fore") or other not in grid.simulated:
@@ -155,7 +155,7 @@ def _is_twin(key: Key, grid: Grid) -> bool:
     return bool(gap < 0.02 * _peak(grid, key))
 
 
-def _draw_row(row: Sequence["Axes"], key: Key, grid: Grid, *, circles: bool) -> None:
+def _draw_row(row: Sequence["Axes"], key: Key, grid: SignatureGrid, *, circles: bool) -> None:
     name, order = key
     shown = display(grid.units[name])
     parts = ("mean", "") if order == 0 else (f"in phase {order}", f"quadrature {order}")
@@ -184,7 +184,7 @@ def _widen(axes: "Axes", peak: float) -> None:
     axes.set_ylim(min(low - room, -room), max(high + room, room))
 
 
-def _legend(figure: "Figure", grid: Grid, *, circles: bool) -> None:
+def _legend(figure: "Figure", grid: SignatureGrid, *, circles: bool) -> None:
     from matplotlib.lines import Line2D
 
     entries = [

@@ -21,7 +21,7 @@ def _unturned() -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class AtRest:
+class Tare:
     """Where a run's model rests, and what taring it there takes off; arrays may lead the axes.
 
     Attributes
@@ -37,7 +37,7 @@ class AtRest:
     of_load: FloatArray = field(default_factory=_unturned)
 
     @classmethod
-    def of(cls, geometry: Geometry, moved: Driven, gauges: int) -> "AtRest":
+    def of(cls, geometry: Geometry, moved: Driven, gauges: int) -> "Tare":
         """Return that of a rig which moves so, with or without the X gauge (3 or 2)."""
         still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
         there = motion(geometry, Driven(still, still, still))
@@ -49,7 +49,7 @@ class AtRest:
         return cls(there.across_m[..., 0], np.stack(turned, axis=-3))
 
     @classmethod
-    def stacked(cls, several: Sequence["AtRest"]) -> "AtRest":
+    def stacked(cls, several: Sequence["Tare"]) -> "Tare":
         """Return several as one, with an axis before theirs."""
         return cls(
             np.stack([one.place_m for one in several]), np.stack([one.of_load for one in several])
