@@ -62,7 +62,7 @@ def run(request: InertiaOptions) -> None:
     job: Callable[[str], Outcome] = getattr(import_module(f"pmm.inertia.{module}"), function)
     with busy(f"{request.job}: {request.file}"):
         outcome = job(request.file)
-        fits = form_fits(outcome) if request.fits else ()
+        fits = form_fits(outcome) if request.fits else None
     told = document(outcome, fits)
     if request.as_json:
         click.echo(as_json(told))

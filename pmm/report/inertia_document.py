@@ -104,13 +104,13 @@ PLACEMENTS: Final[tuple[Column[tuple[str, float, float, float, float]], ...]] = 
 )
 
 
-def document(outcome: Outcome, fits: Sequence[FormFit] = ()) -> Document:
+def document(outcome: Outcome, fits: Sequence[FormFit] | None = None) -> Document:
     """Return what is shown of a job; ``docs/inertia-files.md`` describes what programs get.
 
     Parameters
     ----------
     fits
-        Of the records by the forms F1 to F4, where they were asked for.
+        Of the records by the forms F1 to F4; ``None`` where they were not asked for.
     """
     results = Table("Results", FINDINGS, outcome.findings, "results", by=lambda one: one.name)
     return Document(
@@ -118,7 +118,7 @@ def document(outcome: Outcome, fits: Sequence[FormFit] = ()) -> Document:
         "mass properties",
         (
             Section("Periods", tuple(_periods(outcome.periods))),
-            Section("Fits", (Table("Fits", FITS, fits, "fits"),)),
+            Section("Fits", tuple(_fits(fits))),
             Section("Results", (results, *_numbers(outcome))),
             Section("Budgets", tuple(_budgets(outcome))),
             Section("Model", tuple(_model(outcome))),
@@ -127,6 +127,12 @@ def document(outcome: Outcome, fits: Sequence[FormFit] = ()) -> Document:
         ),
         SCHEMA,
     )
+
+
+def _fits(fits: Sequence[FormFit] | None) -> Iterator[Content]:
+    yield Table("Fits", FITS, fits or (), "fits")
+    if fits is not None and not fits:
+        yield Text(["F1 to F4 are forms of one oscillation; no record here has just one"])
 
 
 def _periods(periods: Sequence[PeriodRuns]) -> Iterator[Content]:

@@ -116,3 +116,13 @@ def test_the_section_is_a_campaigns(tmp_path: Path) -> None:
     assert body.inertia_kg_m2 == pytest.approx(603.2 * (1.056**2 + 0.018**2), rel=2e-3)
     assert spread.inertia_kg_m2 == pytest.approx(2.0 * 603.2 * 1.056 * 0.00085, rel=0.2)
     assert spread.cg_x_m == 0.001
+
+
+def test_forms_of_one_oscillation_are_said_to_be_that() -> None:
+    told = {
+        example: run(f"pmm inertia {job} examples/inertia/{example}.toml --fits").stdout
+        for job, example in (("swing", "swing"), ("bifilar", "hull"))
+    }
+    assert "F4 damped, with an offset" in told["swing"]
+    assert "no record here has just one" not in told["swing"]
+    assert "F1 to F4 are forms of one oscillation; no record here has just one" in told["hull"]
