@@ -40,14 +40,16 @@ $(VENV)/.sealed: $(VENV)/.dev
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo
 
-# A file's tests stay together: what they prepare is prepared once. The tests share the cores, so a
+# A file's tests stay together: what they prepare is prepared once. Files go in the order of their
+# names: those of few and long tests would else be left for the end. The tests share the cores, so a
 # library's own threads would only get in each other's way.
+WORKERS := -n auto --dist loadfile --no-loadscope-reorder
 test: $(VENV)/.dev
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS)
 
 # A context for each test: `python -m benchmarks.mutants` asks which tests run a line.
 coverage: $(VENV)/.dev
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile \
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) \
 		--cov --cov-context=test --cov-report=term:skip-covered
 
 lint: $(VENV)/.dev

@@ -139,7 +139,7 @@ def run(quick: bool, report: Report) -> Outcome:
                     report(f"{caption}: kill {k + 1}")
                     run_folder = Path(place) / caption / str(k) / folder
                     run_folder.parent.mkdir(parents=True)
-                    after_s = moments.uniform(0.0, latest_s)
+                    after_s = moments.uniform(0.0, 1.0 if quick else latest_s)
                     kills.append(kill_once(run_folder, after_s, *what, pace=pace))
     every = [one for kills in found.values() for one in kills]
     return Outcome(

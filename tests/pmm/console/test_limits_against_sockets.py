@@ -1,6 +1,7 @@
 """What comes over the network is limited: a console in its own process, and sockets by hand."""
 
 import re
+import socket
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -25,6 +26,12 @@ def _console(folder: Path) -> Iterator[Address]:
         yield address_of(one.address)
 
 
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Address]:
+    with _console(tmp_path_factory.mktemp("console")) as one:
+        yield one
+
+
 def _stream(address: Address, session: str) -> ClientConnection:
     return connect(
         f"ws://{address.name}/stream?session={session}",
@@ -45,19 +52,18 @@ def _farewell(stream: ClientConnection) -> tuple[int, str]:
 
 @pytest.mark.parametrize("message", [b"\x00\xff", "start"])
 def test_a_message_on_the_stream_is_refused_with_a_sentence(
-    tmp_path: Path, message: bytes | str
+    address: Address, message: bytes | str
 ) -> None:
-    with _console(tmp_path) as address:
-        with _stream(address, SESSION) as stream:
-            stream.send(message)
-            code, reason = _farewell(stream)
-        assert (code, reason) == (1003, "nothing is taken on this stream; commands are posted")
-        with _stream(address, SESSION) as stream:
-            assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
+    with _stream(address, SESSION) as stream:
+        stream.send(message)
+        code, reason = _farewell(stream)
+    assert (code, reason) == (1003, "nothing is taken on this stream; commands are posted")
+    with _stream(address, SESSION) as stream:
+        assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
 
 
-def test_half_sent_requests_are_few_and_end_and_a_quick_stop_passes_them(tmp_path: Path) -> None:
-    with _console(tmp_path) as address, ExitStack() as held:
+def test_half_sent_requests_are_few_and_end_and_a_quick_stop_passes_them(address: Address) -> None:
+    with ExitStack() as held:
         whole = address.post("/api/command", STOP)
         halves = (b"", b"POST /api/comm", whole[: whole.index(b"\r\n\r\n")], whole[:-3])
         assert address.ask(whole)[0] == 200  # it serves: nobody has waited for that
@@ -66,21 +72,22 @@ def test_half_sent_requests_are_few_and_end_and_a_quick_stop_passes_them(tmp_pat
             one.sendall(halves[number % len(halves)])
         time.sleep(1.5 * YOUNG_S)
         assert address.ask(whole)[0] == 200
+        _trickle_until_it_is_ended(held.enter_context(address.connect()))
         first, last = answer(half[0]), answer(half[-1])
         assert first[0] == last[0] == 408
         assert f"more than {MOST_HALF_SENT} requests are half sent" in first[1]
         assert f"not complete after {REQUEST_S:g} s" in last[1]
 
 
-def test_a_request_that_trickles_is_ended_as_one_that_stands_still(tmp_path: Path) -> None:
-    with _console(tmp_path) as address, address.connect() as one:
-        one.sendall(b"POST /api/command HTTP/1.1\r\nx: ")
-        one.settimeout(REQUEST_S / 20.0)
-        for _ in range(1000):
-            with suppress(TimeoutError):
-                assert one.recv(12) == b"HTTP/1.1 408"
-                return
-            one.sendall(b"x")
+def _trickle_until_it_is_ended(one: socket.socket) -> None:
+    """Send a request that never stands still: it is ended as the others are."""
+    one.sendall(b"POST /api/command HTTP/1.1\r\nx: ")
+    one.settimeout(REQUEST_S / 20.0)
+    for _ in range(1000):
+        with suppress(TimeoutError):
+            assert one.recv(12) == b"HTTP/1.1 408"
+            return
+        one.sendall(b"x")
     raise AssertionError("the request goes on for ever")
 
 

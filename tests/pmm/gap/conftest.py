@@ -29,6 +29,7 @@ def _one_diagnosis_of_one_campaign() -> Iterator[None]:
         for work in (gap_diagnose_work, gap_add_work):
             patch.setattr(work, "examine", _shared)
         yield
+    _once.cache_clear()  # another file may have another catalogue
 
 
 def _shared(
