@@ -8,7 +8,7 @@ import pytest
 from benchmarks.boards.mutated import through_commands, through_the_door
 from benchmarks.boards.mutations import MUTATIONS
 
-DOOR = range(40)
+DOOR = range(20)
 COMMANDS = range(4)
 
 
