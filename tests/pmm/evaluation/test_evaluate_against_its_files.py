@@ -14,7 +14,6 @@ from pmm.cli import cli
 from pmm.plan.rig_file import read_rig_file
 from pmm.recorder.files import HARMONICS
 from tests.pmm.plan.plans import EXAMPLES
-from tests.pmm.run.test_command_against_its_files import pmm as in_a_process
 
 PLAN = """
 name = "tests"
@@ -54,8 +53,8 @@ def made(folder: Path) -> Path:
     for name in ("rig.toml", "simulated.toml"):
         shutil.copy(EXAMPLES / "vertical" / name, folder / name)
     (folder / "plan.toml").write_text(PLAN, encoding="utf-8")
-    done = in_a_process("run", folder / "plan.toml", "--output", folder / "campaign")
-    assert done.returncode == 0, done.stderr
+    done = pmm("run", folder / "plan.toml", "--output", folder / "campaign")
+    assert done.exit_code == 0, done.stderr
     return folder / "campaign"
 
 
@@ -167,8 +166,8 @@ def test_a_calibration_goes_from_check_weights_to_the_next_analysis(
         'name = "next"\nrig = "rig.toml"\n[defaults]\nperiods = 3\npause_s = 0.0\n'
         '[[runs]]\nmotion = "heave"\nfrequencies_hz = 1.0\namplitudes_mm = 20.0\n'
     )
-    done = in_a_process("run", rig / "plan.toml", "--output", rig / "next")
-    assert done.returncode == 0, done.stderr
+    done = pmm("run", rig / "plan.toml", "--output", rig / "next")
+    assert done.exit_code == 0, done.stderr
     assert "expired on 2025-01-01" in " ".join(done.stderr.split())
     amplitudes = {}
     for how in ((), ("--calibration", "none"), ("--calibration", rig / "calibration.toml")):

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 from analysis.readers import read_recording
-from tests.pmm.run.test_command_against_its_files import pmm
+from tests.pmm.run.processes import pmm
 from tests.sim.devices.benches import ROOT
 
 EXAMPLE = ROOT / "examples" / "vertical"
@@ -31,7 +31,7 @@ def test_half_the_mass_is_seen(tmp_path: Path) -> None:
         file.write("[model]\nmass_kg = 35.0\n")
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf-8")
     made = pmm("run", tmp_path / "plan.toml", "--output", tmp_path / "c")
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     assert "model.mass_kg = 35 is simulated, rig.toml states 70" in made.stderr
     assert "force_aft and force_fore far from the plan's estimate" in made.stderr
     (path,) = (tmp_path / "c").glob("*/run.nc")

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pmm.campaign.campaign_file import read_campaign
-from tests.pmm.run.test_command_against_its_files import pmm
+from tests.pmm.run.processes import pmm
 from tests.sim.devices.benches import ROOT
 
 RIG = (ROOT / "examples" / "vertical" / "rig.toml").read_text(encoding="utf-8")
@@ -49,7 +49,7 @@ def test_sensors_and_noise_are_those_of_the_rig(missing: tuple[str, ...], tmp_pa
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     folder = tmp_path / "c"
     made = pmm("run", tmp_path / "plan.toml", "--output", folder)
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     campaign = read_campaign(folder / "campaign.toml")
     assert (campaign.photocell is None) == ("photocell" in missing)
     assert campaign.simulation.sample_rate_hz == 100.0
@@ -63,7 +63,7 @@ def test_sensors_and_noise_are_those_of_the_rig(missing: tuple[str, ...], tmp_pa
     assert campaign.acquisition.shaft_angle is not None
     assert campaign.acquisition.shaft_angle.noise_rms == 0.0
     analysed = pmm("analyse", folder, "--json")
-    assert analysed.returncode == 0, analysed.stderr
+    assert analysed.exit_code == 0, analysed.stderr
     (run,) = json.loads(analysed.stdout)["runs"]
     assert (run["window"], run["window_periods"]) == ("run's gate", 3)
     assert run["reference_frequency_hz"] == pytest.approx(1.2, rel=0.2)

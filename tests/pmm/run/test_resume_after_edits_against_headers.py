@@ -18,7 +18,7 @@ from pmm.campaign.runs import RecordedWith
 from pmm.plan.plan import read_plan_and_rig
 from pmm.run.campaign_folder import keep_sources
 from pmm.run.run_origin import _TABLES
-from tests.pmm.run.test_command_against_its_files import pmm
+from tests.pmm.run.processes import pmm
 from tests.sim.devices.benches import ROOT
 
 RIG = (ROOT / "examples" / "vertical" / "rig.toml").read_text(encoding="utf-8")
@@ -71,7 +71,7 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
     _write(folder, "simulated", 'rig = "rig.toml"\n')
     _write(folder, "calibration", CALIBRATION)
     made = _run(folder, "--only", KNOWN, "--only", SLOW)
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     return folder
 
 
@@ -159,7 +159,7 @@ def test_a_value_that_changed_is_refused_by_file_key_and_run(
     as_they_were = _kept(part)
     for words in (("--resume", "--dry-run"), ("--only", FAST)):
         refused = _run(part, *words)
-        assert refused.returncode == 2, refused.stderr
+        assert refused.exit_code == 2, refused.stderr
         said = " ".join(refused.stderr.split())
         for one in told:
             assert one in said, said
@@ -184,7 +184,7 @@ def test_comments_and_runs_that_were_added_change_nothing(part: Path) -> None:
     more = PLAN.rpartition("[[runs]]")[2].replace('"fast"', '"faster"').replace("1.2", "1.3")
     _write(part, "plan", f"# more\n{PLAN}[[runs]]{more}")
     done = _run(part, "--resume", "--dry-run")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     assert "2 runs would be recorded" in done.stdout
     assert "keeps what" not in done.stderr
 
@@ -196,7 +196,7 @@ def test_accepted_changes_stand_run_by_run_and_each_run_keeps_its_own(part: Path
     _edit(part, "rig", 'object = "9130:1", scale = 1e-3', 'object = "9130:1", scale = 2e-3')
     (part / "out" / "made-from" / "broken.toml").write_text("[", encoding="utf-8")
     went_on = _run(part, "--resume", "--accept-changes", "--json")
-    assert went_on.returncode == 0, went_on.stderr
+    assert went_on.exit_code == 0, went_on.stderr
     made = json.loads(went_on.stdout)
     assert made["planned"] == [FAST]
     assert [one.partition(":")[0] for one in made["changes"]] == [KNOWN, SLOW]
@@ -228,7 +228,7 @@ def test_accepted_changes_stand_run_by_run_and_each_run_keeps_its_own(part: Path
 def _check_water(folder: Path) -> None:
     """The heavier model's force less the lighter one's inertia would leave 10 kg too much."""
     found = pmm("coefficients", folder, "--json", "--form", "seakeeping")
-    assert found.returncode == 0, found.stderr
+    assert found.exit_code == 0, found.stderr
     document = json.loads(found.stdout)
     flags = [*document["coefficients"]["flags"], *(f for r in document["runs"] for f in r["flags"])]
     told = {(one["code"], *one["runs"]) for one in flags}
@@ -238,7 +238,7 @@ def _check_water(folder: Path) -> None:
     assert len(values) == 2
     assert values == pytest.approx([ADDED_KG] * 2, abs=0.5)
     analysed = pmm("analyse", folder, "--json")
-    assert analysed.returncode == 0, analysed.stderr
+    assert analysed.exit_code == 0, analysed.stderr
     codes = {
         one["run"]: [flag["code"] for flag in one["flags"]]
         for one in json.loads(analysed.stdout)["runs"]
@@ -250,7 +250,7 @@ def test_another_rig_of_which_no_copy_is_left_is_said_to_be_another(part: Path) 
     _edit(part, "rig", "mass_kg = 70.0", "mass_kg = 80.0")
     (part / "out" / "made-from" / "rig.toml").unlink()
     refused = _run(part, "--resume")
-    assert refused.returncode == 2
+    assert refused.exit_code == 2
     said = " ".join(refused.stderr.split())
     assert f"{SLOW}: rig.toml was another file (sha256" in said
     assert "made-from has no copy" in said
@@ -259,7 +259,7 @@ def test_another_rig_of_which_no_copy_is_left_is_said_to_be_another(part: Path) 
 def test_each_run_is_calibrated_by_its_own(part: Path) -> None:
     _edit(part, "calibration", *MATRIX)
     went_on = _run(part, "--resume", "--accept-changes")
-    assert went_on.returncode == 0, went_on.stderr
+    assert went_on.exit_code == 0, went_on.stderr
     tables = {}
     for name in (SLOW, FAST):
         header = json.loads((part / "out" / name / "header.json").read_text(encoding="utf-8"))
