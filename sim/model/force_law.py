@@ -7,7 +7,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import astuple, replace
 from enum import IntEnum
-from typing import Any, ClassVar, Final, NamedTuple, Self, TypeAlias
+from typing import Any, ClassVar, Final, NamedTuple, Protocol, Self, TypeAlias
 
 import numpy as np
 
@@ -140,10 +140,17 @@ class ForceLaw(ABC):
         return replace(self, **more)  # type: ignore[type-var]  # every law is a dataclass
 
 
+class LawKernel(Protocol):
+    """A law as a function of its parameters and of the motion, at one instant or an array."""
+
+    def __call__(self, parameters: Parameters, at: LawInput, /) -> Value:
+        """Return the force."""
+
+
 class NumberedLaw(ForceLaw):
     """A law that the compiled loops have, by its number in :data:`sim.model.laws.LAWS`."""
 
-    kernel: ClassVar["staticmethod[[Parameters, LawInput], Value]"]
+    kernel: ClassVar[LawKernel]
 
     @property
     def parameters(self) -> Parameters:
