@@ -61,9 +61,5 @@ class Metric:
             left = left - (self._rotated @ inner) / weight
         return left if self.kernel is None else self.kernel.back(left)
 
-    def fitted(self, residual: FloatArray) -> FloatArray:
-        """Return the most probable values of what the columns multiply, shape ``(columns,)``."""
-        return np.asarray(self.columns.T @ self.whiten(residual), np.float64)
-
     def _turn(self, columns: FloatArray) -> FloatArray:
         return columns if self.kernel is None else self.kernel.turn(columns)
