@@ -48,7 +48,7 @@ def test_few_records_say_it_wider(rig: SimulatedRig) -> None:
     """A new zero lies within 1.96 of them in nine of ten or so, for two records as for twelve."""
     for count in (2, 3, 6, 12):
         inside = []
-        for seed in range(150):
+        for seed in range(400):
             zeros = drawn(0.05, count + 1, 1000 * count + seed)
             found = wander(rig, at_rest(zeros[:count])).get(FORCES[0])
             level_n = 0.0 if found is None else found[0]

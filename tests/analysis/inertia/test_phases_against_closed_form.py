@@ -18,7 +18,7 @@ from tests.analysis.inertia.records import FloatArray, G, amplitude, damped, swi
 
 PERIOD_S = 3.0
 K, D, LINE = 1.056, 0.900, 3.477
-RECORDS = 60
+RECORDS = 120
 
 
 def swing(
