@@ -55,13 +55,6 @@ def run(request: GapDiagnoseOptions) -> None:
     found = examined(request)
     report = gap_report(found)
     told = document(report)
-    if request.as_json:
-        click.echo(as_json(told))
-    else:
-        print_document(output(), told)
-        if report.conclusion.adds:
-            added = pasted("gap", "add", request.campaign, *request.words())
-            output().print(added, soft_wrap=True)
     if request.page is not None:
         from pmm.document.page import write_page
 
@@ -70,6 +63,13 @@ def run(request: GapDiagnoseOptions) -> None:
         messages().print(f"page: {request.page}")
     if request.plan is not None:
         _write_plan(found, Path(request.plan))
+    if request.as_json:
+        click.echo(as_json(told))
+    else:
+        print_document(output(), told)
+        if report.conclusion.adds:
+            added = pasted("gap", "add", request.campaign, *request.words())
+            output().print(added, soft_wrap=True)
     tell_unchecked(_read_files(found, campaign_file(Path(request.campaign)).parent))
     if tell_damaged(found.ready.damaged.items()):
         click.get_current_context().exit(1)

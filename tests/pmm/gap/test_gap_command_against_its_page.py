@@ -72,6 +72,24 @@ def test_all_of_them_succeed(told: dict[str, Result]) -> None:
         assert told[name].exit_code == 0, (name, told[name].output)
 
 
+def test_a_reader_who_stops_reading_has_page_and_plan_all_the_same(
+    few: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``pmm gap ... | head -3`` closes the pipe before the tables are out."""
+
+    def closed(*_: object) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.chdir(tmp_path)
+    assert (
+        run("simulate", str(HOUSE / "examples/gap/campaign.toml"), "--output", "rig").exit_code == 0
+    )
+    monkeypatch.setattr("pmm.cli.gap_diagnose_work.print_document", closed)
+    assert run("gap", "rig", "--page", "gap.html", "--plan", "next.toml").exit_code != 0
+    assert "</html>" in Path("gap.html").read_text()
+    assert tomllib.loads(Path("next.toml").read_text())
+
+
 def test_friction_is_found_and_its_size(told: dict[str, Result]) -> None:
     said = told["diagnose"].stdout
     assert said.startswith(
