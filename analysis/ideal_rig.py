@@ -16,7 +16,7 @@ from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator, Plane
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_motion
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
@@ -31,10 +31,16 @@ def mass_matrix(body: Body, plane: Plane) -> FloatArray:
     return np.array([[body.mass_kg, coupling], [coupling, body.inertia_kg_m2]])
 
 
-def weight_matrix(body: Body, plane: Plane) -> FloatArray:
-    """Return what the weight adds to the restoring: ``m g z_G`` against pitch, else nothing."""
-    against_pitch = body.mass_kg * STANDARD_GRAVITY_M_S2 * body.cg_z_m
-    return np.diag([0.0, against_pitch if plane is Plane.VERTICAL else 0.0])
+def weight_matrix(body: Body, plane: Plane, medium: Medium) -> FloatArray:
+    """Return what weight and buoyancy add to the restoring: a moment against pitch, in N m.
+
+    It is ``m g z_G`` in air and of a model that floats, whose buoyancy is its hydrostatic
+    restoring, and ``g (m z_G - m_displaced z_B)`` of a model below the surface.
+    """
+    lever = body.mass_kg * body.cg_z_m
+    if medium is Medium.WATER and body.displaced_kg is not None:
+        lever -= body.displaced_kg * body.buoyancy_z_m
+    return np.diag([0.0, STANDARD_GRAVITY_M_S2 * lever if plane is Plane.VERTICAL else 0.0])
 
 
 def incidence(plane: Plane) -> FloatArray:

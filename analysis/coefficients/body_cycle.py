@@ -143,7 +143,7 @@ class BodyCycle:
         if self.body is not None:
             square = (2.0 * math.pi * self.frequency_hz) ** 2
             matrix[0] = square * mass_matrix(self.body, self.plane)
-            matrix[1] = weight_matrix(self.body, self.plane)
+            matrix[1] = weight_matrix(self.body, self.plane, self.medium)
         matrix[2] = self.restoring
         return np.abs(matrix @ self.motion)
 

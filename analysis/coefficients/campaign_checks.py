@@ -195,7 +195,8 @@ def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
     body = cycle.body
     assert body is not None  # noqa: S101 - _serves saw to it
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
-    taken = weight_matrix(body, cycle.plane) - square * mass_matrix(body, cycle.plane)
+    weight = weight_matrix(body, cycle.plane, cycle.medium)
+    taken = weight - square * mass_matrix(body, cycle.plane)
     value = np.array([ratio.real - taken[row, column]])
     slope = np.array([-ratio / own, -beside / own, 1.0 / own])
     real = np.array([part for z in slope for part in (z.real, -z.imag)])

@@ -115,7 +115,7 @@ def restoring_of(
     values, widths = _stiffness(first, motion)
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     inertia = -square * (_mass(body, cycle.plane) + added_mass)[:, column]
-    expected = _expected(body, hydrostatic, cycle.plane)
+    expected = _expected(body, hydrostatic, cycle)
     load = ("force", "moment")[column]
     ratio = first[load]
     return Restoring(
@@ -187,8 +187,11 @@ def _mass(body: Body | None, plane: Plane) -> FloatArray:
     return np.zeros((2, 2)) if body is None else mass_matrix(body, plane)
 
 
-def _expected(body: Body | None, hydrostatic: FloatArray, plane: Plane) -> FloatArray | None:
+def _expected(body: Body | None, hydrostatic: FloatArray, cycle: BodyCycle) -> FloatArray | None:
     """Return what the struts feel of hydrostatics and weight; ``None`` where nothing is given."""
-    if not hydrostatic.any():
+    below_surface = body is not None and body.displaced_kg is not None
+    if not (hydrostatic.any() or below_surface):
         return None
-    return hydrostatic if body is None else hydrostatic + weight_matrix(body, plane)
+    if body is None:
+        return hydrostatic
+    return hydrostatic + weight_matrix(body, cycle.plane, cycle.medium)

@@ -11,13 +11,13 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from analysis.ideal_rig import incidence, mass_matrix, weight_matrix
 from hardware.description.arrays import ComplexArray, FloatArray
-from hardware.description.body import Ship
+from hardware.description.body import Body, Ship
 from hardware.description.channels import FORCES
-from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium
 from hardware.description.struts import to_motion, to_strut_forces
-from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan.motion_peaks import omega_of, rod_factor
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import HullEstimate
@@ -144,29 +144,24 @@ def _reactions(
 ) -> Iterator[tuple[FloatArray, ComplexArray, float]]:
     """Yield matrices, the phasors that they act on, and their relative standard uncertainties."""
     plane, iw = rig.oscillator.plane, 1j * omega_of(run)
-    yield _mass(run, model, plane), iw**2 * motion, MODEL_UNCERTAINTY
-    if plane is Plane.VERTICAL:
-        weight = model.mass_kg * STANDARD_GRAVITY_M_S2 * model.cg_z_m
-        yield np.array([[0.0, 0.0], [0.0, weight]]), motion, MODEL_UNCERTAINTY
-    if run.set_point.medium is Medium.AIR:
+    medium = run.set_point.medium
+    yield mass_matrix(_laden(model, run), plane), iw**2 * motion, MODEL_UNCERTAINTY
+    yield weight_matrix(model, plane, medium), motion, MODEL_UNCERTAINTY
+    if medium is Medium.AIR:
         return
     hull = rig.hull or HullEstimate()
-    towards = 1.0 if plane is Plane.VERTICAL else -1.0
-    speed = run.set_point.carriage_speed_m_s
-    through = np.array([iw * motion[0] + towards * speed * motion[1], iw * motion[1]])
+    through = iw * motion + run.set_point.carriage_speed_m_s * incidence(plane) @ motion
     yield np.array(hull.added_mass), iw * through, ADDED_MASS_UNCERTAINTY
     yield np.array(hull.damping), through, DAMPING_UNCERTAINTY
     yield np.array(hull.restoring), motion, RESTORING_UNCERTAINTY
 
 
-def _mass(run: RunPlan, model: Ship, plane: Plane) -> FloatArray:
-    """Return the mass matrix about the midpoint; a CG ahead goes up with the bow."""
-    sign = -1.0 if plane is Plane.VERTICAL else 1.0
-    mass, inertia = model.mass_kg, model.inertia_kg_m2
-    coupling = sign * mass * model.cg_x_m
+def _laden(model: Body, run: RunPlan) -> Body:
+    """Return the model with the run's known mass on it, as far as inertia goes."""
     added = run.known_mass
-    if added is not None:
-        coupling += sign * added.mass_kg * added.x_m
-        mass += added.mass_kg
-        inertia += added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
-    return np.array([[mass, coupling], [coupling, inertia]])
+    if added is None:
+        return model
+    mass = model.mass_kg + added.mass_kg
+    moment = model.mass_kg * model.cg_x_m + added.mass_kg * added.x_m
+    own = added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
+    return Body(mass, model.inertia_kg_m2 + own, moment / mass)

@@ -5,7 +5,6 @@ from typing import ClassVar, TypeAlias
 
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
-from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Rows are force and moment, columns translation and rotation about the midpoint of the struts.
@@ -48,10 +47,3 @@ def mass_matrix(body: Body, plane: Plane) -> Matrix:
     """
     coupling = body.mass_kg * body.cg_x_m * (-1.0 if plane is Plane.VERTICAL else 1.0)
     return ((body.mass_kg, coupling), (coupling, body.inertia_kg_m2))
-
-
-def weight_matrix(body: Body, plane: Plane) -> Matrix:
-    """Return the stiffness that the model's weight gives: m g z_G against pitch, else nothing."""
-    if plane is Plane.HORIZONTAL:
-        return _NONE
-    return ((0.0, 0.0), (0.0, body.mass_kg * STANDARD_GRAVITY_M_S2 * body.cg_z_m))

@@ -12,10 +12,10 @@ from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
 from sim.model.block_forces import BlockForces, HullState
-from sim.model.coefficients import HullCoefficients, mass_matrix, weight_matrix
+from sim.model.coefficients import HullCoefficients, mass_matrix
 from sim.model.forces import Instants
 from sim.model.hull_steady_state import HullSteady
-from sim.model.numbers import numbers_of, turns_with
+from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
 from sim.model.parameters import ModelParameters
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
@@ -170,7 +170,8 @@ def _system(hull: Hull) -> HullSystem:
     radiation = constant(np.zeros((2, 2))) if hull.radiation is None else hull.radiation
     added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
     water_damping = np.array(hull.water.damping)
-    restoring = np.array(hull.water.restoring) + np.array(weight_matrix(hull.body, hull.plane))
+    restoring = np.array(hull.water.restoring)
+    restoring[1, 1] += weight_less_buoyancy(hull)[2]
     turn = np.zeros((2, 2))
     turn[0] = -turns_with(hull.plane) * math.cos(hull.drift_rad) * to[1]
     incidence = hull.carriage_speed_m_s * turn

@@ -108,9 +108,19 @@ def _fill_body(numbers: FloatArray, hull: ModelParameters) -> None:
     body, vertical = hull.body, hull.plane is Plane.VERTICAL
     below = body.cg_z_m if vertical else 0.0
     numbers[geometry.BODY, :4] = body.mass_kg, body.cg_x_m, below, body.inertia_kg_m2
-    if vertical:
-        weight = body.mass_kg * np.array([1.0, body.cg_x_m, below])
-        numbers[geometry.HANGING, :3] = STANDARD_GRAVITY_M_S2 * (weight - _borne(hull))
+    numbers[geometry.HANGING, :3] = weight_less_buoyancy(hull)
+
+
+def weight_less_buoyancy(hull: ModelParameters) -> FloatArray:
+    """Return weight less buoyancy, in N, and its moments ahead and below, in N m.
+
+    The last is the stiffness against pitch. In the horizontal plane nothing pulls.
+    """
+    if hull.plane is Plane.HORIZONTAL:
+        return np.zeros(3)
+    body = hull.body
+    weight = body.mass_kg * np.array([1.0, body.cg_x_m, body.cg_z_m])
+    return STANDARD_GRAVITY_M_S2 * (weight - _borne(hull))
 
 
 def _borne(hull: ModelParameters) -> FloatArray:

@@ -137,7 +137,7 @@ def ideal_run(
         mass=water.mass + mass_matrix(body, plane),
         added_mass=water.added_mass,
         damping=water.damping,
-        restoring=water.restoring + weight_matrix(body, plane),
+        restoring=water.restoring + weight_matrix(body, plane, set_point.medium),
     )
     load = loads(whole, moved, set_point.frequency_hz, set_point.carriage_speed_m_s, plane)
     return IdealRun(struts, moved, load, strut_forces(load, half, plane))

@@ -6,7 +6,7 @@ below the midpoint, give the load that the struts exert
 
     C = rho g ((A_w, -S), (-S, I - V z_B))
 
-without the model's weight, which :func:`sim.model.hull.weight_matrix` has. Sway and yaw have none.
+without the weight (:func:`sim.model.numbers.weight_less_buoyancy`). Sway and yaw have none.
 """
 
 import math

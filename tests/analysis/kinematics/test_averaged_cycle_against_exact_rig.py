@@ -13,6 +13,7 @@ from analysis.uncertainty import Contribution
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
+from hardware.description.setpoint import Medium
 from hardware.description.struts import to_strut_forces
 from tests.analysis.ideal_run import LinearHull, loads, through_water
 from tests.analysis.kinematics.exact import geometry_of, in_axes, measured, rows, stacked, truth
@@ -73,7 +74,7 @@ def test_small_angles_are_the_linear_transforms(plane: Plane, arrangement: Arran
     linear = motion(struts, half, plane)
     body = LinearHull(
         mass=mass_matrix(BODY, plane),
-        restoring=weight_matrix(BODY, plane),
+        restoring=weight_matrix(BODY, plane, Medium.WATER),
     )
     asked = loads(body, linear, hertz, speed, plane)
     gauges = np.stack(to_strut_forces(asked[:, 0], asked[:, 1], half, plane), axis=-1)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from analysis.readers import read_recording, write_recording
 from analysis.recording import Recording
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_strut_forces
 from pmm.campaign.calibrated_recording import calibrated, provenance_of
 from pmm.campaign.calibration import Calibration, write_calibration
@@ -80,7 +80,8 @@ def put_in_forces(rig: SimulatedRig, column: int) -> np.ndarray:
 
     plane, omega = rig.oscillator.plane, 2.0 * np.pi * FREQUENCY_HZ
     mass = mass_matrix(rig.body, plane) + np.array(rig.water.added_mass)
-    load = np.array(rig.water.restoring) + weight_matrix(rig.body, plane) - omega**2 * mass
+    held = np.array(rig.water.restoring) + weight_matrix(rig.body, plane, Medium.WATER)
+    load = held - omega**2 * mass
     force, moment = (load + 1j * omega * np.array(rig.water.damping))[:, column]
     return np.array(to_strut_forces(force, moment, rig.oscillator.half_spacing_m, plane))
 

@@ -12,6 +12,7 @@ import pytest
 
 from hardware.description.body import Ship
 from hardware.description.known_loads import KnownMass
+from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign.calibration import Calibration
 from pmm.plan.force_estimate import FAR, expected_readings, force_peak_n
@@ -54,6 +55,20 @@ def test_a_known_mass_adds_its_own_share() -> None:
     more = _estimate(rig, point, KnownMass(10.0, x_m=-rig.oscillator.half_spacing_m))
     aft = rig.body.mass_kg * (1.0 - rig.body.cg_x_m / rig.oscillator.half_spacing_m) / 2.0 + 10.0
     assert more == pytest.approx(aft * omega2 * 0.02)
+
+
+@pytest.mark.parametrize("displaced_kg", [None, 75.0])
+def test_a_model_below_the_surface_is_borne_at_its_centre_of_buoyancy(
+    displaced_kg: float | None,
+) -> None:
+    """Slow pitch: of the forces nothing but weight and buoyancy is left."""
+    centre = -0.05 if displaced_kg else 0.0
+    model = Ship(78.0, 14.0, 0.0, 0.02, displaced_kg, 0.0, centre)
+    half = VERTICAL_1963.half_spacing_m
+    slow = replace(run(), set_point=SetPoint(1e-5, 0.02, math.pi))
+    moment = 9.80665 * (78.0 * 0.02 - (displaced_kg or 0.0) * centre) * 0.02 / half
+    peak = force_peak_n(slow, rig_file(model=model, hull=HullEstimate()))
+    assert peak == pytest.approx(moment / (2.0 * half), rel=1e-6)
 
 
 def _half(mass_kg: float, hz: float, e: float) -> float:
