@@ -13,14 +13,14 @@ import numpy as np
 from numpy.random import Generator
 
 from analysis.inertia.bifilar import sway_period, yaw_gyradius, yaw_period
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.double_pendulum import PendulumResult, pitch_from_periods
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
 from analysis.inertia.series import Series, series_from_recording
 from analysis.inertia.swing import model_gyradius
 from analysis.inertia.swing_static import LeverSeries, fit_static
 from analysis.readers.dataset import from_dataset
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.pendulum.benches import KEELBOAT_2014, SWING_2021
 from sim.pendulum.effects import make_effect

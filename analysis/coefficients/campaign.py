@@ -27,7 +27,7 @@ from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
 from analysis.coefficients.zero_frequency import extrapolate
-from analysis.uncertainty import UncertainValues, stacked
+from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import ConfigurationError, DataError
 
 Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]

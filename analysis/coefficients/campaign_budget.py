@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 
 _KINDS = {
     "scatter of": "harmonic scatter",

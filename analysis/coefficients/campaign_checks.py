@@ -19,7 +19,7 @@ from analysis.coefficients.campaign_records import (
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.zero_frequency import extrapolate
 from analysis.ideal_rig import mass_matrix, weight_matrix
-from analysis.uncertainty import UncertainValues, stacked
+from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.oscillator import Plane
 
 TWO_TESTS = "two tests"

@@ -19,7 +19,7 @@ from analysis.coefficients.campaign_records import (
 from analysis.coefficients.form_choice import LINEAR_FORM
 from analysis.coefficients.names import Form
 from analysis.coefficients.terms import load_of
-from analysis.uncertainty import UncertainValues
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag

@@ -19,7 +19,7 @@ from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear_fit import lacking_places, linear_fit
 from analysis.coefficients.rearrangement import Refits, refits
-from analysis.uncertainty import UncertainValues, stacked
+from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 

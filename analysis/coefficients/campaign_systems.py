@@ -12,7 +12,7 @@ from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term, term_of
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 

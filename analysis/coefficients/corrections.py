@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.coefficients.phasors import Phasors
 from analysis.recording import Recording
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.errors import ConfigurationError, DataError

@@ -24,7 +24,7 @@ from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import Term, name_of_term, term_of
-from analysis.uncertainty import Contribution, UncertainValues, added
+from analysis.uncertainty.values import Contribution, UncertainValues, added
 from hardware.description.arrays import FloatArray
 
 HIGHER = (1, 2, 3)

@@ -23,7 +23,7 @@ from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
 from analysis.coefficients.terms import Term
 from analysis.kinematics.body_frame import CHANNELS
 from analysis.kinematics.cycle import basis, mean
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 
 DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB

@@ -6,7 +6,7 @@ from numpy.random import Generator
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 
 TRIALS_AT_ONCE = 5_000

@@ -25,7 +25,7 @@ from analysis.coefficients.campaign_records import (
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.names import Form
 from analysis.coefficients.recommendation import table
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag

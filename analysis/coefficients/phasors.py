@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.uncertainty import Contribution, UncertainValues, stacked
+from analysis.uncertainty.values import Contribution, UncertainValues, stacked
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
 

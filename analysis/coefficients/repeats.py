@@ -14,7 +14,8 @@ import numpy as np
 from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.phasors import Phasors, parts_of
-from analysis.uncertainty import Contribution, student_factor
+from analysis.uncertainty.freedom import student_factor
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3

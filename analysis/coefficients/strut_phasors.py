@@ -10,7 +10,7 @@ import numpy as np
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, from_interleaved
 from analysis.resolver.harmonics import Harmonics
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from analysis.coefficients.body_cycle import SURGE_FORCE, BodyCycle, at_order
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.oscillator import Plane
 
 _LEVEL = 0.95

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.uncertainty import UncertainValues
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

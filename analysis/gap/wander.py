@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from sim.rig import SimulatedRig

@@ -5,5 +5,5 @@ The way of the data: a record (:mod:`~analysis.inertia.series`, :mod:`~analysis.
 :mod:`~analysis.inertia.amplitude`), repeated runs become one period with the scatter between them
 (:mod:`~analysis.inertia.repeats`), periods and lengths become inertia by the formulas of
 :mod:`~analysis.inertia.swing`, :mod:`~analysis.inertia.bifilar` and their relatives, each with a
-budget (:mod:`~analysis.inertia.budget`), and end in :mod:`~analysis.inertia.result`.
+budget (:mod:`~analysis.uncertainty.budget`), and end in :mod:`~analysis.inertia.result`.
 """

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.local_periods import FEWEST_PARTS, LocalPeriods
 from analysis.inertia.projection import inverse_gram
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

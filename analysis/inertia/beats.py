@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from analysis.inertia.elementary_functions import Value
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

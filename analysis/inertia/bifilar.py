@@ -6,10 +6,10 @@ T_y = 2 pi (k/d) sqrt(l/g)        T_s = 2 pi sqrt(l/g)        k = d T_y/T_s
 import math
 
 from analysis.inertia.beats import BeatCount, ratio_from_beats
-from analysis.inertia.budget import Correlations
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.budget import Correlations
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.flags import Flag, Severity
 
 NEAR_RESONANCE = 0.05

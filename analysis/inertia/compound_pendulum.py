@@ -3,8 +3,8 @@
 import math
 
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 
 
 def pendulum_gyradius(period_s: Value, depth_m: Value, gravity_m_s2: Value) -> Value:

@@ -12,10 +12,10 @@ from enum import StrEnum
 
 import numpy as np
 
-from analysis.inertia.budget import Correlations
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.budget import Correlations
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
 
 

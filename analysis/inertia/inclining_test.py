@@ -1,8 +1,8 @@
 """Depth of the centre of gravity from an inclining weight (eqs 20 and 21)."""
 
 from analysis.inertia.elementary_functions import Value, tan
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 
 
 def incline_depth(

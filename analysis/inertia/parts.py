@@ -7,9 +7,9 @@ from types import MappingProxyType
 
 import numpy as np
 
-from analysis.inertia.budget import Correlations
 from analysis.inertia.elementary_functions import jacobian
-from analysis.inertia.estimate import Estimate, require_positive
+from analysis.uncertainty.budget import Correlations
+from analysis.uncertainty.estimate import Estimate, require_positive
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 

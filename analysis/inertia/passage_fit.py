@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import Passages
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.elementary_functions import Value, arctan, cos, sin, sqrt, tan
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

@@ -14,10 +14,10 @@ from analysis.inertia.amplitude import (
 )
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.local_periods import LocalPeriods, local_periods
 from analysis.inertia.repeats import Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

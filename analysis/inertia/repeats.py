@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.local_periods import LocalPeriods
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

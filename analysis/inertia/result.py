@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from analysis.inertia.budget import Budget
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.budget import Budget
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag

@@ -12,7 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

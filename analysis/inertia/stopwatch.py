@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 
 REACTION_S = 0.1  # standard deviation of a person's start and stop together

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 from analysis.inertia.bifilar import resonance_flags, sway_period, yaw_gyradius, yaw_period
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.double_pendulum import (
     LineLengthReading,
     best_line_length,
     gyradius_from_periods,
     mode_periods,
 )
-from analysis.inertia.estimate import Estimate, require_positive
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, require_positive
 from hardware.description.flags import Flag
 
 # Points A to H around a square frame (figure 21): yaw, pitch, roll, depth that each pair gives.

@@ -6,10 +6,10 @@ I_P = T^2/(4 pi^2) m g R         I = I_P - m R^2             (eqs 4 to 7)
 import math
 from dataclasses import dataclass
 
-from analysis.inertia.budget import Correlations, linear_budget
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.budget import Correlations, linear_budget
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

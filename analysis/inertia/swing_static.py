@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate, require_positive
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

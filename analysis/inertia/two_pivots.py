@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.elementary_functions import Value
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing import inertia_at_cg
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate
 
 LIMIT = 2.0  # of the joint standard uncertainty
 

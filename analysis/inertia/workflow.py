@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 

@@ -28,7 +28,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 
 Doubled = Callable[[FloatArray], FloatArray]

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 

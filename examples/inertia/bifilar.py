@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from analysis.inertia.bifilar import yaw_from_period, yaw_from_ratio
-from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.record import analyse_record, from_runs
 from analysis.inertia.repeats import combine_runs
 from analysis.inertia.series import series_from_recording
 from analysis.readers import read_recording
+from analysis.uncertainty.estimate import Estimate, exactly
+from analysis.uncertainty.monte_carlo import Assessment
 
 FOLDER = Path(__file__).parent
 HALF_SPACING = Estimate(0.900, 5e-4, "m")

@@ -6,8 +6,8 @@ from typing import Any
 
 from analysis.inertia.corrections import without_entrained_air
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate, exactly
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from pmm.inertia.stated_values import given, given_or_none
 
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from analysis.inertia.bifilar import yaw_from_period
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.spread import SuspensionGyradius, compare_geometries
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane

@@ -4,10 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from analysis.inertia.budget import Formula
 from analysis.inertia.elementary_functions import Value
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import assess
 from analysis.inertia.principal_axes import (
     principal_angle,
     principal_axes,
@@ -15,6 +12,9 @@ from analysis.inertia.principal_axes import (
     roll_from_three_yaws,
     roll_from_tilts,
 )
+from analysis.uncertainty.budget import Formula
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import assess
 from hardware.description.errors import ConfigurationError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.sources import AngledPeriod

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 
 from analysis.inertia.bifilar import yaw_gyradius
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.corrections import yaw_without_lines
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.workflow import Step
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.flags import Flag
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.outcome import Finding

@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analysis.inertia.budget import Correlations, Formula, sensitivities
 from analysis.inertia.elementary_functions import sqrt
-from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.parts import MADE_OF, combined
+from analysis.uncertainty.budget import Correlations, Formula, sensitivities
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.arrays import FloatArray
 from pmm.inertia.properties import AXES, PartTable
 
 if TYPE_CHECKING:
-    from analysis.inertia.estimate import Estimate
+    from analysis.uncertainty.estimate import Estimate
 
 _TRIALS = 50_000  # of up to seven inputs a part
 _PLACES = {"cg_x_m": 1, "cg_y_m": 2, "cg_z_m": 3}  # rows of the whole

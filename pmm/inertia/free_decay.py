@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.record import RecordAnalysis
+from analysis.uncertainty.estimate import Estimate
 from pmm.inertia.outcome import Finding
 from pmm.inertia.sources import PeriodRuns
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.inclining_test import incline_from_both_ends, incline_from_one_end
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Outcome, TargetTable, assessed, compare

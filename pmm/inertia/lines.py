@@ -7,8 +7,8 @@ from typing import Any
 from analysis.inertia.corrections import lines_factor, pitch_without_lines, yaw_without_lines
 from analysis.inertia.double_pendulum import PendulumResult
 from analysis.inertia.elementary_functions import Value
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from pmm.inertia.stated_values import given
 
 # Lines over body: up to it rods stand for strings to 4.3e-4 of the gyradius; at twice, 1.4e-3.

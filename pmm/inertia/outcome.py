@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.result import Comparison, InertiaResult, compare_with_target
 from analysis.inertia.swing_static import LeverSeries, StaticResult
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
-from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.parts import BodyPart, combine
 from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import InertiaResult
+from analysis.uncertainty.estimate import Estimate, exactly
+from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.combine_budget import combined_budgets

@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import Assessment, assess
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import air_rules, without_air
 from pmm.inertia.free_decay import decay_findings

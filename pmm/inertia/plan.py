@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from analysis.inertia.double_pendulum import LineLengthReading, gyradius_error_per_period
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspension
 from analysis.inertia.swing import SwingState, forecast_swing
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from analysis.inertia.budget import Budget, Correlations
 from analysis.inertia.corrections import square_frame
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import InertiaResult
+from analysis.uncertainty.budget import Budget, Correlations
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.flags import Flag
 from pmm.inertia.reading import one_of
 from pmm.inertia.stated_values import given, given_or_none

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import Passages, passages, read_gate_events
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
@@ -15,6 +14,7 @@ from analysis.inertia.repeats import Repeated, combine_runs
 from analysis.inertia.series import Series
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.readers import read_recording
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from pmm.inertia.channels import chosen_series, true_angles

@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from analysis.inertia.corrections import gravity_in_air
-from analysis.inertia.estimate import Distribution, Estimate
+from analysis.uncertainty.estimate import Distribution, Estimate
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 

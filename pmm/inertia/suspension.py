@@ -15,11 +15,11 @@ from analysis.inertia.bifilar import (
 )
 from analysis.inertia.checks import check_sway_axis, check_yaw_axis
 from analysis.inertia.double_pendulum import pitch_from_periods
-from analysis.inertia.estimate import Estimate, exactly
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.series import usable_part
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
+from analysis.uncertainty.estimate import Estimate, exactly
+from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.inertia.air import without_air

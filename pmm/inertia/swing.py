@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.budget import linear_budget
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.result import InertiaResult
 from analysis.inertia.swing import (
     SwingInertia,
@@ -21,6 +19,8 @@ from analysis.inertia.swing import (
 from analysis.inertia.swing_static import distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing_static import StaticResult, fit_static
+from analysis.uncertainty.estimate import Estimate
 from pmm.inertia.stated_values import given
 from pmm.inertia.swing_tables import StateTable
 

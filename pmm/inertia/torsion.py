@@ -7,9 +7,9 @@ from typing import Any
 
 from analysis.inertia.compound_pendulum import torsional_inertia, torsional_stiffness
 from analysis.inertia.elementary_functions import Value
-from analysis.inertia.estimate import Estimate
-from analysis.inertia.monte_carlo import Assessment, assess
 from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.reading import Job, one_of

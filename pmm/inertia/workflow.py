@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Finding

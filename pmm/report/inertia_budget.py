@@ -3,7 +3,7 @@
 from textwrap import shorten
 from typing import TYPE_CHECKING
 
-from analysis.inertia.monte_carlo import Assessment
+from analysis.uncertainty.monte_carlo import Assessment
 from pmm.document.labels import plain
 from pmm.document.notation import rounded
 from pmm.document.style import PALETTE, TRACE, drawing

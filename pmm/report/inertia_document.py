@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from analysis.inertia.amplitude import PowerDecay
-from analysis.inertia.budget import BudgetShare
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.forms import SwingForm
-from analysis.inertia.monte_carlo import Assessment
 from analysis.inertia.result import budget_rows, estimate_numbers
+from analysis.uncertainty.budget import BudgetShare
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.monte_carlo import Assessment
 from pmm.document.content import (
     ABSENT,
     Column,

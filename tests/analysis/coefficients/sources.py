@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 
 
 def of_covariance(label: str, covariance: np.ndarray, degrees_of_freedom: float) -> Contribution:

@@ -24,7 +24,7 @@ from analysis.coefficients.campaign_result import (
 )
 from analysis.coefficients.exchange import from_dataset, from_dict, to_dataset, to_dict
 from analysis.coefficients.names import Form
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane

@@ -12,7 +12,7 @@ from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.linear_fit import LinearFit, lacking_places, linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint

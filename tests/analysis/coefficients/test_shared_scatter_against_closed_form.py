@@ -18,7 +18,7 @@ from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
-from analysis.uncertainty import UncertainValues
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import Medium, SetPoint

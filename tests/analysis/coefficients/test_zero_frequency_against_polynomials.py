@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.zero_frequency import extrapolate
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.errors import DataError
 
 FREQUENCIES = np.array([0.1, 0.2, 0.3, 0.4, 0.5])

@@ -7,13 +7,13 @@ import pytest
 
 from analysis.inertia.amplitude import fit_power_decay, zero_amplitude_period
 from analysis.inertia.bifilar import sway_period, yaw_from_period, yaw_from_ratio, yaw_period
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.damped_fit import fit_damped
 from analysis.inertia.double_pendulum import mode_periods, pitch_from_periods
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.local_periods import local_periods
 from analysis.inertia.repeats import combine_runs, single_run
 from analysis.inertia.series import Series, usable_part
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate
 from tests.analysis.inertia.paper_formulas import bifilar_amplitude_factor
 from tests.analysis.inertia.records import FloatArray, G, amplitude, damped, swinging
 

@@ -9,14 +9,12 @@ import pytest
 
 from analysis.inertia.amplitude import fit_power_decay, zero_amplitude_period
 from analysis.inertia.bifilar import yaw_from_period
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.compound_pendulum import (
     pendulum_gyradius,
     torsional_inertia,
     torsional_stiffness,
 )
 from analysis.inertia.damped_fit import fit_damped
-from analysis.inertia.estimate import Estimate, within
 from analysis.inertia.gates import passages, read_gate_events
 from analysis.inertia.local_periods import local_periods
 from analysis.inertia.passage_fit import fit_passages
@@ -24,6 +22,8 @@ from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.repeats import single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from analysis.inertia.spread import Spread, SuspensionGyradius, compare_geometries
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, within
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"
 pytestmark = pytest.mark.skipif(not SHARED.exists(), reason="no shared measured data")

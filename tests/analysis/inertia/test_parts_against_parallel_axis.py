@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.parts import BodyPart, combine, inertia_about, part
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError, DataError
 
 finite = st.floats(-2.0, 2.0)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from analysis.inertia.amplitude import zero_amplitude_period
 from analysis.inertia.bifilar import sway_period, yaw_period
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.local_periods import LocalPeriods
 from analysis.inertia.record import RecordAnalysis, analyse_record
 from analysis.inertia.series import Series
+from analysis.uncertainty.estimate import Estimate
 from tests.analysis.inertia.paper_formulas import bifilar_amplitude_factor
 from tests.analysis.inertia.records import FloatArray, G, amplitude, damped, swinging
 

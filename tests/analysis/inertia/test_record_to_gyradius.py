@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from analysis.inertia.budget import linear_budget
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.record import analyse_record, from_runs
 from analysis.inertia.repeats import combine_runs
 from analysis.inertia.series import Series
 from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspension
 from analysis.inertia.swing import inertia_at_cg
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.inertia.records import damped, swinging
 

@@ -14,7 +14,6 @@ from analysis.inertia.checks import (
     check_yaw_axis,
     strongest_axis,
 )
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.gates import GateEvents, gate_events, passages, read_gate_events
 from analysis.inertia.passage_fit import fit_passages
 from analysis.inertia.record import analyse_record
@@ -22,6 +21,7 @@ from analysis.inertia.repeats import combine_runs
 from analysis.inertia.series import Series, series_from_recording, usable_part
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.recording import Recording
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from tests.analysis.inertia.records import FloatArray, damped

@@ -6,10 +6,10 @@ import tomllib
 
 import pytest
 
-from analysis.inertia.budget import linear_budget
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.result import InertiaResult, compare_with_target, model_toml
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane

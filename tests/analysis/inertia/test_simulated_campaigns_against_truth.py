@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.random import Generator
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.swing import SwingState, forecast_swing
+from analysis.uncertainty.estimate import Estimate
 from benchmarks.inertia_bound import bound_ratio, bound_ratio_two
 from benchmarks.inertia_campaigns import (
     MODEL,

@@ -26,7 +26,6 @@ from analysis.inertia.double_pendulum import (
     mode_periods,
     pitch_from_periods,
 )
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.inclining_test import (
     incline_depth,
     incline_from_both_ends,
@@ -43,6 +42,7 @@ from analysis.inertia.principal_axes import (
     roll_from_three_yaws,
     roll_from_tilts,
 )
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.inertia.paper_formulas import (
     bifilar_amplitude_factor,

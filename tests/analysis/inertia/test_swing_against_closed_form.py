@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.inertia.estimate import Estimate, exactly
 from analysis.inertia.inclinometer import reading_factor, reading_flags, true_angle
 from analysis.inertia.swing import (
     SwingState,
@@ -18,6 +17,7 @@ from analysis.inertia.swing import (
 )
 from analysis.inertia.swing_static import LeverSeries, distance, fit_static
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError, DataError
 
 G = exactly(9.81, "m/s2")

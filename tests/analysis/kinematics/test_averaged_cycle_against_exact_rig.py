@@ -9,7 +9,7 @@ from analysis.ideal_rig import mass_matrix, motion, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as moved
 from analysis.kinematics.rigid_body import inertia, weight
-from analysis.uncertainty import Contribution
+from analysis.uncertainty.values import Contribution
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane

@@ -12,7 +12,7 @@ from analysis.kinematics.body_frame import CHANNELS
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
-from analysis.uncertainty import student_factor
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.channels import Channel
 from hardware.description.oscillator import HORIZONTAL_1963, Plane

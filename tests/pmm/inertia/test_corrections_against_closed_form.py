@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.inertia.estimate import Estimate
 from analysis.inertia.plane_inertia import plane_inertia
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import ConfigurationError
 from pmm.inertia import bifilar, parts, pendulum, swing
 from pmm.inertia.outcome import Outcome

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.inertia.bifilar import yaw_period
-from analysis.inertia.budget import linear_budget
 from analysis.inertia.double_pendulum import mode_periods
-from analysis.inertia.estimate import Estimate
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.oscillator import Plane
 from pmm.inertia import bifilar, incline, parts, pendulum, plan, swing
 from pmm.inertia.outcome import Outcome

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from analysis.uncertainty import effective_freedom, student_factor
+from analysis.uncertainty.freedom import effective_freedom, student_factor
 from hardware.description.errors import ConfigurationError
 
 

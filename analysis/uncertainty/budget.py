@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from analysis.inertia.estimate import Estimate
-from analysis.uncertainty import Contribution, UncertainValues
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.uncertainty import Contribution, UncertainValues, stacked
+from analysis.uncertainty.values import Contribution, UncertainValues, stacked
 from hardware.description.errors import ConfigurationError
 
 SMALL = st.integers(-50, 50).map(lambda n: n / 10.0)

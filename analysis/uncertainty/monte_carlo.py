@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from analysis.inertia.budget import (
+from analysis.uncertainty.budget import (
     Budget,
     Correlations,
     Formula,
     correlation_matrix,
     linear_budget,
 )
-from analysis.inertia.estimate import Distribution, Estimate
+from analysis.uncertainty.estimate import Distribution, Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
@@ -185,7 +185,7 @@ def assess(
     Raises
     ------
     ConfigurationError, DataError
-        As :func:`analysis.inertia.budget.linear_budget` and :func:`monte_carlo` do.
+        As :func:`analysis.uncertainty.budget.linear_budget` and :func:`monte_carlo` do.
     """
     budget = linear_budget(name, formula, inputs, unit=unit, correlations=correlations)
     trial = monte_carlo(name, formula, inputs, seed=seed, correlations=correlations, trials=trials)

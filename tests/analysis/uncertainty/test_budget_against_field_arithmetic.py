@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.inertia.budget import linear_budget
-from analysis.inertia.estimate import Estimate, exactly, within
-from analysis.inertia.monte_carlo import assess, monte_carlo
+from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.estimate import Estimate, exactly, within
+from analysis.uncertainty.monte_carlo import assess, monte_carlo
 from hardware.description.errors import ConfigurationError, DataError
 
 INPUTS = {

@@ -1,0 +1,1 @@
+"""Uncertainty: values with covariance and degrees of freedom, budgets, and Monte Carlo."""
