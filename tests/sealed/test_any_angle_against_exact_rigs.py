@@ -99,10 +99,26 @@ def test_pitch_with_its_weight(one: Arrangement, medium: str) -> None:
     _agree(Plane.VERTICAL, one, replace(RUN, medium=medium), 0.0)  # type: ignore[arg-type]
 
 
-def test_angles_are_large_and_small_ones_are_the_linear_model_s() -> None:
-    p = _model(Plane.HORIZONTAL)
-    small = replace(RUN, eccentricity_m=1e-3)
-    exact = happen(arranged(p, *ARRANGED[0]), small, RIG, settling=0.5).samples
-    linear = happen(p, small, RIG, settling=0.5).samples
-    assert np.abs(exact - linear).max() < 2e-4 * np.abs(linear[3:5]).max()
+@pytest.mark.parametrize("medium", ["water", "air"])
+@pytest.mark.parametrize("plane", Plane)
+def test_stiff_gauges_read_what_rigid_ones_do(plane: Plane, medium: str) -> None:
+    """What is left is the gauges' own give: half of it with twice the stiffness."""
+    for joint, pivot, gauges in ARRANGED:
+        p = arranged(_model(plane), joint, pivot, gauges)
+        run = replace(RUN, medium=medium, eccentricity_m=0.07)  # type: ignore[arg-type]
+        rigid = happen(p, run, RIG, settling=0.5)
+        off = [np.abs(happen(_on_springs(p, k), run, RIG, settling=0.5).samples[3:5, rigid.before:]
+                      - rigid.samples[3:5, rigid.before:]).max() for k in (1e6, 2e6)]  # fmt: skip
+        largest = np.abs(rigid.samples[3:5]).max()
+        assert off[1] == pytest.approx(0.5 * off[0], rel=0.1)
+        assert off[0] < 5e-3 * largest
+
+
+def _on_springs(p: FloatArray, stiffness: float) -> FloatArray:
+    q = p.copy()
+    q[P.GAUGE_STIFFNESS], q[P.GAUGE_DAMPING] = stiffness, 2e4
+    return q
+
+
+def test_angles_are_large() -> None:
     assert math.degrees(math.atan(0.14 / 0.5 * math.sin(1.0))) > 13.0

@@ -1,4 +1,4 @@
-"""How a rig with angles of any size is arranged, in the words of a campaign file."""
+"""How a rig is arranged, in the words of a campaign file."""
 
 from itertools import product
 
@@ -11,9 +11,8 @@ ARRANGED = tuple(product(JOINTS, PIVOTS, GAUGES))
 
 
 def arranged(p: FloatArray, joint: str, pivot: str, gauges: str) -> FloatArray:
-    """Return the parameters of a rig with angles of any size."""
+    """Return the parameters of a rig in this arrangement."""
     q = p.copy()
-    q[P.EXACT] = 1.0
     q[P.SLIDES_ON_RIG] = float(joint == "slides_on_rig")
     q[P.FORE_PIVOT] = float(pivot == "fore")
     q[P.RIG_GAUGES] = float(gauges == "rig")

@@ -60,8 +60,9 @@ def _missed(p: FloatArray, size: float) -> None:
     p[P.MISSED] = round(1.0 / size) if size > 0.0 else 0.0
 
 
-def _arc(p: FloatArray, size: float) -> None:
-    p[P.ARC] = float(size > 0.0)
+def _other_joint(p: FloatArray, size: float) -> None:
+    if size > 0.0:
+        p[P.SLIDES_ON_RIG] = 1.0 - p[P.SLIDES_ON_RIG]
 
 
 _DRIVE = (
@@ -92,8 +93,8 @@ _MECHANISM = (
            {P.ECC_ERROR_AFT: 1.0}, signed=True, parameter="error_aft_m"),
     Effect("strut-phase-error", MECHANISM, "phase shifter off", 5e-3, 0.02, {P.PHASE_ERROR: 1.0},
            signed=True, parameter="error_rad"),
-    Effect("foreshortening", MECHANISM, "parallel struts, exact geometry", 1.0, 1.0, change=_arc,
-           fixed=True),
+    Effect("foreshortening", MECHANISM, "joint that slides at its other end", 1.0, 1.0,
+           change=_other_joint, fixed=True),
     Effect("joint-play", MECHANISM, "play taken up exponentially with travel", 5e-5, 5e-4,
            {P.PLAY: 1.0}, sets=CONTACT, settles=1.5, parameter="half_play_m"),
     Effect("free-play", MECHANISM, "clearance with impacts that the load crosses", 5e-5, 5e-4,

@@ -11,7 +11,7 @@ from tests.sealed.generator.catalogue import CATALOGUE
 from tests.sealed.generator.design import Campaign
 from tests.sealed.generator.effect import Effect
 from tests.sealed.generator.features import ORDERS, recorded
-from tests.sealed.generator.parameters import FloatArray, P
+from tests.sealed.generator.parameters import FloatArray
 from tests.sealed.generator.rig import Rig, Run
 from tests.sealed.generator.signatures import Projection, Situation
 
@@ -25,14 +25,7 @@ def applicable(effect: Effect, campaign: Campaign) -> bool:
     """Tell whether a campaign can have an effect."""
     rod = campaign.rig.rod_length_m is not None
     wet = all(run.medium == "water" for run in campaign.runs)
-    if campaign.rig.arrangement is not None and bends(effect):
-        return False
     return {"yoke": not rod, "rod": rod, "wet": wet}.get(effect.needs or "", True)
-
-
-def bends(effect: Effect) -> bool:
-    """Tell whether an effect needs a model that moves on its own, which small angles alone have."""
-    return P.GAUGE_STIFFNESS in effect.sets or effect.name in ("gauge-compliance", "foreshortening")
 
 
 @dataclass(frozen=True)

@@ -116,8 +116,7 @@ def believed(rig: Rig, rng: np.random.Generator) -> FloatArray:
 def _eccentricity(rig: Rig, frequency_hz: float, share: float) -> float:
     """Return an eccentricity that loads a strut by ``share`` of 60 N or so, within the rig's.
 
-    This reality reckons with small angles: what these leave out grows with the cube of the stroke,
-    and is to stay below the noise.
+    That turns the model by some hundredths of a radian; world C has rigs that turn it further.
     """
     inertia = 150.0 * (2.0 * math.pi * frequency_hz) ** 2
     stiffness = 7000.0 if rig.plane == "vertical" else 0.0

@@ -65,8 +65,10 @@ def _random(p: FloatArray, size: float) -> None:
     p[P.MISSED_SHAPE] = 1.0
 
 
-def _atan(p: FloatArray, size: float) -> None:
-    p[P.ARC] = 2.0 * float(size > 0.0)
+def _other_strut(p: FloatArray, size: float) -> None:
+    BY_NAME["foreshortening"].change(p, size)  # type: ignore[misc]
+    if size > 0.0:
+        p[P.FORE_PIVOT] = 1.0 - p[P.FORE_PIVOT]
 
 
 _RUBS = ((1.0, "hyperbolic tangent"), (2.0, "Bouc-Wen, n = 2"))
@@ -84,7 +86,7 @@ FORMS: tuple[Effect, ...] = (
         adds={P.ECC_ERROR_AFT: 1.0, P.ECC_ERROR_FORE: -0.3}),
     _of("strut-phase-error", "phase shifter off, its pin with it",
         adds={P.PHASE_ERROR: 1.0, P.ECC_ERROR_FORE: 0.005}),
-    _of("foreshortening", "attachment that slides on the model", change=_atan),
+    _of("foreshortening", "joint that slides at its other end and strut", change=_other_strut),
     _of("joint-play", "play taken up at once", more={P.PLAY_SHAPE: 1.0}),
     _of("free-play", "clearance between soft contacts", more={P.CONTACT_SOFT: 1.0}),
     _of("gauge-compliance", "one gauge softer than the other", change=_give),

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
+from tests.sealed.generator.attitude import follow, through
 from tests.sealed.generator.compiled import compiled
 from tests.sealed.generator.loads import carriage_speed, inertia
-from tests.sealed.generator.mechanics import crank, side
+from tests.sealed.generator.mechanics import crank
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
 from tests.sealed.generator.rates import put, rates
@@ -24,12 +25,7 @@ def start(p: FloatArray, theta: float, work: FloatArray) -> FloatArray:
     y[Y.MOTOR_SPEED] = y[Y.CRANK_SPEED] = p[P.OMEGA] * (1.0 + p[P.SPEED_ERROR])
     for strut in range(2):
         crank(p, strut, theta, work)
-        arm = side(p, strut) / (2.0 * p[P.LEVER])
-        place, speed = work[W.WAY_AFT + 3 * strut], work[W.WAY_AFT + 3 * strut + 1]
-        y[Y.Q0] += 0.5 * place
-        y[Y.Q1] += arm * place
-        y[Y.V0] += 0.5 * speed * y[Y.CRANK_SPEED]
-        y[Y.V1] += arm * speed * y[Y.CRANK_SPEED]
+    follow(p, y, work)
     y[Y.WAKE] = 0.5
     return y
 
@@ -78,10 +74,13 @@ def remember(
     kernels: FloatArray,
     past: FloatArray,
     interval: float,
+    work: FloatArray,
     out: FloatArray,
 ) -> None:
     """Keep the velocity through the water; write both memories' loads now and one sample ago."""
-    past[0, n] = y[Y.V0] + p[P.INCIDENCE] * carriage_speed(p, t) * y[Y.Q1]
+    put(p, y, work)
+    through(p, carriage_speed(p, t), y, work)
+    past[0, n] = work[W.THROUGH]
     past[1, n] = y[Y.V1]
     for row in range(2):
         out[row, 1] = out[row, 0]
@@ -147,7 +146,7 @@ def integrate(
             break
         t = (n - before) * interval
         if len(kernels[0]) > 1:
-            remember(p, t, n, y, kernels, past, interval, memory)
+            remember(p, t, n, y, kernels, past, interval, work, memory)
             held[H.MEMORY_0], held[H.MEMORY_1] = memory[0, 0], memory[1, 0]
         keep(p, t, y, held, work, k[0], out[n])
         for i in range(substeps):

@@ -6,7 +6,7 @@ them; translation comes first, rotation second.
 
 import math
 
-from tests.sealed.generator.compiled import WIDE, compiled
+from tests.sealed.generator.compiled import compiled
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import W
 
@@ -52,15 +52,13 @@ def inertia(p: FloatArray, work: FloatArray) -> None:
 
 
 @compiled
-def linear_water(
-    p: FloatArray, speed: float, q0: float, q1: float, w: float, r: float, work: FloatArray
-) -> None:
+def linear_water(p: FloatArray, q0: float, q1: float, r: float, work: FloatArray) -> None:
     """Add damping, restoring and the added mass's share of the turning velocity to ``work``."""
-    wet = 1.0 + p[P.DENSITY_KELVIN] * kelvin(p)
-    turn = wet * (1.0 + p[P.BLOCKAGE]) * p[P.INCIDENCE] * speed * r
+    wet, v = 1.0 + p[P.DENSITY_KELVIN] * kelvin(p), work[W.THROUGH]
+    turn = wet * (1.0 + p[P.BLOCKAGE]) * p[P.INCIDENCE] * work[W.AHEAD] * r
     thin = (1.0 + p[P.DAMPING_KELVIN] * kelvin(p)) * (1.0 + 2.0 * p[P.BLOCKAGE])
     for row in range(2):
-        damping = p[P.DAMPING_00 + 2 * row] * w + p[P.DAMPING_01 + 2 * row] * r
+        damping = p[P.DAMPING_00 + 2 * row] * v + p[P.DAMPING_01 + 2 * row] * r
         restoring = p[P.RESTORING_00 + 2 * row] * q0 + p[P.RESTORING_01 + 2 * row] * q1
         work[W.WATER_0 + row] += p[P.ADDED_00 + 2 * row] * turn + thin * damping + wet * restoring
 
@@ -68,13 +66,13 @@ def linear_water(
 @compiled
 def drags(p: FloatArray, w: float, r: float, work: FloatArray) -> None:
     """Add drag with a square and with a cube of the velocities."""
-    if WIDE and p[P.DRAG_POWER] > 0.0:
+    if p[P.DRAG_POWER] > 0.0:
         work[W.WATER_0] += p[P.QUADRATIC_0] * powered(w + p[P.DRIFT_SPEED], p[P.DRAG_POWER])
         work[W.WATER_1] += p[P.QUADRATIC_1] * powered(r, p[P.DRAG_POWER])
     elif p[P.QUADRATIC_0] != 0.0:
         work[W.WATER_0] += p[P.QUADRATIC_0] * smooth_square(w + p[P.DRIFT_SPEED])
         work[W.WATER_1] += p[P.QUADRATIC_1] * smooth_square(r)
-    if WIDE and p[P.CUBIC_POWER] > 0.0:
+    if p[P.CUBIC_POWER] > 0.0:
         work[W.WATER_0] += p[P.CUBIC_0] * powered(w, p[P.CUBIC_POWER])
         work[W.WATER_1] += p[P.CUBIC_1] * powered(r, p[P.CUBIC_POWER])
     else:
@@ -85,7 +83,7 @@ def drags(p: FloatArray, w: float, r: float, work: FloatArray) -> None:
 @compiled
 def curved_springs(p: FloatArray, speed: float, q0: float, work: FloatArray) -> None:
     """Add flare, and what free surface, bottom and trim do with the square of the speed."""
-    if WIDE and p[P.FLARE_SHAPE] > 0.0:
+    if p[P.FLARE_SHAPE] > 0.0:
         dipped = 0.5 * (q0 + math.sqrt(q0 * q0 + 4e-6))
         work[W.WATER_0] += (p[P.FLARE_2] + p[P.FLARE_3] * q0) * dipped * dipped
     elif p[P.FLARE_2] != 0.0 or p[P.FLARE_3] != 0.0:
@@ -94,7 +92,7 @@ def curved_springs(p: FloatArray, speed: float, q0: float, work: FloatArray) -> 
     near = 1.0 / (1.0 - 0.5 * p[P.SUCTION_RATE] * q0)
     gap = p[P.CLEARANCE] / (p[P.CLEARANCE] - q0)
     pulled = p[P.SUCTION] * (near * near - 1.0) + p[P.GROUND] * (gap * gap - 1.0)
-    if WIDE and p[P.GAP_SHAPE] > 0.0:
+    if p[P.GAP_SHAPE] > 0.0:
         pulled = p[P.SUCTION] * (near * near * near - 1.0) / 1.5
         pulled += p[P.GROUND] * (math.exp(2.0 * q0 / p[P.CLEARANCE]) - 1.0)
     sag = p[P.TRIM_LOAD] + p[P.TRIM_2] * q0 * q0
@@ -125,7 +123,7 @@ def held_by_carriage(p: FloatArray, x: float, v: float, bristle: float, wound: f
     cable = p[P.CABLE_STIFFNESS] * x / (1.0 + p[P.CABLE_SOFTENING] * x * x) + p[P.CABLE_PRELOAD]
     tare = p[P.TARE_VISCOUS] * v + p[P.TARE_QUADRATIC] * smooth_square(v)
     below = p[P.GUIDE_BELOW] * v / (1.0 + 0.2 * abs(v))
-    if WIDE and p[P.GUIDE_POWER] > 0.0:
+    if p[P.GUIDE_POWER] > 0.0:
         below = p[P.GUIDE_BELOW] * powered(v, p[P.GUIDE_POWER])
     return float(
         bristle + below + 0.5 * cable + 0.5 * p[P.CABLE_RUBBING] * wound + p[P.WATER] * tare

@@ -1,16 +1,14 @@
 """Motor, gear, crank, struts, gauges, frame and model as ordinary differential equations, compiled.
 
 The state ``y`` (:class:`Y`) is integrated; what rubs, creeps or remembers (:class:`H`) is held over
-a step and brought forward exactly at its end (:mod:`tests.sealed.generator.rubbing`). With gauges
-that give way the model moves on its own (``rates.py``); on rigid ones it goes where the struts go
-and the shaft feels its inertia, at small angles (``rigid.py``) or at any (``finite.py``).
+a step and brought forward exactly at its end (:mod:`tests.sealed.generator.rubbing`). How the
+struts hold the model is in :mod:`tests.sealed.generator.holding`.
 """
 
 import math
 
-from tests.sealed.generator.compiled import WIDE, compiled
+from tests.sealed.generator.compiled import compiled
 from tests.sealed.generator.loads import (
-    carriage_speed,
     curved_springs,
     disturbances,
     drags,
@@ -19,12 +17,6 @@ from tests.sealed.generator.loads import (
 )
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
-
-
-@compiled
-def side(p: FloatArray, strut: int) -> float:
-    """Return +1 for the strut that a positive rotation moves along d, -1 for the other."""
-    return float(p[P.AFT_SIGN] if strut == 0 else -p[P.AFT_SIGN])
 
 
 @compiled
@@ -59,33 +51,23 @@ def dead_zone(x: float, half: float) -> float:
 @compiled
 def clearance(p: FloatArray, x: float, half: float) -> float:
     """Return how far ``x`` is beyond a clearance; soft contacts take hold by and by."""
-    if WIDE and p[P.CONTACT_SOFT] > 0.0:
+    if p[P.CONTACT_SOFT] > 0.0:
         return float(x - half * math.tanh(x / half)) if half > 0.0 else x
     return dead_zone(x, half)
 
 
 @compiled
-def lift_of(p: FloatArray, rotation: float, strut: int) -> float:
-    """Return the strut point's displacement by a rotation of the model."""
-    turned = math.sin(rotation) if p[P.ARC] > 0.0 else rotation
-    if WIDE and p[P.ARC] > 1.5:
-        turned = math.tan(rotation)
-    return float(side(p, strut) * p[P.LEVER] * turned)
-
-
-@compiled
-def gauge_force(
-    p: FloatArray, y: FloatArray, held: FloatArray, strut: int, displaced: float, speed: float
-) -> float:
+def gauge_force(p: FloatArray, y: FloatArray, held: FloatArray, strut: int, w: FloatArray) -> float:
     """Return the force of a strut on the model, through joint and gauge."""
-    here = y[Y.Q0] + lift_of(p, y[Y.Q1], strut)
-    rate = y[Y.V0] + side(p, strut) * p[P.LEVER] * y[Y.V1]
-    gap = displaced + y[Y.FRAME] - held[H.PLAY_AFT + strut] - here
+    displaced, slope = w[W.WAY_AFT + 3 * strut], w[W.WAY_AFT + 3 * strut + 1]
+    gap = displaced + y[Y.FRAME] - held[H.PLAY_AFT + strut] - w[W.AT_AFT + strut]
     stretch = clearance(p, gap, p[P.KNOCK])
     if stretch == 0.0 and p[P.KNOCK] > 0.0:
         return 0.0
-    damping = p[P.GAUGE_DAMPING] * (speed + y[Y.FRAME_SPEED] - rate)
-    if WIDE and p[P.GAUGE_UNLIKE] != 0.0:
+    damping = p[P.GAUGE_DAMPING] * (
+        slope * y[Y.CRANK_SPEED] + y[Y.FRAME_SPEED] - w[W.RATE_AFT + strut]
+    )
+    if p[P.GAUGE_UNLIKE] != 0.0:
         stretch *= 1.0 - p[P.GAUGE_UNLIKE] if strut == 0 else 1.0 + p[P.GAUGE_UNLIKE]
     return float(p[P.GAUGE_STIFFNESS] * stretch + damping)
 
@@ -98,12 +80,12 @@ def meshed(p: FloatArray, y: FloatArray, held: FloatArray) -> float:
         turn = p[P.TEETH_ORDER] * y[Y.CRANK] + p[P.TEETH_PHASE]
         uneven = math.sin(turn) + 0.1 * math.sin(2.0 * turn)
         slope = math.cos(turn) + 0.2 * math.cos(2.0 * turn)
-        if WIDE and p[P.TEETH_SHAPE] > 0.0:
+        if p[P.TEETH_SHAPE] > 0.0:
             uneven = math.sin(turn) - math.sin(3.0 * turn) / 9.0 + math.sin(5.0 * turn) / 25.0
             slope = math.cos(turn) - math.cos(3.0 * turn) / 3.0 + math.cos(5.0 * turn) / 5.0
         twist += p[P.TEETH] / p[P.TEETH_ORDER] * uneven
         rate += p[P.TEETH] * y[Y.CRANK_SPEED] * slope
-    for order in range(1, 3 if WIDE else 1):
+    for order in range(1, 3):
         at = P.RIPPLE_1S + 2 * (order - 1)
         if p[at] != 0.0 or p[at + 1] != 0.0:
             sine, cosine = math.sin(order * y[Y.CRANK]), math.cos(order * y[Y.CRANK])
@@ -127,12 +109,12 @@ def drive_rates(
     mesh = meshed(p, y, held)
     slow = p[P.OMEGA] * (1.0 + p[P.SPEED_ERROR]) - y[Y.MOTOR_SPEED]
     torque = p[P.SERVO_P] * slow + p[P.SERVO_I] * y[Y.SERVO]
-    if WIDE and p[P.SERVO_SOFT] > 0.0:
+    if p[P.SERVO_SOFT] > 0.0:
         torque = p[P.SERVO_P] * p[P.SERVO_SOFT] * math.tanh(slow / p[P.SERVO_SOFT])
     if p[P.COGGING] != 0.0:
         turn = p[P.COGGING_ORDER] * y[Y.MOTOR] + p[P.COGGING_PHASE]
         torque += p[P.COGGING] * math.cos(turn)
-        if WIDE and p[P.COGGING_SHAPE] > 0.0:
+        if p[P.COGGING_SHAPE] > 0.0:
             torque += p[P.COGGING] * (0.4 * math.cos(2.0 * turn) + 0.2 * math.sin(3.0 * turn))
     dy[Y.MOTOR] = y[Y.MOTOR_SPEED]
     dy[Y.MOTOR_SPEED] = (torque - mesh) / p[P.MOTOR_INERTIA]
@@ -175,25 +157,27 @@ def wake_rates(p: FloatArray, y: FloatArray, speed: float, dy: FloatArray) -> No
 
 
 @compiled
-def water_takes(p: FloatArray, t: float, y: FloatArray, held: FloatArray, w: FloatArray) -> None:
-    """Write the loads of water and weight on the model, but for inertia."""
+def water_takes(
+    p: FloatArray, t: float, speed: float, y: FloatArray, held: FloatArray, w: FloatArray
+) -> None:
+    """Write the loads of water and weight on the model, but for inertia.
+
+    ``speed`` is that at which the water passes.
+    """
     w[W.WATER_0] = -p[P.PRELOAD]
-    w[W.WATER_1] = p[P.MASS] * p[P.GRAVITY] * p[P.CG_Z] * y[Y.Q1]
+    w[W.WATER_1] = p[P.MASS] * p[P.GRAVITY] * p[P.CG_Z] * math.sin(y[Y.Q1])
     if p[P.WATER] > 0.0:
-        speed = carriage_speed(p, t) * (1.0 + 1.5 * p[P.BLOCKAGE])
-        through = y[Y.V0] + p[P.INCIDENCE] * speed * y[Y.Q1]
-        linear_water(p, speed, y[Y.Q0], y[Y.Q1], through, y[Y.V1], w)
-        drags(p, through, y[Y.V1], w)
+        linear_water(p, y[Y.Q0], y[Y.Q1], y[Y.V1], w)
+        drags(p, w[W.THROUGH], y[Y.V1], w)
         curved_springs(p, speed, y[Y.Q0], w)
         w[W.WATER_0] += disturbances(p, t, speed, y[Y.WAKE], held[H.AIRED]) + held[H.MEMORY_0]
         w[W.WATER_1] += held[H.MEMORY_1]
 
 
 @compiled
-def kept_at(p: FloatArray, y: FloatArray, held: FloatArray, strut: int) -> float:
+def kept_at(p: FloatArray, held: FloatArray, strut: int, w: FloatArray) -> float:
     """Return what the parts between carriage and model take from one strut."""
-    arm = side(p, strut) * p[P.LEVER]
-    x, v = y[Y.Q0] + arm * y[Y.Q1], y[Y.V0] + arm * y[Y.V1]
+    x, v = w[W.AT_AFT + strut], w[W.RATE_AFT + strut]
     return held_by_carriage(p, x, v, held[H.BRISTLE_AFT + strut], held[H.WOUND_AFT + strut])
 
 

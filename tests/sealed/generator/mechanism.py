@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tests.sealed.generator.arranged import drifted
-from tests.sealed.generator.compiled import wide
 from tests.sealed.generator.integrate import integrate
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Rig, Run
@@ -47,8 +46,7 @@ def set_run(p: FloatArray, run: Run) -> FloatArray:
     if q[P.KELVIN_SHAPE] > 0.0:
         q[P.HOUR] = 0.5 * (1.0 - math.exp(-2.0 * run.hour))
     varied(q, run)
-    if q[P.EXACT]:
-        drifted(q, run.drift_rad, run.drift_by)
+    drifted(q, run.drift_rad, run.drift_by)
     if run.kind == "check-weight":
         q[P.CHECK_AFT if run.strut == "aft" else P.CHECK_FORE] = run.weight_n
     if run.kind == "injection":
@@ -92,12 +90,6 @@ def _is_loose(p: FloatArray) -> bool:
     return bool(np.any(gives > 0.0))
 
 
-def needs_more(p: FloatArray) -> bool:
-    """Tell whether a reality has what only the wide program knows."""
-    angles_and_ripple, forms = p[P.EXACT : P.KERNEL_0], p[P.TEETH_SHAPE : P.ECHO_SHAPE]
-    return bool(angles_and_ripple.any() or forms.any() or p[P.ARC] > 1.5)
-
-
 def _gear_step_s(p: FloatArray) -> float:
     return float(GEAR_STEP_RAD * math.sqrt(p[P.CRANK_INERTIA] / p[P.GEAR_STIFFNESS]))
 
@@ -118,8 +110,7 @@ def happen(p: FloatArray, run: Run, rig: Rig, *, settling: float = SETTLING_PERI
     substeps = math.ceil(1.0 / (rig.sample_rate_hz * step))
     interval = 1.0 / rig.sample_rate_hz
     kernels = retardation(q, interval)
-    program = wide(integrate) if needs_more(q) else integrate
-    out, edges = program(q, kernels, interval, substeps, before, samples)
+    out, edges = integrate(q, kernels, interval, substeps, before, samples)
     return Truth(out, edges, before)
 
 

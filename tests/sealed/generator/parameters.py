@@ -45,7 +45,6 @@ class P(IntEnum):
     ECC_ERROR_AFT = auto()
     ECC_ERROR_FORE = auto()
     PHASE_ERROR = auto()
-    ARC = auto()  # 1: struts stay parallel, the model's angle is an arc sine
     # Drive, all seen from the crank's shaft.
     MOTOR_INERTIA = auto()
     CRANK_INERTIA = auto()
@@ -183,8 +182,7 @@ class P(IntEnum):
     PULSE_DELAY = auto()
     JITTER = auto()
     MISSED = auto()  # one pulse in so many; 0: none
-    # Angles of any size (finite.py); without EXACT they are small.
-    EXACT = auto()
+    # How the rig is arranged.
     SLIDES_ON_RIG = auto()  # 0: one attachment slides on the model; 1: one strut on the rig
     FORE_PIVOT = auto()
     RIG_GAUGES = auto()

@@ -53,7 +53,8 @@ class Rig:
     Attributes
     ----------
     arrangement
-        Joint, pivot and gauges of a rig with angles of any size; ``None`` for small ones.
+        Joint, pivot and gauges of a rig that goes to large angles; ``None`` for small ones, in the
+        arrangement that a campaign file has by itself.
     still_reads_zero
         Whether the carriage's channel is exactly 0 where it stands.
     noise_stated

@@ -6,8 +6,8 @@ the distance travelled: exact, whatever the step. Bouc-Wen's loop (n = 1) is of 
 
 import math
 
-from tests.sealed.generator.compiled import WIDE, compiled
-from tests.sealed.generator.mechanics import meshed, side
+from tests.sealed.generator.compiled import compiled
+from tests.sealed.generator.mechanics import meshed
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.places import H, W, Y
 
@@ -44,9 +44,9 @@ def bristle_force(
     p: FloatArray, bristle: float, level: float, v: float, dt: float, distance: float
 ) -> float:
     """Return a bristle's force after ``dt``, in the form that rubs here."""
-    if WIDE and p[P.BRISTLE_SHAPE] == 1.0:
+    if p[P.BRISTLE_SHAPE] == 1.0:
         return level * math.tanh(v / TANH_M_S)
-    if WIDE and p[P.BRISTLE_SHAPE] == 2.0:
+    if p[P.BRISTLE_SHAPE] == 2.0:
         return wound_up(bristle, level, v, dt, distance)
     return settled(bristle, level, v, dt, distance)
 
@@ -56,7 +56,7 @@ def friction_level(p: FloatArray, force: float, v: float) -> float:
     """Return the steady friction below the dynamometer at velocity ``v``."""
     level = p[P.COULOMB] + math.copysign(0.5 * p[P.UNEVEN], v)
     if p[P.STRIBECK] != 0.0:
-        if WIDE and p[P.BRISTLE_SHAPE] > 0.0:
+        if p[P.BRISTLE_SHAPE] > 0.0:
             level += p[P.STRIBECK] / (1.0 + (v / p[P.STRIBECK_SPEED]) ** 2)
         else:
             level += p[P.STRIBECK] * math.exp(-abs(v) / p[P.STRIBECK_SPEED])
@@ -71,10 +71,10 @@ def rubs(p: FloatArray) -> bool:
 
 
 @compiled
-def rub_below(p: FloatArray, y: FloatArray, held: FloatArray, dt: float) -> None:
+def rub_below(p: FloatArray, held: FloatArray, dt: float, work: FloatArray) -> None:
     """Bring friction and cable below the dynamometers forward by ``dt``."""
     for strut in range(2):
-        v = y[Y.V0] + side(p, strut) * p[P.LEVER] * y[Y.V1]
+        v = work[W.RATE_AFT + strut]
         level = friction_level(p, held[H.FORCE_AFT + strut], v)
         at = H.BRISTLE_AFT + strut
         held[at] = bristle_force(p, held[at], level, v, dt, BRISTLE_M)
@@ -91,7 +91,7 @@ def rub_above(p: FloatArray, y: FloatArray, held: FloatArray, dt: float, work: F
         held[at] = settled(held[at], p[P.GUIDE_COULOMB], v, dt, BRISTLE_M)
         if p[P.PLAY] > 0.0:
             at = H.PLAY_AFT + strut
-            if WIDE and p[P.PLAY_SHAPE] > 0.0:
+            if p[P.PLAY_SHAPE] > 0.0:
                 held[at] = min(max(held[at] + v * dt, -p[P.PLAY]), p[P.PLAY])
             else:
                 held[at] = settled(held[at], p[P.PLAY], v, dt, p[P.PLAY])
@@ -101,7 +101,7 @@ def rub_above(p: FloatArray, y: FloatArray, held: FloatArray, dt: float, work: F
 def rub(p: FloatArray, y: FloatArray, held: FloatArray, dt: float, work: FloatArray) -> None:
     """Bring everything that rubs forward by ``dt``."""
     if rubs(p):
-        rub_below(p, y, held, dt)
+        rub_below(p, held, dt, work)
     if p[P.GUIDE_COULOMB] > 0.0 or p[P.PLAY] > 0.0:
         rub_above(p, y, held, dt, work)
 
