@@ -19,7 +19,7 @@ from analysis.inertia.series import Series, series_from_recording
 from analysis.inertia.swing import model_gyradius
 from analysis.inertia.swing_static import LeverSeries, fit_static
 from analysis.readers.dataset import from_dataset
-from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.pendulum.benches import KEELBOAT_2014, SWING_2021
@@ -144,11 +144,11 @@ def bifilar_campaign(generator: Generator) -> Campaign:
     runs = [bifilar_run(hung, **release(generator)) for _ in range(RUNS)]
     inputs = {
         "period_s": from_runs(runs).estimate,
-        "half_spacing_m": Estimate(HULL.half_spacing_m, TAPE_M, "m"),
-        "line_m": Estimate(HULL.line_length_m, LINE_M, "m"),
+        "half_spacing_m": Estimate.of(HULL.half_spacing_m, TAPE_M, "m"),
+        "line_m": Estimate.of(HULL.line_length_m, LINE_M, "m"),
         "gravity_m_s2": G,
     }
-    found = linear_budget("k_yaw", yaw_gyradius, inputs, unit="m").result
+    found = derived("k_yaw", yaw_gyradius, "m", **inputs)
     ideal = HULL.yaw_gyradius_m * math.sqrt(
         (TAPE_M / HULL.half_spacing_m) ** 2
         + (0.5 * LINE_M / HULL.line_length_m) ** 2
@@ -173,7 +173,7 @@ def pitch_campaign(generator: Generator) -> PendulumResult:
         runs.append(analyse_record(series_of(record, "surge"), modes=2))
     slow, fast = (from_runs(runs, mode).estimate for mode in (0, 1))
     own = sway_period(HULL.line_length_m, STANDARD_GRAVITY_M_S2)
-    return pitch_from_periods(slow, fast, Estimate(own, 1e-4 * own, "s"), G)
+    return pitch_from_periods(slow, fast, Estimate.of(own, 1e-4 * own, "s"), G)
 
 
 def swing_campaign(generator: Generator) -> Campaign:
@@ -184,11 +184,8 @@ def swing_campaign(generator: Generator) -> Campaign:
         states[f"{key}_period_s"] = swing_period(model, generator)
         states[f"{key}_moment_kg_m"] = swing_moment(model, bow, generator)
     weighed = MODEL.mass_kg + SCALE_KG * generator.standard_normal()
-    inputs = {**states, "model_mass_kg": Estimate(weighed, SCALE_KG, "kg"), "gravity_m_s2": G}
-    tare, total = (states[f"{key}_moment_kg_m"].relative for key in ("tare", "total"))
-    # one inclinometer read both
-    tied = {("tare_moment_kg_m", "total_moment_kg_m"): tilt_relative() ** 2 / (tare * total)}
-    found = linear_budget("k_model", model_gyradius, inputs, unit="m", correlations=tied).result
+    inputs = {**states, "model_mass_kg": Estimate.of(weighed, SCALE_KG, "kg"), "gravity_m_s2": G}
+    found = derived("k_model", model_gyradius, "m", **inputs)
     known = {
         "period_s": RELEASE / math.sqrt(RUNS),
         "moment_kg_m": known_moment(),
@@ -196,17 +193,17 @@ def swing_campaign(generator: Generator) -> Campaign:
         "m_s2": 0.0,
     }
     best = {
-        name: Estimate(
+        name: Estimate.of(
             one.value,
             one.value * next(u for end, u in known.items() if name.endswith(end)),
             one.unit,
         )
         for name, one in inputs.items()
     }
-    tied = {("tare_moment_kg_m", "total_moment_kg_m"): (tilt_relative() / known_moment()) ** 2}
-    ideal = linear_budget("k_model", model_gyradius, best, unit="m", correlations=tied)
+    best |= {name: bowed(one) for name, one in best.items() if name.endswith("moment_kg_m")}
+    ideal = derived("k_model", model_gyradius, "m", **best)
     true = math.sqrt(MODEL.inertia_kg_m2 / MODEL.mass_kg)
-    return Campaign(found, true, ideal.result.uncertainty)
+    return Campaign(found, true, ideal.uncertainty)
 
 
 def swing_period(model: RigidPart | None, generator: Generator) -> Estimate:
@@ -231,11 +228,16 @@ def tilt_relative() -> float:
     return abs(2.0 * BOW * slope) / math.sqrt(3.0)
 
 
+def bowed(moment: Estimate) -> Estimate:
+    """Return a moment with the bow of the one inclinometer that reads all of them."""
+    return moment.widened(moment.value * tilt_relative(), label="inclinometer")
+
+
 def known_moment() -> float:
-    """Return the relative standard uncertainty of a moment, every source of it known."""
+    """Return the relative standard uncertainty of a moment beside the inclinometer's bow."""
     x = np.tan(TILTS_RAD)
     reading = 2.0 * ZERO * INCLINOMETER_RANGE_RAD / math.sqrt(float(((x - x.mean()) ** 2).sum()))
-    return math.hypot(LEVER_RELATIVE, tilt_relative(), reading)
+    return math.hypot(LEVER_RELATIVE, reading)
 
 
 def swing_moment(model: RigidPart | None, bow: float, generator: Generator) -> Estimate:
@@ -265,6 +267,4 @@ def swing_moment(model: RigidPart | None, bow: float, generator: Generator) -> E
     )
     tilts = [float(series_of(one, "inclinometer_angle").values.mean()) for one in records]
     own = fit_static([LeverSeries("C", lever_m, weights_kg, np.array(tilts))]).pooled.moment
-    spread = math.hypot(own.uncertainty, own.value * math.hypot(LEVER_RELATIVE, tilt_relative()))
-    freedom = own.degrees_of_freedom * (spread / own.uncertainty) ** 4
-    return replace(own, uncertainty=spread, degrees_of_freedom=freedom)
+    return bowed(own.widened(own.value * LEVER_RELATIVE))

@@ -111,7 +111,7 @@ def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
     likeliest = max(laws, key=lambda law: law.weight)
     change = likeliest.at(local.amplitude.max(keepdims=True))[0] / likeliest.period_s - 1.0
     freedom = float(min(freedom for _, _, freedom in fits))
-    return ZeroAmplitude(Estimate(mean, math.sqrt(variance), "s", freedom), laws, float(change))
+    return ZeroAmplitude(Estimate.of(mean, math.sqrt(variance), "s", freedom), laws, float(change))
 
 
 def _penalty(size: int, freedom: int) -> float:

@@ -62,7 +62,7 @@ class BeatCount:
                 "beat of more than one oscillation is needed: watch longer"
             )
         spread = self.counting_error / self.beats / math.sqrt(3.0)
-        return Estimate(self.oscillations / self.beats, spread)
+        return Estimate.of(self.oscillations / self.beats, spread)
 
 
 def count_beats(time_s: FloatArray, values: FloatArray) -> BeatCount:

@@ -7,7 +7,6 @@ import math
 
 from analysis.inertia.beats import BeatCount, ratio_from_beats
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.uncertainty.budget import Correlations
 from analysis.uncertainty.estimate import Estimate, require_positive
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.flags import Flag, Severity
@@ -69,16 +68,9 @@ def yaw_from_ratio(
     sway: Estimate,
     half_spacing: Estimate,
     *,
-    correlations: Correlations | None = None,
     seed: int = 0,
 ) -> Assessment:
     """Return the yaw gyradius from the ratio of the periods.
-
-    Parameters
-    ----------
-    correlations
-        By pairs of ``yaw_period_s``, ``sway_period_s``, ``half_spacing_m``: both periods of one
-        record are correlated.
 
     Raises
     ------
@@ -87,7 +79,7 @@ def yaw_from_ratio(
     """
     inputs = {"yaw_period_s": yaw, "sway_period_s": sway, "half_spacing_m": half_spacing}
     require_positive("bifilar yaw", **inputs)
-    return assess("k_yaw", ratio_gyradius, inputs, unit="m", correlations=correlations, seed=seed)
+    return assess("k_yaw", ratio_gyradius, inputs, unit="m", seed=seed)
 
 
 def yaw_from_beats(

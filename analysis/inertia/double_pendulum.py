@@ -13,7 +13,6 @@ from enum import StrEnum
 import numpy as np
 
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.uncertainty.budget import Correlations
 from analysis.uncertainty.estimate import Estimate, require_positive
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
@@ -71,7 +70,6 @@ def pitch_from_periods(
     sway: Estimate,
     gravity: Estimate,
     *,
-    correlations: Correlations | None = None,
     seed: int = 0,
 ) -> PendulumResult:
     """Return gyradius and depth with budgets; roll where the suspension is fore and aft.
@@ -97,10 +95,8 @@ def pitch_from_periods(
             "(yaw for sway?)"
         )
     return PendulumResult(
-        assess("k", gyradius_from_periods, inputs, unit="m", correlations=correlations, seed=seed),
-        assess(
-            "l_2", depth_from_periods, inputs, unit="m", correlations=correlations, seed=seed + 1
-        ),
+        assess("k", gyradius_from_periods, inputs, unit="m", seed=seed),
+        assess("l_2", depth_from_periods, inputs, unit="m", seed=seed + 1),
     )
 
 

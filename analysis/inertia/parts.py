@@ -1,21 +1,19 @@
 """Bodies put together and taken apart by the parallel axis theorem, covariances and all."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
 from analysis.inertia.elementary_functions import jacobian
-from analysis.uncertainty.budget import Correlations
-from analysis.uncertainty.estimate import Estimate, require_positive
+from analysis.uncertainty.estimate import Estimate, joint, require_positive
+from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 
 NAMES = ("mass_kg", "x_m", "y_m", "z_m", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
 _SIZE = len(NAMES)
-# What a part is made of, and what is read from one again.
+# What a part is made of.
 MADE_OF = ("mass_kg", "x_m", "y_m", "z_m", "k_roll_m", "k_pitch_m", "k_yaw_m")
 
 
@@ -27,17 +25,19 @@ class BodyPart:
     ----------
     name
         Unique among the parts put together.
-    parameters
+    uncertain
         Mass, centre of gravity (x forward, y to starboard, z down, from a common datum) and inertia
         about the own centre of gravity: Ixx, Iyy, Izz and the products ``Ixy = sum m x y`` ...,
         shape ``(10,)``, kg, m, kg m2.
-    covariance
-        Of these, shape ``(10, 10)``.
     """
 
     name: str
-    parameters: FloatArray
-    covariance: FloatArray
+    uncertain: UncertainValues
+
+    @property
+    def parameters(self) -> FloatArray:
+        """The values alone, shape ``(10,)``."""
+        return self.uncertain.values
 
     @property
     def mass(self) -> Estimate:
@@ -59,38 +59,17 @@ class BodyPart:
     @property
     def gyradii(self) -> tuple[Estimate, Estimate, Estimate]:
         """Roll, pitch and yaw gyradius, m; the covariance with the mass is in them."""
-        spread = np.sqrt(np.maximum(np.diag(self._measured_covariance()), 0.0))
-        values = np.sqrt(np.maximum(self.parameters[4:7], 0.0) / self.parameters[0])
-        roll, pitch, yaw = (
-            Estimate(float(value), float(u), "m")
-            for value, u in zip(values, spread[4:], strict=True)
-        )
+        mass, slope = float(self.parameters[0]), np.zeros((3, _SIZE))
+        values = np.sqrt(np.maximum(self.parameters[4:7], 0.0) / mass)
+        for k, value in enumerate(values):
+            if value > 0.0:
+                slope[k, [0, 4 + k]] = -0.5 * value / mass, 0.5 / (mass * value)
+        own = self.uncertain.carried(values, slope)
+        roll, pitch, yaw = (Estimate(own.taken([k]), "m") for k in range(3))
         return roll, pitch, yaw
 
-    def correlations(self) -> dict[tuple[str, str], float]:
-        """Return the correlations between mass, place and gyradii, by pairs of :data:`MADE_OF`."""
-        covariance = self._measured_covariance()
-        spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        return {
-            (MADE_OF[i], MADE_OF[k]): float(covariance[i, k] / (spread[i] * spread[k]))
-            for i in range(len(MADE_OF))
-            for k in range(i + 1, len(MADE_OF))
-            if spread[i] * spread[k] > 0.0 and covariance[i, k] != 0.0
-        }
-
-    def _measured_covariance(self) -> FloatArray:
-        """Return the covariance of mass, place and gyradii, shape ``(7, 7)``."""
-        mass, slope = float(self.parameters[0]), np.zeros((len(MADE_OF), _SIZE))
-        slope[:4, :4] = np.eye(4)
-        for k in (4, 5, 6):
-            gyradius = math.sqrt(max(float(self.parameters[k]), 0.0) / mass)
-            if gyradius > 0.0:
-                slope[k, [0, k]] = -0.5 * gyradius / mass, 0.5 / (mass * gyradius)
-        return np.asarray(slope @ self.covariance @ slope.T)
-
     def _estimate(self, k: int, unit: str) -> Estimate:
-        spread = float(np.sqrt(max(self.covariance[k, k], 0.0)))
-        return Estimate(float(self.parameters[k]), spread, unit)
+        return Estimate(self.uncertain.taken([k]), unit)
 
 
 def part(
@@ -99,8 +78,6 @@ def part(
     position: tuple[Estimate, Estimate, Estimate],
     gyradii: tuple[Estimate, Estimate, Estimate],
     products_kg_m2: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    *,
-    correlations: Correlations = MappingProxyType({}),
 ) -> BodyPart:
     """Make a part from mass, centre of gravity and gyradii.
 
@@ -110,8 +87,6 @@ def part(
         Roll, pitch, yaw; 0 for a point mass. Their products with the mass tie inertia to mass.
     products_kg_m2
         ``Ixy``, ``Ixz``, ``Iyz``, without uncertainty.
-    correlations
-        Between mass, place and gyradii, by pairs of :data:`MADE_OF`.
 
     Raises
     ------
@@ -121,26 +96,18 @@ def part(
     require_positive(f"part {name!r}", mass_kg=mass.value)
     if any(gyradius.value < 0.0 for gyradius in gyradii):
         raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
-    inputs = (mass, *position, *gyradii)
-    at = np.array([estimate.value for estimate in inputs])
+    inputs = joint((mass, *position, *gyradii))
 
     def turn(given: FloatArray) -> FloatArray:
         inertia = given[0] * given[4:7] ** 2
         return np.concatenate([given[:4], inertia, np.array(products_kg_m2)])
 
-    slope = jacobian(turn, at)
-    spread = np.array([estimate.uncertainty for estimate in inputs])
-    tied = np.eye(len(MADE_OF))
-    for (first, second), r in correlations.items():
-        i, k = MADE_OF.index(first), MADE_OF.index(second)
-        tied[i, k] = tied[k, i] = r
-    return BodyPart(name, np.asarray(turn(at)), slope @ (tied * np.outer(spread, spread)) @ slope.T)
+    at = inputs.values
+    return BodyPart(name, inputs.carried(np.asarray(turn(at)), jacobian(turn, at)))
 
 
 def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart] = ()) -> BodyPart:
     """Put parts together and take others away.
-
-    What is taken away is taken to be independent of the whole that it was measured in.
 
     Parameters
     ----------
@@ -158,22 +125,18 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
     if not parts:
         raise ConfigurationError(f"{name!r}: no parts to combine; at least one is needed")
     signs = np.array([1.0] * len(parts) + [-1.0] * len(without))
-    at = np.concatenate([body_part.parameters for body_part in everything])
+    whole = stacked([body_part.uncertain for body_part in everything])
+    at = whole.values
     left = float(signs @ at[::_SIZE])
     if left <= 0.0:
         raise DataError(
             f"{name!r}: {left:.4g} kg would be left; the parts taken away weigh more than the whole"
         )
 
-    def put(stacked: FloatArray) -> FloatArray:
-        return combined(stacked.reshape(-1, _SIZE), signs)
+    def put(rows: FloatArray) -> FloatArray:
+        return combined(rows.reshape(-1, _SIZE), signs)
 
-    slope = jacobian(put, at)
-    covariance = np.zeros((at.size, at.size))
-    for k, body_part in enumerate(everything):
-        block = slice(k * _SIZE, (k + 1) * _SIZE)
-        covariance[block, block] = body_part.covariance
-    return BodyPart(name, np.asarray(put(at)), slope @ covariance @ slope.T)
+    return BodyPart(name, whole.carried(np.asarray(put(at)), jacobian(put, at)))
 
 
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
@@ -210,10 +173,6 @@ def inertia_about(body: BodyPart, point: tuple[float, float, float]) -> tuple[Es
         place = (given[1:4] - np.array(point)).reshape(1, 3)
         return np.asarray(given[4:7] + given[0] * _shifted(place)[0, :3])
 
-    slope = jacobian(moved, body.parameters)
-    covariance = slope @ body.covariance @ slope.T
-    values = moved(body.parameters)
-    return tuple(
-        Estimate(float(values[k]), float(np.sqrt(max(covariance[k, k], 0.0))), "kg m2")
-        for k in range(3)
-    )
+    at = body.parameters
+    about = body.uncertain.carried(moved(at), jacobian(moved, at))
+    return tuple(Estimate(about.taken([k]), "kg m2") for k in range(3))

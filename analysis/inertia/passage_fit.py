@@ -76,7 +76,7 @@ def fit_passages(passages: Passages) -> PassageFit:
     best = int(np.argmax(weights))
     span = passages.number[-1] - passages.number[0]
     return PassageFit(
-        period=Estimate(mean, float(np.sqrt(variance)), "s", float(_BLOCKS - 2)),
+        period=Estimate.of(mean, float(np.sqrt(variance)), "s", float(_BLOCKS - 2)),
         mean_period_s=float(2.0 * (passages.time_s[-1] - passages.time_s[0]) / span),
         change=rows[best][3],
         asymmetry_s=rows[best][4],

@@ -9,12 +9,12 @@ which three axes determine and more axes check (eqs 3, 4 and 25 for any number).
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.uncertainty.estimate import Estimate
-from hardware.description.arrays import FloatArray
+from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import DataError
 
 
@@ -24,63 +24,58 @@ class PlaneInertia:
 
     Attributes
     ----------
-    values
+    uncertain
         Ixx, Izz, Ixz (``sum m x z``), kg m2, shape ``(3,)``.
-    covariance
-        Of these, shape ``(3, 3)``.
     chi_squared, degrees_of_freedom
         How well more than three axes agree; 0 over 0 for three.
     """
 
-    values: FloatArray
-    covariance: FloatArray
+    uncertain: UncertainValues
     chi_squared: float
     degrees_of_freedom: int
 
     def estimate(self, index: int) -> Estimate:
         """Return Ixx (0), Izz (1) or Ixz (2)."""
-        spread = float(np.sqrt(self.covariance[index, index]))
-        return Estimate(float(self.values[index]), spread, "kg m2")
-
-    @property
-    def principal_angle_rad(self) -> float:
-        """Angle ``psi`` of the principal x axis, from body x towards body z."""
-        return self.principal_angle.value
+        return Estimate(self.uncertain.taken([index]), "kg m2")
 
     @property
     def principal_angle(self) -> Estimate:
-        """The same with its standard uncertainty."""
-        xx, zz, xz = self.values
-        slope = np.array([xz, -xz, zz - xx]) / ((zz - xx) ** 2 + 4.0 * xz**2)
-        spread = float(np.sqrt(slope @ self.covariance @ slope))
-        return Estimate(float(0.5 * np.arctan(2.0 * xz / (zz - xx))), spread, "rad")
+        """Angle ``psi`` of the principal x axis, from body x towards body z, rad."""
+        xx, zz, xz = self.uncertain.values
+        slope = np.array([[xz, -xz, zz - xx]]) / ((zz - xx) ** 2 + 4.0 * xz**2)
+        angle = np.array([0.5 * np.arctan(2.0 * xz / (zz - xx))])
+        return Estimate(self.uncertain.carried(angle, slope), "rad")
+
+    def scaled(self, factor: Estimate) -> "PlaneInertia":
+        """Return the inertia times a factor that all axes share."""
+        values = self.uncertain.values
+        slope = np.hstack([factor.value * np.eye(3), values[:, None]])
+        whole = stacked([self.uncertain, factor.uncertain])
+        return replace(self, uncertain=whole.carried(factor.value * values, slope))
 
 
-def plane_inertia(
-    about: Sequence[Estimate], angle_rad: Sequence[float], *, angle_uncertainty_rad: float = 0.0
-) -> PlaneInertia:
+def plane_inertia(about: Sequence[Estimate], angles: Sequence[Estimate]) -> PlaneInertia:
     """Fit the plane's inertia to that about several axes in it.
 
     Parameters
     ----------
     about
         Inertia about each axis through the centre of gravity, kg m2.
-    angle_rad
-        Of each axis, from body z towards body x; 0 is yaw, a quarter turn roll.
-    angle_uncertainty_rad
-        Standard uncertainty of each angle, independent of the others.
+    angles
+        Of each axis, from body z towards body x, rad; 0 is yaw, a quarter turn roll.
 
     Raises
     ------
     DataError
         For fewer than three axes, or axes too near to each other.
     """
-    if len(about) < 3 or len(about) != len(angle_rad):
+    if len(about) < 3 or len(about) != len(angles):
         raise DataError(
-            f"plane inertia: {len(about)} inertias about {len(angle_rad)} axes; three or more of "
+            f"plane inertia: {len(about)} inertias about {len(angles)} axes; three or more of "
             "each are needed"
         )
-    phi = np.asarray(angle_rad, dtype=np.float64)
+    whole = stacked([joint(about), joint(angles)])
+    measured, phi = np.split(whole.values, 2)
     s, c = np.sin(phi), np.cos(phi)
     matrix = np.column_stack([s * s, c * c, -2.0 * s * c])
     if np.linalg.cond(matrix) > 1e3:
@@ -89,15 +84,13 @@ def plane_inertia(
             f"plane inertia: axes at {degrees} deg are too near to each other; spread them over "
             "the half turn"
         )
-    measured = np.array([estimate.value for estimate in about])
     rough = np.linalg.lstsq(matrix, measured, rcond=None)[0]
     slope = 2.0 * s * c * (rough[0] - rough[1]) - 2.0 * rough[2] * (c * c - s * s)
-    spread = np.hypot([estimate.uncertainty for estimate in about], slope * angle_uncertainty_rad)
-    weight = 1.0 / np.maximum(spread, 1e-12 * np.abs(measured))
-    covariance = np.linalg.inv((matrix * weight[:, None] ** 2).T @ matrix)
-    values = covariance @ (matrix.T @ (weight**2 * measured))
-    left = weight * (measured - matrix @ values)
-    return PlaneInertia(values, covariance, float(left @ left), phi.size - 3)
+    seen = whole.carried(measured, np.hstack([np.eye(phi.size), -np.diag(slope)]))
+    weight = 1.0 / np.maximum(seen.standard_uncertainty, 1e-12 * np.abs(measured))
+    fitted = seen.mapped(np.linalg.pinv(matrix * weight[:, None]) * weight)
+    left = weight * (measured - matrix @ fitted.values)
+    return PlaneInertia(fitted, float(left @ left), phi.size - 3)
 
 
 def inertias_at(xx: float, zz: float, xz: float, angle_rad: float) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from analysis.inertia.amplitude import (
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
 from analysis.inertia.local_periods import LocalPeriods, local_periods
-from analysis.inertia.repeats import Repeated, combine_runs, single_run
+from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
@@ -103,7 +103,7 @@ def from_runs(
     runs: Sequence[RecordAnalysis],
     mode: int = 0,
     *,
-    known_scatter: Estimate | None = None,
+    known_scatter: KnownScatter | None = None,
     what: str = "period",
 ) -> Repeated:
     """Return the period of several releases with the scatter between them.

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.local_periods import LocalPeriods
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, joint
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -38,8 +38,19 @@ class Repeated:
     flags: tuple[Flag, ...] = ()
 
 
+@dataclass(frozen=True)
+class KnownScatter:
+    """Standard deviation of single runs, known from earlier repeats with these degrees of freedom.
+
+    The value is in the unit of the runs.
+    """
+
+    value: float
+    degrees_of_freedom: float = math.inf
+
+
 def combine_runs(
-    runs: Sequence[Estimate], *, known_scatter: Estimate | None = None, what: str = "period"
+    runs: Sequence[Estimate], *, known_scatter: KnownScatter | None = None, what: str = "period"
 ) -> Repeated:
     """Combine runs of the same set-up.
 
@@ -48,8 +59,7 @@ def combine_runs(
     runs
         Value of each run with its fit's error.
     known_scatter
-        Standard deviation of single runs known from earlier repeats (as the value); pooled with
-        that of these runs by degrees of freedom, and needed where there is one run only.
+        Pooled with that of these runs by degrees of freedom; needed where there is one run only.
 
     Raises
     ------
@@ -65,17 +75,15 @@ def combine_runs(
     own = math.sqrt(float(np.mean([run.uncertainty**2 for run in runs])))
     scatter = float(values.std(ddof=1)) if len(runs) > 1 else math.nan
     spread, freedom = _pooled(scatter, len(runs) - 1, known_scatter)
-    larger = max(spread, own)
-    if own > spread:
-        freedom = min(run.degrees_of_freedom for run in runs)
-    uncertainty = larger / math.sqrt(len(runs))
-    estimate = Estimate(float(values.mean()), uncertainty, runs[0].unit, freedom)
+    mean = Estimate(joint(runs).mapped(np.full((1, len(runs)), 1.0 / len(runs))), runs[0].unit)
+    between = Estimate.of(mean.value, spread / math.sqrt(len(runs)), mean.unit, freedom)
+    estimate = mean if own > spread else between
     return Repeated(
         estimate, tuple(values.tolist()), scatter, own, _scatter_flags(what, spread, own)
     )
 
 
-def _pooled(scatter: float, freedom: int, known: Estimate | None) -> tuple[float, float]:
+def _pooled(scatter: float, freedom: int, known: KnownScatter | None) -> tuple[float, float]:
     if known is None:
         return scatter, float(freedom)
     if freedom < 1:
@@ -104,11 +112,10 @@ def single_run(local: LocalPeriods, zero: Estimate, *, what: str = "period") -> 
     one release share what another release would change.
     """
     spread = float(local.period_s.std(ddof=1))
-    uncertainty = math.hypot(spread, zero.uncertainty)
     message = (
         f"{what}: one run only; the scatter between its {local.period_s.size} parts "
         f"({spread:.2g} {zero.unit}) stands in for that between runs: repeat the release"
     )
-    estimate = Estimate(zero.value, uncertainty, zero.unit, float(local.period_s.size - 1))
+    estimate = zero.widened(spread, float(local.period_s.size - 1))
     flag = Flag("single_run", Severity.WARNING, message)
     return Repeated(estimate, (zero.value,), spread, zero.uncertainty, (flag,))

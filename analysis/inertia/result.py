@@ -1,11 +1,15 @@
 """The result of a test: mass, centre of gravity, inertia and gyradii with their uncertainties."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import combinations
 
-from analysis.uncertainty.budget import Budget
-from analysis.uncertainty.estimate import Estimate
+import numpy as np
+
+from analysis.inertia.elementary_functions import Value
+from analysis.uncertainty.budget import Budget, derived
+from analysis.uncertainty.estimate import Estimate, joint
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
@@ -24,8 +28,6 @@ class InertiaResult:
         About axes through the centre of gravity: some of ``roll``, ``pitch``, ``yaw``, m.
     budgets
         Where each number comes from.
-    correlations
-        Between ``mass_kg``, ``cg_x_m``, ``cg_z_m`` and the gyradii, by pairs of names.
     """
 
     name: str
@@ -35,7 +37,6 @@ class InertiaResult:
     gyradii: Mapping[str, Estimate]
     budgets: tuple[Budget, ...] = ()
     flags: tuple[Flag, ...] = ()
-    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     def inertia(self, axis: str) -> Estimate:
         """Return the moment of inertia about the axis through the centre of gravity, kg m2.
@@ -45,12 +46,8 @@ class InertiaResult:
         ConfigurationError
             If that axis was not measured.
         """
-        gyradius = self._gyradius(axis)
-        value = self.mass.value * gyradius.value**2
-        by_mass, by_gyradius = self.mass.relative, 2.0 * gyradius.relative
-        tied = 2.0 * self._correlation("mass_kg", f"k_{axis}_m") * by_mass * by_gyradius
-        spread = value * math.sqrt(max(by_mass**2 + by_gyradius**2 + tied, 0.0))
-        return Estimate(value, spread, "kg m2", gyradius.degrees_of_freedom)
+        inputs = {"mass": self.mass, "gyradius": self._gyradius(axis)}
+        return derived("I", _inertia, "kg m2", **inputs)
 
     def about_midpoint(self, plane: Plane) -> Estimate:
         """Return the inertia that a campaign in this plane needs, about the struts' midpoint.
@@ -58,29 +55,15 @@ class InertiaResult:
         Pitch for the vertical plane, yaw for the horizontal one.
         """
         axis = "pitch" if plane is Plane.VERTICAL else "yaw"
-        gyradius, mass = self._gyradius(axis), self.mass
-        arms = {"cg_x_m": self.cg_x} | ({"cg_z_m": self.cg_z} if plane is Plane.VERTICAL else {})
-        square = gyradius.value**2 + sum(arm.value**2 for arm in arms.values())
-        terms = {"mass_kg": square * mass.uncertainty}
-        for name, length in {f"k_{axis}_m": gyradius, **arms}.items():
-            terms[name] = 2.0 * mass.value * length.value * length.uncertainty
-        variance = sum(
-            a * b * (1.0 if first == second else self._correlation(first, second))
-            for first, a in terms.items()
-            for second, b in terms.items()
-        )
-        spread = math.sqrt(max(variance, 0.0))
-        return Estimate(mass.value * square, spread, "kg m2", gyradius.degrees_of_freedom)
+        inputs = {"mass": self.mass, "gyradius": self._gyradius(axis), "ahead": self.cg_x}
+        below = {"below": self.cg_z} if plane is Plane.VERTICAL else {}
+        return derived("I", _inertia, "kg m2", **inputs, **below)
 
     def body(self, plane: Plane) -> Body:
         """Return the model as campaigns, simulator and coefficients know it."""
         return Body(
             self.mass.value, self.about_midpoint(plane).value, self.cg_x.value, self.cg_z.value
         )
-
-    def _correlation(self, first: str, second: str) -> float:
-        backwards = self.correlations.get((second, first), 0.0)
-        return self.correlations.get((first, second), backwards)
 
     def _gyradius(self, axis: str) -> Estimate:
         if axis not in self.gyradii:
@@ -92,21 +75,35 @@ class InertiaResult:
 
     def numbers(self) -> dict[str, object]:
         """Return everything as JSON takes it."""
-        quantities = {"mass_kg": self.mass, "cg_x_m": self.cg_x, "cg_z_m": self.cg_z}
-        quantities |= {f"k_{axis}_m": value for axis, value in self.gyradii.items()}
-        quantities |= {f"i_{axis}_kg_m2": self.inertia(axis) for axis in self.gyradii}
+        own = {"mass_kg": self.mass, "cg_x_m": self.cg_x, "cg_z_m": self.cg_z}
+        own |= {f"k_{axis}_m": value for axis, value in self.gyradii.items()}
+        quantities = own | {f"i_{axis}_kg_m2": self.inertia(axis) for axis in self.gyradii}
         return {
             "name": self.name,
             "quantities": {key: estimate_numbers(value) for key, value in quantities.items()},
-            "correlations": [
-                {"between": list(pair), "coefficient": r} for pair, r in self.correlations.items()
-            ],
+            "correlations": [{"between": pair, "coefficient": r} for pair, r in _correlations(own)],
             "budgets": {budget.name: budget_rows(budget) for budget in self.budgets},
             "flags": [
                 {"code": flag.code, "severity": str(flag.severity), "message": flag.message}
                 for flag in self.flags
             ],
         }
+
+
+def _inertia(mass: Value, gyradius: Value, **arms: Value) -> Value:
+    square = gyradius * gyradius
+    for arm in arms.values():
+        square = square + arm * arm
+    return mass * square
+
+
+def _correlations(estimates: Mapping[str, Estimate]) -> Iterator[tuple[list[str], float]]:
+    """Yield pairs of names and their correlation coefficients, where these are not zero."""
+    covariance = joint(estimates.values()).covariance()
+    spread = np.sqrt(np.diag(covariance))
+    for (i, first), (k, second) in combinations(enumerate(estimates), 2):
+        if covariance[i, k] != 0.0:
+            yield [first, second], float(covariance[i, k] / (spread[i] * spread[k]))
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, object]:

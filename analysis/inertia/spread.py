@@ -12,7 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, joint
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -118,15 +118,19 @@ def compare_geometries(geometries: Sequence[SuspensionGyradius]) -> Spread:
         raise DataError(f"{len(geometries)} geometry; at least 2 are needed to compare")
     values = np.array([geometry.gyradius.value for geometry in geometries])
     weights = np.array([1.0 / geometry.gyradius.uncertainty**2 for geometry in geometries])
-    mean = float(np.average(values, weights=weights))
-    misfit = float(weights @ (values - mean) ** 2)
+    gyradii = joint(geometry.gyradius for geometry in geometries)
+    mean = Estimate(gyradii.mapped(weights[None] / weights.sum()), "m")
+    first = np.ones((values.size - 1, 1))
+    apart = gyradii.mapped(np.hstack([-first, np.eye(values.size - 1)]))
+    misfit = float(apart.values @ np.linalg.solve(apart.covariance(), apart.values))
     probability = float(chi2.sf(misfit, values.size - 1))
-    inner = 1.0 / math.sqrt(float(weights.sum()))
     if probability >= DISAGREE:
-        return Spread(Estimate(mean, inner, "m"), misfit, probability, True, (), ())
+        return Spread(mean, misfit, probability, True, (), ())
     scatter = float(values.std(ddof=1))
     causes = _causes(geometries) if values.size > 2 else ()
-    estimate = Estimate(float(values.mean()), max(scatter, inner), "m", float(values.size - 1))
+    estimate = Estimate.of(
+        float(values.mean()), max(scatter, mean.uncertainty), "m", float(values.size - 1)
+    )
     return Spread(
         estimate, misfit, probability, False, causes, (_flag(values, misfit, causes, scatter),)
     )

@@ -53,8 +53,8 @@ def stopwatch_period(
         )
     reaction = float(reaction_s * math.sqrt((1.0 / swings**2).sum()) / swings.size)
     if periods.size < 2:
-        return Estimate(usual, reaction, "s")
+        return Estimate.of(usual, reaction, "s")
     scatter = float(periods.std(ddof=1)) / math.sqrt(periods.size)
     if scatter > reaction:
-        return Estimate(float(periods.mean()), scatter, "s", float(periods.size - 1))
-    return Estimate(float(periods.mean()), reaction, "s")
+        return Estimate.of(float(periods.mean()), scatter, "s", float(periods.size - 1))
+    return Estimate.of(float(periods.mean()), reaction, "s")

@@ -81,7 +81,7 @@ def forecast_suspension(
     slow, fast = mode_periods(pitch_gyradius_m, depth_m, length, g)
 
     def expected(period: float) -> Estimate:
-        return Estimate(period, period_scatter_relative * period, "s")
+        return Estimate.of(period, period_scatter_relative * period, "s")
 
     yaw_inputs = {
         "period_s": expected(yaw),

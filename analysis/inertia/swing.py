@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.uncertainty.budget import Correlations, linear_budget
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, require_positive
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
@@ -62,9 +62,7 @@ class SwingInertia:
     about_cg: Assessment
 
 
-def swing_inertia(
-    state: SwingState, *, correlations: Correlations | None = None, seed: int = 0
-) -> SwingInertia:
+def swing_inertia(state: SwingState, *, seed: int = 0) -> SwingInertia:
     """Return the inertia of what hangs on the knife edges.
 
     Raises
@@ -73,7 +71,6 @@ def swing_inertia(
         For a period, mass, moment or gravity that is not above zero.
     """
     _check(state)
-    tied = correlations or {}
 
     def pivot(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
         return pivot_inertia(period_s, mass_kg, moment_kg_m / mass_kg, gravity_m_s2)
@@ -83,8 +80,8 @@ def swing_inertia(
 
     inputs = state.inputs
     return SwingInertia(
-        assess("I_P", pivot, inputs, unit="kg m2", correlations=tied, seed=seed),
-        assess("I_CG", own, inputs, unit="kg m2", correlations=tied, seed=seed + 1),
+        assess("I_P", pivot, inputs, unit="kg m2", seed=seed),
+        assess("I_CG", own, inputs, unit="kg m2", seed=seed + 1),
     )
 
 
@@ -135,16 +132,9 @@ def model_on_swing(
     loaded: SwingState,
     model_mass: Estimate,
     *,
-    correlations: Correlations | None = None,
     seed: int = 0,
 ) -> SwingModel:
     """Return the model's centre of gravity and inertia from the swing alone and with it.
-
-    Parameters
-    ----------
-    correlations
-        By pairs of ``tare_period_s``, ``total_period_s``, ``tare_moment_kg_m``,
-        ``total_moment_kg_m``, ``model_mass_kg``, ``gravity_m_s2``.
 
     Raises
     ------
@@ -157,17 +147,15 @@ def model_on_swing(
     _check(loaded)
     require_positive("model", mass_kg=model_mass)
     inputs = _difference(tare, loaded.period, loaded.moment, model_mass)
-    tied = correlations or {}
 
     def below(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
         return (total_moment_kg_m - tare_moment_kg_m) / model_mass_kg
 
     few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
-    part = {pair: r for pair, r in tied.items() if set(pair) <= set(few)}
-    cg = assess("d_M", below, few, unit="m", correlations=part, seed=seed)
-    own = assess("I_M", model_inertia, inputs, unit="kg m2", correlations=tied, seed=seed + 1)
+    cg = assess("d_M", below, few, unit="m", seed=seed)
+    own = assess("I_M", model_inertia, inputs, unit="kg m2", seed=seed + 1)
     _refuse_nothing(own.budget.result)
-    k = assess("k_M", model_gyradius, inputs, unit="m", correlations=tied, seed=seed + 2)
+    k = assess("k_M", model_gyradius, inputs, unit="m", seed=seed + 2)
     total = pivot_inertia(loaded.period.value, 1.0, loaded.moment.value, loaded.gravity.value)
     share = own.budget.result.value / total
     return SwingModel(cg, own, k, share, share_flags(share, k.budget.result))
@@ -251,12 +239,10 @@ def forecast_swing(
     own = model_mass.value * gyradius_m**2
     total = swing + own + model_mass.value * cg_below_pivot_m**2
     period = 2.0 * math.pi * math.sqrt(total / (moment * g))
-    loaded_period = Estimate(period, period_scatter_relative * period, "s")
-    loaded_moment = Estimate(moment, moment_relative * moment, "kg m")
+    loaded_period = Estimate.of(period, period_scatter_relative * period, "s")
+    loaded_moment = Estimate.of(moment, moment_relative * moment, "kg m")
     inputs = _difference(tare, loaded_period, loaded_moment, model_mass)
-    inertia = linear_budget("I_M", model_inertia, inputs, unit="kg m2").result
-    spread = 0.5 * gyradius_m * inertia.relative  # k = sqrt(I/m), m by far the better known
-    gyradius = Estimate(gyradius_m, spread, "m")
+    gyradius = derived("k_M", model_gyradius, "m", **inputs)
     share = own / total
     flags = share_flags(share, gyradius)
     return SwingForecast(period, gyradius, share, not flags, flags)

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.uncertainty.estimate import Estimate, require_positive
-from analysis.uncertainty.freedom import student_factor
+from analysis.inertia.elementary_functions import Value
+from analysis.uncertainty.budget import derived
+from analysis.uncertainty.estimate import Estimate, difference, exactly, require_positive
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -108,10 +109,13 @@ def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
     ConfigurationError
         For a mass of zero or less.
     """
-    require_positive("swing", mass_kg=mass_kg.value)
-    value = moment.value / mass_kg.value
-    spread = abs(value) * float(np.hypot(moment.relative, mass_kg.relative))
-    return Estimate(value, spread, "m", moment.degrees_of_freedom)
+    require_positive("swing", mass_kg=mass_kg)
+    inputs = {"moment_kg_m": moment, "mass_kg": mass_kg}
+    return derived("CG below the pivot", _below, "m", **inputs)
+
+
+def _below(moment_kg_m: Value, mass_kg: Value) -> Value:
+    return moment_kg_m / mass_kg
 
 
 def _check(levers: LeverSeries) -> None:
@@ -151,11 +155,11 @@ def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
     freedom = max(tangent.size - matrix.shape[1], 1)
     variance = float(residual @ residual) / freedom
     slope, spread = float(solved[0]), float(np.sqrt(inverse[0, 0] * variance))
-    moment = Estimate(1.0 / slope, spread / slope**2, "kg m", float(freedom))
-    offset = Estimate(0.0, 0.0, "rad")
+    moment = Estimate.of(1.0 / slope, spread / slope**2, "kg m", float(freedom))
+    offset = exactly(0.0, "rad")
     if with_offset:
         error = float(np.sqrt(inverse[1, 1] * variance))
-        offset = Estimate(float(solved[1]), error, "rad", float(freedom))
+        offset = Estimate.of(float(solved[1]), error, "rad", float(freedom))
     return StaticMoment(
         moment, offset, float(np.sqrt(variance)), tuple(levers.name for levers in series)
     )
@@ -171,12 +175,9 @@ def _disagreeing(
     for k, moment in enumerate(series):
         others = [other for j, other in enumerate(series) if j != k]
         rest = _fit(others, with_offset).moment
-        own = alone[k].moment
-        spread = float(np.hypot(own.uncertainty, rest.uncertainty))
-        freedom = own.degrees_of_freedom + rest.degrees_of_freedom
-        apart = abs(own.value - rest.value)
-        if apart > float(student_factor(freedom, 1.0 - DISAGREE / len(series))) * spread:
-            names.append((apart / spread, moment.name))
+        apart = difference(alone[k].moment, rest)
+        if abs(apart.value) > apart.half_width(1.0 - DISAGREE / len(series)):
+            names.append((abs(apart.value) / apart.uncertainty, moment.name))
     return tuple(name for _, name in sorted(names, reverse=True))
 
 
@@ -189,7 +190,7 @@ def _widened(pooled: StaticMoment, alone: tuple[StaticMoment, ...]) -> StaticMom
     own = pooled.moment
     if between <= own.uncertainty:
         return pooled
-    moment = Estimate(own.value, float(between), own.unit, float(values.size - 1))
+    moment = Estimate.of(own.value, float(between), own.unit, float(values.size - 1))
     return StaticMoment(moment, pooled.offset_rad, pooled.residual_rms_rad, pooled.series)
 
 

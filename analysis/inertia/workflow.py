@@ -4,7 +4,9 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from analysis.uncertainty.estimate import Estimate
+import numpy as np
+
+from analysis.uncertainty.estimate import Estimate, difference, joint
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -82,18 +84,13 @@ def next_step(readings: tuple[StepResult, ...]) -> tuple[Step, str] | None:
     return order[len(made)], _PROMPTS[order[len(made)]]
 
 
-def assess_workflow(
-    readings: tuple[StepResult, ...], known: Estimate, *, scale_relative: float = 0.0
-) -> WorkflowResult:
+def assess_workflow(readings: tuple[StepResult, ...], known: Estimate) -> WorkflowResult:
     """Return the result of the four steps.
 
     Parameters
     ----------
     known
         The known body's, on its certificate.
-    scale_relative
-        Relative standard uncertainty that all readings share (lines, spacing, gravity) and that is
-        not in theirs: it drops out of the drift, not out of the results.
 
     Raises
     ------
@@ -104,32 +101,16 @@ def assess_workflow(
     if following is not None:
         raise DataError(f"the workflow is not done; next: {following[0]}: {following[1]}")
     first, test, check, second = (reading.value for reading in readings)
-    drift = _difference(second, first)
+    drift = difference(second, first)
+    mean = Estimate(joint((first, second)).mapped(np.array([[0.5, 0.5]])), first.unit)
     # a drift between the tares may have happened at any time: evenly spread over its half
-    tare = Estimate(
-        0.5 * (first.value + second.value),
-        math.sqrt(
-            0.25 * (first.uncertainty**2 + second.uncertainty**2) + (0.5 * drift.value) ** 2 / 3.0
-        ),
-        first.unit,
-        first.degrees_of_freedom + second.degrees_of_freedom,
-    )
-    model, body, tare = (
-        one.widened(scale_relative * one.value)
-        for one in (_difference(test, tare), _difference(check, tare), tare)
-    )
-    apart = _difference(body, known)
-    error = apart.value / (apart.coverage_factor() * apart.uncertainty)
-    drifted = abs(drift.value) > drift.coverage_factor() * drift.uncertainty
+    tare = mean.widened(abs(0.5 * drift.value) / math.sqrt(3.0))
+    model, body = difference(test, tare), difference(check, tare)
+    apart = difference(body, known)
+    error = apart.value / apart.half_width()
+    drifted = abs(drift.value) > drift.half_width()
     flags = _flags(drift, drifted, error, body, known)
     return WorkflowResult(tare, drift, model, body, error, abs(error) <= 1.0, flags)
-
-
-def _difference(first: Estimate, second: Estimate) -> Estimate:
-    """Return the difference of two independent values."""
-    value = first.value - second.value
-    alone = Estimate(value, first.uncertainty, first.unit, first.degrees_of_freedom)
-    return alone.widened(second.uncertainty, second.degrees_of_freedom)
 
 
 def _flags(

@@ -1,8 +1,8 @@
-"""GUM budgets: sensitivities, shares, degrees of freedom and correlations.
+"""GUM budgets: a formula's sensitivities, and what share each of its arguments has.
 
 A formula is any function of keyword arguments that takes floats and arrays alike. Its sensitivities
-are central differences of a hundredth of each uncertainty. Correlated inputs count as one input of
-several deviates, with the fewest degrees of freedom of the group.
+are central differences of a hundredth of each uncertainty. Arguments that come from the same inputs
+are correlated by them.
 """
 
 import math
@@ -12,13 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from analysis.uncertainty.estimate import Estimate
-from analysis.uncertainty.values import Contribution, UncertainValues
+from analysis.uncertainty.estimate import Estimate, joint
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
 
 Formula = Callable[..., Any]
-Correlations = Mapping[tuple[str, str], float]
 
 _STEP = 0.01  # of the standard uncertainty: nonlinearity is the Monte Carlo's to find
 
@@ -47,18 +45,11 @@ class BudgetShare:
 
 @dataclass(frozen=True)
 class Budget:
-    """A result with the lines it comes from, largest share first.
-
-    Attributes
-    ----------
-    correlations
-        Those that were taken into account, by pairs of input names.
-    """
+    """A result with the lines it comes from, largest share first."""
 
     name: str
     result: Estimate
     shares: tuple[BudgetShare, ...]
-    correlations: Correlations
 
     def table(self) -> list[dict[str, float | str]]:
         """Return the lines as rows: input, value, uncertainty, unit, contribution, share in %."""
@@ -77,12 +68,7 @@ class Budget:
 
 
 def linear_budget(
-    name: str,
-    formula: Formula,
-    inputs: Mapping[str, Estimate],
-    *,
-    unit: str = "1",
-    correlations: Correlations | None = None,
+    name: str, formula: Formula, inputs: Mapping[str, Estimate], *, unit: str = "1"
 ) -> Budget:
     """Propagate uncertainties through a formula to first order.
 
@@ -90,24 +76,21 @@ def linear_budget(
     ----------
     formula
         Called with the inputs' names as keywords.
-    correlations
-        Correlation coefficients by pairs of input names.
 
     Raises
     ------
-    ConfigurationError
-        If a correlation names no input, lies outside -1 to 1, or all together cannot be.
     DataError
         If the formula gives no finite value at the inputs.
     """
-    correlations = dict(correlations or {})
-    matrix = correlation_matrix(tuple(inputs), correlations)
     value, slopes = sensitivities(name, formula, inputs)
-    contributions = slopes * np.array([estimate.uncertainty for estimate in inputs.values()])
-    combined = UncertainValues(np.array([value]), _by_group(contributions, matrix, inputs))
-    freedom, spread = float(combined.degrees_of_freedom[0]), float(combined.standard_uncertainty[0])
-    result = Estimate(value, spread, unit, freedom)
-    return Budget(name, result, _shares(inputs, slopes, contributions, matrix), correlations)
+    together = joint(inputs.values())
+    result = Estimate(together.carried(np.array([value]), slopes[None]), unit)
+    return Budget(name, result, _shares(inputs, slopes, together.covariance()))
+
+
+def derived(name: str, formula: Formula, unit: str = "1", **inputs: Estimate) -> Estimate:
+    """Return a formula's result alone, as :func:`linear_budget` has it."""
+    return linear_budget(name, formula, inputs, unit=unit).result
 
 
 def sensitivities(
@@ -135,77 +118,14 @@ def sensitivities(
     return value, slopes
 
 
-def correlation_matrix(names: tuple[str, ...], correlations: Correlations) -> FloatArray:
-    """Return the inputs' correlation matrix.
-
-    Raises
-    ------
-    ConfigurationError
-        If a name is unknown, a coefficient is outside -1 to 1, or they cannot hold together.
-    """
-    matrix = np.eye(len(names))
-    for (first, second), coefficient in correlations.items():
-        unknown = [key for key in (first, second) if key not in names]
-        if unknown or first == second:
-            raise ConfigurationError(
-                f"correlation of {first!r} and {second!r}: two different inputs of "
-                f"{', '.join(names)} are needed"
-            )
-        if not -1.0 <= coefficient <= 1.0:
-            raise ConfigurationError(
-                f"correlation of {first!r} and {second!r} is {coefficient:g}; from -1 to 1 it can"
-            )
-        i, j = names.index(first), names.index(second)
-        matrix[i, j] = matrix[j, i] = coefficient
-    if names and np.linalg.eigvalsh(matrix)[0] < -1e-9:
-        raise ConfigurationError(
-            "the correlations contradict each other (their matrix has a negative eigenvalue); "
-            "lower one of them"
-        )
-    return matrix
-
-
-def _by_group(
-    contributions: FloatArray, matrix: FloatArray, inputs: Mapping[str, Estimate]
-) -> tuple[Contribution, ...]:
-    names, groups = tuple(inputs), []
-    for group in _groups(matrix):
-        values, vectors = np.linalg.eigh(matrix[np.ix_(group, group)])
-        root = vectors * np.sqrt(np.clip(values, 0.0, None))
-        label = " and ".join(names[k] for k in group)
-        freedom = min(inputs[names[k]].degrees_of_freedom for k in group)
-        parts = (contributions[group] @ root)[None]
-        groups.append(Contribution(label, freedom, np.zeros(1, dtype=np.int64), parts))
-    return tuple(groups)
-
-
-def _groups(matrix: FloatArray) -> list[list[int]]:
-    """Return the sets of inputs that correlations tie together."""
-    left, groups = set(range(len(matrix))), []
-    while left:
-        group, fresh = set(), {min(left)}
-        while fresh:
-            group |= fresh
-            fresh = {int(j) for i in fresh for j in np.flatnonzero(matrix[i])} - group
-        groups.append(sorted(group))
-        left -= group
-    return groups
-
-
 def _shares(
-    inputs: Mapping[str, Estimate],
-    slopes: FloatArray,
-    contributions: FloatArray,
-    matrix: FloatArray,
+    inputs: Mapping[str, Estimate], slopes: FloatArray, covariance: FloatArray
 ) -> tuple[BudgetShare, ...]:
-    parts = contributions * (matrix @ contributions)
+    parts = slopes * (covariance @ slopes)
     total = float(parts.sum())
+    shares = parts / total if total > 0.0 else np.zeros_like(parts)
     lines = [
-        BudgetShare(
-            key, estimate, float(slopes[k]), float(contributions[k]), float(parts[k]) / total
-        )
-        if total > 0.0
-        else BudgetShare(key, estimate, float(slopes[k]), 0.0, 0.0)
-        for k, (key, estimate) in enumerate(inputs.items())
+        BudgetShare(key, estimate, float(slope), float(slope) * estimate.uncertainty, float(share))
+        for (key, estimate), slope, share in zip(inputs.items(), slopes, shares, strict=True)
     ]
     return tuple(sorted(lines, key=lambda line: -abs(line.share)))

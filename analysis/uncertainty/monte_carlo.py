@@ -3,18 +3,14 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.random import Generator
 
-from analysis.uncertainty.budget import (
-    Budget,
-    Correlations,
-    Formula,
-    correlation_matrix,
-    linear_budget,
-)
-from analysis.uncertainty.estimate import Distribution, Estimate
+from analysis.uncertainty.budget import Budget, Formula, linear_budget
+from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
@@ -65,19 +61,21 @@ class Assessment:
     tolerance: float
     message: str
 
-    @property
+    @cached_property
     def result(self) -> Estimate:
         """The budget's result, or, where it is not good enough, the Monte Carlo's.
 
         The Monte Carlo's uncertainty is what its 95 % interval stands for: with two runs of a kind
-        an input is so heavy in its tails that the trials' own deviation has no limit.
+        an input is so heavy in its tails that the trials' own deviation has no limit. It comes from
+        the budget's inputs, in the budget's proportions.
         """
-        linear = self.budget.result
+        linear, mc = self.budget.result, self.monte_carlo
         if self.linear_good_enough:
             return linear
-        mc = self.monte_carlo
-        uncertainty = (mc.high - mc.low) / 2.0 / linear.coverage_factor()
-        return Estimate(mc.mean, uncertainty, linear.unit, linear.degrees_of_freedom)
+        half = (mc.high - mc.low) / 2.0
+        if linear.uncertainty > 0.0:
+            return linear.following(mc.mean, half / linear.half_width())
+        return Estimate.of(mc.mean, half / float(student_factor(math.inf)), linear.unit)
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -88,54 +86,11 @@ class Assessment:
 
 
 def draw(
-    inputs: Mapping[str, Estimate],
-    correlations: Correlations,
-    trials: int,
-    generator: Generator,
+    inputs: Mapping[str, Estimate], trials: int, generator: Generator
 ) -> dict[str, FloatArray]:
-    """Draw the inputs, each of shape ``(trials,)``.
-
-    Correlated inputs are jointly normal; a finite number of degrees of freedom widens them to
-    Student's t (by the group's fewest, where they are tied to each other).
-    """
-    names = tuple(inputs)
-    matrix = correlation_matrix(names, correlations)
-    values, vectors = np.linalg.eigh(matrix)
-    root = vectors * np.sqrt(np.clip(values, 0.0, None))
-    normal = root @ generator.standard_normal((len(names), trials))
-    tied = (np.abs(matrix) > 0.0).sum(axis=1) > 1
-    fewest = min(
-        (
-            inputs[name].degrees_of_freedom
-            for name, is_tied in zip(names, tied, strict=True)
-            if is_tied
-        ),
-        default=math.inf,
-    )
-    common = _student_scale(fewest, trials, generator)
-    drawn = {}
-    for k, name in enumerate(names):
-        estimate = inputs[name]
-        if tied[k]:
-            unit = normal[k] * common
-        elif estimate.distribution is Distribution.NORMAL:
-            unit = normal[k] * _student_scale(estimate.degrees_of_freedom, trials, generator)
-        else:
-            unit = _bounded(estimate.distribution, trials, generator)
-        drawn[name] = estimate.value + estimate.uncertainty * unit
-    return drawn
-
-
-def _student_scale(freedom: float, trials: int, generator: Generator) -> FloatArray:
-    if math.isinf(freedom):
-        return np.ones(trials)
-    return np.asarray(np.sqrt(freedom / generator.chisquare(freedom, trials)))
-
-
-def _bounded(distribution: Distribution, trials: int, generator: Generator) -> FloatArray:
-    if distribution is Distribution.UNIFORM:
-        return math.sqrt(3.0) * generator.uniform(-1.0, 1.0, trials)
-    return math.sqrt(6.0) * generator.triangular(-1.0, 0.0, 1.0, trials)
+    """Draw a formula's arguments jointly, each of shape ``(trials,)``."""
+    drawn = joint(inputs.values()).drawn(trials, generator)
+    return dict(zip(inputs, drawn, strict=True))
 
 
 def monte_carlo(
@@ -144,7 +99,6 @@ def monte_carlo(
     inputs: Mapping[str, Estimate],
     *,
     seed: int,
-    correlations: Correlations | None = None,
     trials: int = DEFAULT_TRIALS,
 ) -> MonteCarlo:
     """Propagate distributions through a formula in one vectorised call.
@@ -154,7 +108,7 @@ def monte_carlo(
     DataError
         If more than 1 % of the trials have no finite value.
     """
-    drawn = draw(inputs, correlations or {}, trials, np.random.default_rng(seed))
+    drawn = draw(inputs, trials, np.random.default_rng(seed))
     with np.errstate(all="ignore"):
         outcome = np.broadcast_to(np.asarray(formula(**drawn), dtype=np.float64), (trials,))
     good = outcome[np.isfinite(outcome)]
@@ -176,7 +130,6 @@ def assess(
     inputs: Mapping[str, Estimate],
     *,
     unit: str = "1",
-    correlations: Correlations | None = None,
     seed: int = 0,
     trials: int = DEFAULT_TRIALS,
 ) -> Assessment:
@@ -187,8 +140,8 @@ def assess(
     ConfigurationError, DataError
         As :func:`analysis.uncertainty.budget.linear_budget` and :func:`monte_carlo` do.
     """
-    budget = linear_budget(name, formula, inputs, unit=unit, correlations=correlations)
-    trial = monte_carlo(name, formula, inputs, seed=seed, correlations=correlations, trials=trials)
+    budget = linear_budget(name, formula, inputs, unit=unit)
+    trial = monte_carlo(name, formula, inputs, seed=seed, trials=trials)
     linear = budget.result
     tolerance = max(_rounding(linear.uncertainty), 4.0 * _end_error(trial))
     low, high = linear.interval()

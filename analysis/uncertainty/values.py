@@ -2,8 +2,8 @@
 
 A budget of one number forgets what it shares with the next. Here every input (a run's scatter, the
 mass, the speed) keeps its own columns through all that follows, so that a difference of two
-coefficients, or a curve through many, knows what cancels. All is linear (GUM); Monte Carlo stands
-beside it where it is made.
+coefficients, or a curve through many, knows what cancels. All is linear (GUM); the same inputs are
+drawn for the Monte Carlo beside it.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.random import Generator
 
+from analysis.uncertainty.distribution import Distribution, shaped
 from analysis.uncertainty.freedom import effective_freedom, student_factor
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.errors import ConfigurationError
@@ -32,18 +34,25 @@ class Contribution:
     parts
         Change of these values per standard deviation of each of k independent deviates, shape
         ``(r, k)``, in the values' units.
+    distribution
+        Of the deviates.
     """
 
     label: str
     degrees_of_freedom: float
     rows: IntArray
     parts: FloatArray
+    distribution: Distribution = Distribution.NORMAL
 
     def dense(self, size: int) -> FloatArray:
         """Return the parts of all values, shape ``(size, k)``."""
         parts = np.zeros((size, self.parts.shape[1]))
         parts[self.rows] = self.parts
         return parts
+
+    def deviates(self, normal: FloatArray, generator: Generator) -> FloatArray:
+        """Return the deviates in trials, made of normal ones, shape ``(k, trials)``."""
+        return shaped(normal, self.distribution, self.degrees_of_freedom, generator)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,16 +154,31 @@ class UncertainValues:
 
     def mapped(self, matrix: FloatArray) -> "UncertainValues":
         """Return ``matrix @ values``, uncertainties and all; ``matrix`` has the shape (m, n)."""
-        everywhere = np.arange(len(matrix))
-        mapped_contributions = (
+        return self.carried(matrix @ self.values, matrix)
+
+    def carried(self, values: FloatArray, slope: FloatArray) -> "UncertainValues":
+        """Return ``m`` values that follow these with a slope, shape ``(m, n)``, to first order."""
+        everywhere = np.arange(len(slope))
+        carried_contributions = (
             replace(
                 contribution,
                 rows=everywhere,
-                parts=matrix[:, contribution.rows] @ contribution.parts,
+                parts=slope[:, contribution.rows] @ contribution.parts,
             )
             for contribution in self.contributions
         )
-        return UncertainValues(matrix @ self.values, tuple(mapped_contributions))
+        return UncertainValues(values, tuple(carried_contributions))
+
+    def drawn(self, trials: int, generator: Generator) -> FloatArray:
+        """Draw all values jointly, shape ``(n, trials)``."""
+        normal = [
+            generator.standard_normal((contribution.parts.shape[1], trials))
+            for contribution in self.contributions
+        ]
+        drawn = np.repeat(self.values[:, None], trials, axis=1)
+        for contribution, own in zip(self.contributions, normal, strict=True):
+            drawn[contribution.rows] += contribution.parts @ contribution.deviates(own, generator)
+        return drawn
 
     def plus(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "UncertainValues":
         """Return the values with one more input, or with more of one that is there.
@@ -218,8 +242,12 @@ def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
 def _one_input(parts: Sequence[Contribution]) -> Contribution:
     first = parts[0]
     for other in parts[1:]:
-        same = other.degrees_of_freedom == first.degrees_of_freedom
-        if other.parts.shape[1] != first.parts.shape[1] or not same:
+        same = (other.degrees_of_freedom, other.distribution, other.parts.shape[1]) == (
+            first.degrees_of_freedom,
+            first.distribution,
+            first.parts.shape[1],
+        )
+        if not same:
             raise ConfigurationError(
                 f"two inputs are called {first.label!r}, and they differ; give runs names that "
                 "differ"

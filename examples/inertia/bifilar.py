@@ -11,8 +11,8 @@ from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
 
 FOLDER = Path(__file__).parent
-HALF_SPACING = Estimate(0.900, 5e-4, "m")
-LINE = Estimate(3.477, 2e-3, "m")
+HALF_SPACING = Estimate.of(0.900, 5e-4, "m")
+LINE = Estimate.of(3.477, 2e-3, "m")
 
 
 def analyse(folder: Path = FOLDER) -> tuple[Assessment, Assessment]:
@@ -28,7 +28,7 @@ def analyse(folder: Path = FOLDER) -> tuple[Assessment, Assessment]:
     for run in runs:
         slow, fast = run.fit.modes
         spread = run.fit.period_uncertainty_s(0) / fast.period_s
-        ratios.append(Estimate(slow.period_s / fast.period_s, spread))
+        ratios.append(Estimate.of(slow.period_s / fast.period_s, spread))
     ratio = combine_runs(ratios, what="ratio").estimate
     by_ratio = yaw_from_ratio(ratio, exactly(1.0), HALF_SPACING)
     return by_period, by_ratio

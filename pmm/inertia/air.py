@@ -63,13 +63,13 @@ def without_air(
         return found
     ratio = table.air_density_kg_m3 / table.body_density_kg_m3
     inputs = {
-        "gyradius_in_air_m": found.result,
-        "coefficient": given(air, "coefficient"),
+        "gyradius_in_air_m": found.budget.result,
+        "coefficient": given(air, "coefficient", "entrained_air"),
         "depth_m": depth or exactly(0.0, "m"),
     }
     if by_sway:
-        inputs["sway_coefficient"] = given(air, "sway_coefficient")
-    own = given_or_none(air, "gyradius_m")
+        inputs["sway_coefficient"] = given(air, "sway_coefficient", "entrained_air")
+    own = given_or_none(air, "gyradius_m", "entrained_air")
     if own is not None:
         inputs["air_gyradius_m"] = own
 

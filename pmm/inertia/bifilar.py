@@ -1,12 +1,11 @@
 """``pmm inertia bifilar``: yaw, pitch, roll and depth of a body on two lines."""
 
-import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.spread import SuspensionGyradius, compare_geometries
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, difference
 from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
@@ -150,12 +149,12 @@ def _between_methods(one: Suspended) -> Iterator[Flag]:
     """Flag methods whose yaw gyradii differ by more than three times their joint uncertainty."""
     own = [(key, found.result) for key, found in one.found.items() if key.startswith("yaw by")]
     for (first, a), (second, b) in combinations(own, 2):
-        joint = math.hypot(a.uncertainty, b.uncertainty)
-        apart = abs(a.value - b.value)
-        if apart > _APART * joint:
+        apart = difference(a, b)
+        if abs(apart.value) > _APART * apart.uncertainty:
             message = (
                 f"{one.table.name}: {first} gives {a.value:.5g} m and {second} {b.value:.5g} m, "
-                f"{apart / joint:.2g} times their joint uncertainty apart (limit {_APART:g}); "
+                f"{abs(apart.value):.2g} m apart (limit {_APART * apart.uncertainty:.2g} m, "
+                f"{_APART:g} joint standard uncertainties); "
                 "check line length (period), sway record (ratio) and count (beats)"
             )
             yield Flag("methods_disagree", Severity.WARNING, message)
@@ -192,12 +191,12 @@ def _tilts(
         flags += runs.flags
         at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
         spacing, line = (
-            given(one if getattr(one, key) is not None else at, key)
+            given(at, key, at.name) if getattr(one, key) is None else given(one, key)
             for key in ("half_spacing_m", "line_m")
         )
         own = yaw_from_period(runs.period, spacing, line, gravity_of(table))
         if at.line_mass_kg:
-            share = line_share(at, given(table.model, "mass_kg"))
+            share = line_share(at, given(table.model, "mass_kg", "model"))
             own = yaw_off_lines(one if one.half_spacing_m else at, share, own)
         gyradius = without_air(table, own).result
         angle = one.angle

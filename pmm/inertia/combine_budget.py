@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.inertia.elementary_functions import sqrt
 from analysis.inertia.parts import MADE_OF, combined
-from analysis.uncertainty.budget import Correlations, Formula, sensitivities
+from analysis.uncertainty.budget import Formula, sensitivities
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.arrays import FloatArray
 from pmm.inertia.properties import AXES, PartTable
@@ -36,34 +36,25 @@ def combined_budgets(
     tables = [*parts, *without]
     labels = _labels([one.name for one in parts], [f"less {one.name}" for one in without])
     inputs: dict[str, Estimate] = {}
-    tied: dict[tuple[str, str], float] = {}
     for label, one in zip(labels, tables, strict=True):
-        own, correlations = one.measured()
-        inputs |= {f"{label}.{key}": value for key, value in own.items() if value.uncertainty > 0.0}
-        tied |= {
-            (f"{label}.{a}", f"{label}.{b}"): r
-            for (a, b), r in correlations.items()
-            if own[a].uncertainty > 0.0 and own[b].uncertainty > 0.0
-        }
+        own = one.measured().items()
+        inputs |= {f"{label}.{key}": value for key, value in own if value.uncertainty > 0.0}
     if not inputs:
         return {}
     put = _putting(tables, labels, np.array([1.0] * len(parts) + [-1.0] * len(without)))
     whole = put({})
     reached = [*_PLACES, *(key for key, row in _GYRADII.items() if whole[row] > 0.0)]
-    found = {key: _assessed(key, _reading(put, key), inputs, tied) for key in reached}
+    found = {key: _assessed(key, _reading(put, key), inputs) for key in reached}
     return {key: one for key, one in found.items() if one is not None}
 
 
-def _assessed(
-    key: str, formula: Formula, inputs: "Mapping[str, Estimate]", tied: Correlations
-) -> Assessment | None:
+def _assessed(key: str, formula: Formula, inputs: "Mapping[str, Estimate]") -> Assessment | None:
     """Assess one result by the inputs that it depends on; None where there is none."""
     _, slopes = sensitivities(key, formula, inputs)
     felt = {name: inputs[name] for name, slope in zip(inputs, slopes, strict=True) if slope != 0.0}
-    own = {pair: r for pair, r in tied.items() if set(pair) <= set(felt)}
     if not felt:
         return None
-    return assess(key, formula, felt, unit="m", correlations=own, trials=_TRIALS)
+    return assess(key, formula, felt, unit="m", trials=_TRIALS)
 
 
 def _labels(parts: list[str], without: list[str]) -> list[str]:
@@ -76,7 +67,7 @@ def _labels(parts: list[str], without: list[str]) -> list[str]:
 
 def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArray) -> Put:
     """Return what puts the parts together for some inputs, numbers or trials; the rest as read."""
-    read = [{key: one.value for key, one in table.measured()[0].items()} for table in tables]
+    read = [{key: one.value for key, one in table.measured().items()} for table in tables]
 
     def put(given: Mapping[str, Any]) -> FloatArray:
         shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))

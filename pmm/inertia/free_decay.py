@@ -20,7 +20,7 @@ def decay_findings(runs: PeriodRuns) -> list[Finding]:
     found = [Finding("period_s", "period at no amplitude, undamped", period)]
     if runs.records:
         damped = float(np.mean([one.fit.modes[0].period_s for one in runs.records]))
-        own = Estimate(damped, period.uncertainty, "s", period.degrees_of_freedom)
+        own = period.following(damped, 1.0)
         found.append(Finding("damped_period_s", "damped period of the whole record", own))
         found.append(Finding("damping_ratio", "damping ratio", _damping(runs.records)))
     return found
@@ -31,8 +31,8 @@ def _damping(records: Sequence[RecordAnalysis]) -> Estimate:
     ratios = np.array([one.fit.modes[0].damping_ratio for one in records])
     if ratios.size > 1:
         spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)
-        return Estimate(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
+        return Estimate.of(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
     local, mode = records[0].modes[0].local, records[0].fit.modes[0]
     rates = -np.diff(np.log(local.amplitude)) / np.diff(local.time_s)
     along = rates * mode.period_s / (2.0 * np.pi)
-    return Estimate(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))
+    return Estimate.of(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))

@@ -1,12 +1,13 @@
 """The mass of the lines that a body hangs from: what it does to gyradii, and taking that off."""
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from analysis.inertia.bifilar import sway_period
 from analysis.inertia.corrections import lines_factor, pitch_without_lines, yaw_without_lines
 from analysis.inertia.double_pendulum import PendulumResult
-from analysis.inertia.elementary_functions import Value
+from analysis.inertia.elementary_functions import Value, sqrt
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from pmm.inertia.stated_values import given
@@ -49,9 +50,8 @@ def line_share(table: Any, mass: Estimate) -> Estimate | None:
     """
     if not table.line_mass_kg:
         return None
-    lines = given(table, "line_mass_kg")
-    share = lines.value / mass.value
-    return Estimate(share, share * math.hypot(lines.relative, mass.relative), "1")
+    lines = given(table, "line_mass_kg", table.name)
+    return derived("share", lambda lines, mass: lines / mass, lines=lines, mass=mass)
 
 
 def yaw_off_lines(
@@ -66,7 +66,7 @@ def yaw_off_lines(
         own: Value = yaw_without_lines(gyradius_on_lines_m, line_share, spacing, by_sway=by_sway)
         return own
 
-    inputs = {"gyradius_on_lines_m": found.result, "line_share": share}
+    inputs = {"gyradius_on_lines_m": found.budget.result, "line_share": share}
     return assess(found.budget.name, gyradius, inputs, unit="m", seed=seed)
 
 
@@ -77,8 +77,8 @@ def pitch_off_lines(
     if share is None:
         return found
     inputs = {
-        "gyradius_on_lines_m": found.gyradius.result,
-        "depth_on_lines_m": found.depth.result,
+        "gyradius_on_lines_m": found.gyradius.budget.result,
+        "depth_on_lines_m": found.depth.budget.result,
         "line_share": share,
     }
     made = (
@@ -95,7 +95,13 @@ def _part(part: int) -> Any:
     return value
 
 
-def slower(period_s: float, share: Estimate | None) -> float:
-    """Return the lines' own period with their mass."""
-    factor = 1.0 if share is None else float(lines_factor(share.value))
-    return period_s * math.sqrt(factor)
+def period_of_lines(line: Estimate, gravity: Estimate, share: Estimate | None) -> Estimate:
+    """Return the lines' own period, with their mass."""
+    inputs = {"line_m": line, "gravity_m_s2": gravity}
+    if share is not None:
+        inputs["line_share"] = share
+
+    def period(line_m: Value, gravity_m_s2: Value, line_share: Any = 0.0) -> Any:
+        return sway_period(line_m, gravity_m_s2) * sqrt(lines_factor(line_share))
+
+    return derived("sway period", period, "s", **inputs)

@@ -147,16 +147,16 @@ def _on_axis(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
         periods.append(second)
         apart = given(table.second, "apart_m")
         below, own = lamboley(first, second.period, apart, gravity, seed=seed)
-        depth = below.result
+        depth = below.budget.result
         findings.append(assessed("depth_m", "CG below the first axis", below))
     name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
     if table.entrained_air is not None:
         findings.append(assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own))
         own = without_air(table, own, depth=depth, seed=seed + 2)
     findings.append(assessed(name, words, own))
-    mass = given_or_none(table.model, "mass_kg")
+    mass = given_or_none(table.model, "mass_kg", "model")
     if mass is not None:
-        inputs = {"mass_kg": mass, "gyradius_m": own.result}
+        inputs = {"mass_kg": mass, "gyradius_m": own.budget.result}
         about = assess("I", _inertia, inputs, unit="kg m2", seed=seed + 3)
         findings.append(_about(table, about))
     return _Swung(tuple(findings), own)
@@ -166,7 +166,7 @@ def _on_rod(job: Job[PendulumJob], torsion: TorsionTable, periods: list[PeriodRu
     """On a torsion rod: about the file's axis, or about several in the centre plane."""
     table, seed = job.table, job.table.monte_carlo_seed
     rod, findings = stiffness(job, torsion, periods, seed)
-    mass = given_or_none(table.model, "mass_kg")
+    mass = given_or_none(table.model, "mass_kg", "model")
     if torsion.axes:
         plane = in_plane(job, torsion.axes, rod, periods)
         found = (*findings, *plane.findings())
@@ -175,7 +175,7 @@ def _on_rod(job: Job[PendulumJob], torsion: TorsionTable, periods: list[PeriodRu
     findings.append(_about(table, about))
     if mass is None:
         return _Swung(tuple(findings))
-    inputs = {"inertia_kg_m2": about.result, "mass_kg": mass}
+    inputs = {"inertia_kg_m2": about.budget.result, "mass_kg": mass}
     own = assess("k", _gyradius, inputs, unit="m", seed=seed + 2)
     findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", own))
     return _Swung(tuple(findings), own)

@@ -9,7 +9,8 @@ import numpy as np
 from analysis.inertia.double_pendulum import LineLengthReading, gyradius_error_per_period
 from analysis.inertia.suspension_plan import SUSPENSION_OPTIONS, forecast_suspension
 from analysis.inertia.swing import SwingState, forecast_swing
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.budget import derived
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once
@@ -143,7 +144,7 @@ def _plan_bifilar(
         ("pitch_slow", "slow pitch mode", found.slow_s),
         ("pitch_fast", "fast pitch mode", found.fast_s),
     ):
-        estimate = Estimate(period, scatter * period, "s")
+        estimate = Estimate.of(period, scatter * period, "s")
         findings.append(Finding(f"bifilar_{name}_period_s", f"bifilar: {words}, period", estimate))
     findings += [
         Finding("bifilar_k_yaw_m", "bifilar: yaw gyradius", found.yaw_gyradius),
@@ -154,7 +155,7 @@ def _plan_bifilar(
         "joint": "best line for pitch, depth measured along",
     }
     findings += [
-        Finding(f"bifilar_best_line_{reading}_m", by_reading[reading], Estimate(length, 0.0, "m"))
+        Finding(f"bifilar_best_line_{reading}_m", by_reading[reading], exactly(length, "m"))
         for reading, length in found.best_line_m.items()
     ]
     flags += found.flags
@@ -172,11 +173,8 @@ def _plan_swing(
     notes: list[str],
 ) -> None:
     mass, cg = given(plan, "mass_kg"), given(plan, "cg_below_pivot_m")
-    moment = mass.value * cg.value
-    spread = moment * float(np.hypot(mass.relative, cg.relative))
-    state = SwingState(
-        given(plan, "period_s"), mass, Estimate(moment, spread, "kg m"), gravity_of(table)
-    )
+    moment = derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass)
+    state = SwingState(given(plan, "period_s"), mass, moment, gravity_of(table))
     found = forecast_swing(
         state,
         given(table.expected, "mass_kg"),
@@ -185,11 +183,11 @@ def _plan_swing(
         period_scatter_relative=plan.period_scatter_relative,
         moment_relative=plan.moment_relative,
     )
-    period = Estimate(found.period_s, plan.period_scatter_relative * found.period_s, "s")
+    period = Estimate.of(found.period_s, plan.period_scatter_relative * found.period_s, "s")
     findings += [
         Finding("swing_period_s", "swing: period with model", period),
         Finding(f"swing_k_{plan.axis}_m", f"swing: {plan.axis} gyradius", found.gyradius),
-        Finding("swing_share", "swing: model's part of the total", Estimate(found.share, 0.0)),
+        Finding("swing_share", "swing: model's part of the total", exactly(found.share)),
     ]
     notes.append(f"swing: {'worth' if found.worth_swinging else 'not worth'} swinging")
     flags += found.flags

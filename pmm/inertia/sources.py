@@ -10,10 +10,11 @@ from analysis.inertia.gates import Passages, passages, read_gate_events
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
-from analysis.inertia.repeats import Repeated, combine_runs
+from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs
 from analysis.inertia.series import Series
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.readers import read_recording
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
@@ -77,12 +78,12 @@ class PeriodSource:
             )
 
     @property
-    def known_scatter(self) -> Estimate | None:
+    def known_scatter(self) -> KnownScatter | None:
         """The scatter of single releases known from earlier."""
         if self.known_scatter_s is None:
             return None
         freedom = self.known_scatter_degrees_of_freedom or float("inf")
-        return Estimate(self.known_scatter_s, 0.0, "s", freedom)
+        return KnownScatter(self.known_scatter_s, freedom)
 
 
 @dataclass(frozen=True)
@@ -178,7 +179,7 @@ def read_period(
         return PeriodRuns(where, how, (period,), (single,))
     value = source.period_s if source.period_s is not None else 0.0
     freedom = source.period_degrees_of_freedom or float("inf")
-    return PeriodRuns(where, "given", (Estimate(value, source.u_period_s, "s", freedom),))
+    return PeriodRuns(where, "given", (Estimate.of(value, source.u_period_s, "s", freedom),))
 
 
 def _from_records(
@@ -218,21 +219,18 @@ def _undamped(
     joined = from_runs(runs, mode, known_scatter=source.known_scatter, what=where)
     modes = [run.fit.modes[mode] for run in runs]
     factor = float(np.mean([one.undamped_period_s / one.period_s for one in modes]))
-    own = joined.estimate
-    estimate = replace(own, value=factor * own.value, uncertainty=factor * own.uncertainty)
+    estimate = joined.estimate.following(factor * joined.estimate.value, factor)
     return replace(joined, estimate=estimate, runs=tuple(factor * run for run in joined.runs))
 
 
 def _ratio(runs: Sequence[RecordAnalysis], where: str) -> Estimate | None:
     """Slow over fast period, run by run: what both share (a drifting clock) drops out."""
-    ratios = []
-    for run in runs:
-        slow, fast = run.period(0), run.period(1)
-        value = slow.value / fast.value
-        spread = value * float(np.hypot(slow.relative, fast.relative))
-        ratios.append(Estimate(value, spread, "1", min(slow.degrees_of_freedom, 30.0)))
-    if len(ratios) < 2:
+    if len(runs) < 2:
         return None
+    ratios = [
+        derived("ratio", lambda slow, fast: slow / fast, slow=run.period(0), fast=run.period(1))
+        for run in runs
+    ]
     return combine_runs(ratios, what=f"{where}, ratio").estimate
 
 
@@ -261,7 +259,7 @@ def _demodulated(seen: Passages) -> Estimate:
     whole = seen.number[2:] - seen.number[:-2] == 2
     found = remove_modulation(seen.time_s[1:-1][whole], (seen.time_s[2:] - seen.time_s[:-2])[whole])
     freedom = float(max(int(whole.sum()) - found.fit.covariance.shape[0], 1))
-    return Estimate(found.period_s, found.uncertainty_s, "s", freedom)
+    return Estimate.of(found.period_s, found.uncertainty_s, "s", freedom)
 
 
 def _single_gate_run(
@@ -271,11 +269,7 @@ def _single_gate_run(
     parts = np.array_split(np.arange(seen.number.size), _PARTS)
     slopes = [2.0 * np.polyfit(seen.number[one], fit.residual_s[one], 1)[0] for one in parts]
     spread = float(np.std(slopes, ddof=1))
-    estimate = replace(
-        own,
-        uncertainty=float(np.hypot(spread, own.uncertainty)),
-        degrees_of_freedom=float(_PARTS - 1),
-    )
+    estimate = own.widened(spread, float(_PARTS - 1))
     message = (
         f"{where}: one run only; the scatter between its {_PARTS} parts ({spread:.2g} s) stands in "
         "for that between runs: repeat the release, or give known_scatter_s"

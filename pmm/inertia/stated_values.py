@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from analysis.inertia.corrections import gravity_in_air
-from analysis.uncertainty.estimate import Distribution, Estimate
+from analysis.uncertainty.estimate import Estimate, within
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
@@ -24,9 +24,7 @@ _ENDINGS = {
     "_s": ("s", 1.0),
 }
 # Gravity at sea level runs from 9.780 to 9.832 m/s2; half of that, evenly.
-_GRAVITY_ANYWHERE = Estimate(
-    STANDARD_GRAVITY_M_S2, 0.026 / math.sqrt(3.0), "m/s2", distribution=Distribution.UNIFORM
-)
+_GRAVITY_ANYWHERE = within(STANDARD_GRAVITY_M_S2, 0.026, "m/s2")
 
 
 def unit_of(key: str) -> tuple[str, float]:
@@ -34,27 +32,33 @@ def unit_of(key: str) -> tuple[str, float]:
     return next((unit for ending, unit in _ENDINGS.items() if key.endswith(ending)), ("1", 1.0))
 
 
-def given(table: object, key: str) -> Estimate:
-    """Return the value of a key with the standard uncertainty beside it, in SI units."""
+def given(table: object, key: str, place: str | None = None) -> Estimate:
+    """Return the value of a key with the standard uncertainty beside it, in SI units.
+
+    Parameters
+    ----------
+    place
+        Of the table in its file, where the value is read more than once: it is then the same input.
+    """
     unit, factor = unit_of(key)
     value, spread = getattr(table, key), getattr(table, f"u_{key}")
-    return Estimate(factor * value, factor * spread, unit)
+    label = None if place is None else f"{place}.{key}"
+    return Estimate.of(factor * value, factor * spread, unit, label=label)
 
 
-def given_or_none(table: object, key: str) -> Estimate | None:
+def given_or_none(table: object, key: str, place: str | None = None) -> Estimate | None:
     """Return the value of a key that may be left out."""
-    return None if getattr(table, key) is None else given(table, key)
+    return None if getattr(table, key) is None else given(table, key, place)
 
 
 def gravity_of(table: Any) -> Estimate:
     """Return gravity less buoyancy; that of anywhere at sea level where none is given."""
-    plain = _GRAVITY_ANYWHERE if table.gravity_m_s2 is None else given(table, "gravity_m_s2")
+    known = table.gravity_m_s2 is not None
+    plain = given(table, "gravity_m_s2", "file") if known else _GRAVITY_ANYWHERE
     if not getattr(table, "body_density_kg_m3", None):
         return plain
     value = gravity_in_air(plain.value, table.air_density_kg_m3, table.body_density_kg_m3)
-    return Estimate(
-        value, plain.uncertainty * value / plain.value, plain.unit, distribution=plain.distribution
-    )
+    return plain.following(value, value / plain.value)
 
 
 def flags_of(table: Any) -> tuple[Flag, ...]:

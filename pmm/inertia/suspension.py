@@ -1,7 +1,7 @@
 """One suspension's periods, and what follows from them: yaw, pitch or roll, depth."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from pmm.inertia.bifilar_tables import (
     YawTable,
 )
 from pmm.inertia.channels import chosen_series
-from pmm.inertia.lines import line_share, pitch_off_lines, slower, yaw_off_lines
+from pmm.inertia.lines import line_share, period_of_lines, pitch_off_lines, yaw_off_lines
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.stated_values import given, gravity_of
@@ -80,7 +80,7 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
     if table.beats is not None:
         count = _beats(job, table.beats, f"{where}.beats")
         by_beats = yaw_from_beats(
-            count, given(table, "half_spacing_m"), yaw_slower=table.beats.yaw_slower
+            count, given(table, "half_spacing_m", table.name), yaw_slower=table.beats.yaw_slower
         )
         by_beats = yaw_off_lines(table, _share(job, table), by_beats, by_sway=True, seed=4)
         found["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
@@ -90,7 +90,11 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
 
 
 def _share(job: Job[BifilarTable], table: SuspensionTable) -> Estimate | None:
-    return line_share(table, given(job.table.model, "mass_kg")) if table.line_mass_kg else None
+    return (
+        line_share(table, given(job.table.model, "mass_kg", "model"))
+        if table.line_mass_kg
+        else None
+    )
 
 
 def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
@@ -125,7 +129,7 @@ def _yaw(
 ) -> tuple[Estimate, Estimate | None]:
     """Yaw by its period and by the ratio; return the periods of yaw and, if known, of sway."""
     seed, where = job.table.monte_carlo_seed, f'suspensions["{table.name}"]'
-    gravity, spacing = gravity_of(job.table), given(table, "half_spacing_m")
+    gravity, spacing = gravity_of(job.table), given(table, "half_spacing_m", table.name)
     runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations)
     periods.append(runs)
     yaw, ratio = runs.period, None
@@ -136,7 +140,9 @@ def _yaw(
         yaw, sway = runs.periods[1 - place], sway or own
         ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
     flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
-    by_period = yaw_from_period(yaw, spacing, given(table, "line_m"), gravity, seed=seed)
+    by_period = yaw_from_period(
+        yaw, spacing, given(table, "line_m", table.name), gravity, seed=seed
+    )
     share = _share(job, table)
     by_period = yaw_off_lines(table, share, by_period, seed=seed + 4)
     found["yaw by period"] = without_air(job.table, by_period, seed=seed + 2)
@@ -158,8 +164,7 @@ def _sway_mode(runs: PeriodRuns, line_m: float, gravity_m_s2: float) -> int:
 def _inverse(ratio: Estimate | None) -> Estimate | None:
     if ratio is None:
         return None
-    value = 1.0 / ratio.value
-    return replace(ratio, value=value, uncertainty=value * ratio.relative)
+    return ratio.following(1.0 / ratio.value, -1.0 / ratio.value**2)
 
 
 def _double_pendulum(
@@ -186,7 +191,7 @@ def _double_pendulum(
         slow, fast = _both(job, source, f"{where}.{axis}", periods)
         gravity = gravity_of(job.table)
         share, seed = _share(job, table), job.table.monte_carlo_seed + 20
-        lines = sway or _period_of_lines(given(table, "line_m"), gravity, share)
+        lines = sway or period_of_lines(given(table, "line_m", table.name), gravity, share)
         result = pitch_from_periods(slow, fast, lines, gravity, seed=seed)
         result = pitch_off_lines(share, result, seed=seed + 2)
         found[axis], found["depth"] = result.gyradius, result.depth
@@ -207,9 +212,3 @@ def _both(
     fast = read_period(job, source.fast, f"{where}.fast")
     periods += [slow, fast]
     return slow.period, fast.period
-
-
-def _period_of_lines(line: Estimate, gravity: Estimate, share: Estimate | None) -> Estimate:
-    value = slower(sway_period(line.value, gravity.value), share)
-    spread = 0.5 * value * math.hypot(line.relative, gravity.relative)
-    return Estimate(value, spread, "s")

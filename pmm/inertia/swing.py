@@ -4,14 +4,11 @@ Static fits give first moments, records give periods; :mod:`analysis.inertia.swi
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from analysis.inertia.result import InertiaResult
 from analysis.inertia.swing import (
     SwingInertia,
-    SwingModel,
     SwingState,
     model_on_swing,
     swing_inertia,
@@ -19,13 +16,12 @@ from analysis.inertia.swing import (
 from analysis.inertia.swing_static import distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
-from analysis.uncertainty.budget import linear_budget
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import difference, exactly
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
-from pmm.inertia.properties import correlation, properties
+from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.stated_values import flags_of, given, given_or_none, gravity_of
@@ -42,7 +38,6 @@ class _Measured:
     state: SwingState
     runs: PeriodRuns
     inertia: SwingInertia
-    cg: Estimate
     moment: Moment
     flags: tuple[Flag, ...]
     static: StaticTest | None = None
@@ -107,30 +102,20 @@ def _measure(job: Job[SwingTable], key: str) -> _Measured:
     table: StateTable = getattr(job.table, key)
     runs = read_period(job, table.period, f"{key}.period", pendulum=True)
     mass, gravity = given(table, "mass_kg"), gravity_of(job.table)
-    moment = first_moment(table)
+    moment = first_moment(table, mass)
     state = SwingState(runs.period, mass, moment.estimate, gravity)
-    inertia = swing_inertia(
-        state, correlations=_tied(table, moment.estimate, mass), seed=job.table.monte_carlo_seed
-    )
+    inertia = swing_inertia(state, seed=job.table.monte_carlo_seed)
     static = moment.static
     flags = (*runs.flags, *(static.flags if static else ()))
-    cg = given_or_none(table, "cg_below_pivot_m") or distance(moment.estimate, mass)
     series = tuple(one.series() for one in table.levers)
     test = StaticTest(f"{key}.levers", series, static) if static is not None else None
-    return _Measured(key, state, runs, inertia, cg, moment, flags, test)
-
-
-def _tied(table: StateTable, moment: Estimate, mass: Estimate) -> dict[tuple[str, str], float]:
-    """Return the correlation of a moment that was made with the mass."""
-    if table.cg_below_pivot_m is None or not (moment.uncertainty and mass.uncertainty):
-        return {}
-    return {("mass_kg", "moment_kg_m"): mass.relative / moment.relative}
+    return _Measured(key, state, runs, inertia, moment, flags, test)
 
 
 def _state_findings(one: _Measured) -> Iterator[Finding]:
     words = _WORDS[one.key]
     yield Finding(f"{one.key}_period_s", f"{words}: period", one.runs.period)
-    yield Finding(f"{one.key}_cg_below_pivot_m", f"{words}: CG below the pivot", one.cg)
+    yield Finding(f"{one.key}_cg_below_pivot_m", f"{words}: CG below the pivot", one.moment.cg)
     yield assessed(
         f"{one.key}_i_pivot_kg_m2", f"{words}: inertia about the pivot", one.inertia.about_pivot
     )
@@ -148,8 +133,8 @@ def _two_pivots(
         return
     first, second = states["tare"], states["second_pivot"]
     found = check_two_pivots(
-        PivotTest(first.runs.period, first.cg),
-        PivotTest(second.runs.period, second.cg),
+        PivotTest(first.runs.period, first.moment.cg),
+        PivotTest(second.runs.period, second.moment.cg),
         first.state.mass,
         given(table.second_pivot, "pivot_distance_m"),
         first.state.gravity,
@@ -180,18 +165,16 @@ def _model(
     if "loaded" not in states:
         return None, ("a table [loaded]",)
     model, loaded = table.model, states["loaded"]
-    mass = given(model, "mass_kg")
-    common = states["tare"].moment.correlation(loaded.moment)
+    mass = given(model, "mass_kg", "model")
     found = model_on_swing(
         states["tare"].state,
         loaded.state,
         mass,
-        correlations={("tare_moment_kg_m", "total_moment_kg_m"): common} if common else {},
         seed=table.monte_carlo_seed + 10,
     )
     axis = model.axis
     flags += found.flags
-    own = without_air(table, found.gyradius, depth=found.cg_below_pivot.result)
+    own = without_air(table, found.gyradius, depth=found.cg_below_pivot.budget.result)
     in_air = "_in_air" if table.entrained_air is not None else ""
     with_air = ", with its air" if in_air else ""
     findings += [
@@ -203,14 +186,12 @@ def _model(
         ),
         assessed(f"k_{axis}{in_air}_m", f"model: {axis} gyradius{with_air}", found.gyradius),
         *([assessed(f"k_{axis}_m", f"model: {axis} gyradius", own)] if in_air else []),
-        Finding("share", "model's part of the total inertia", Estimate(found.share, 0.0)),
+        Finding("share", "model's part of the total inertia", exactly(found.share)),
     ]
     cg_z = None
     above = given_or_none(model, "pivot_above_midpoint_m")
     if above is not None:
-        below = found.cg_below_pivot.result
-        spread = float(np.hypot(below.uncertainty, above.uncertainty))
-        cg_z = replace(below, value=below.value - above.value, uncertainty=spread)
+        cg_z = difference(found.cg_below_pivot.result, above)
         findings.append(Finding("cg_z_m", "model: CG below the struts' midpoint", cg_z))
     parts = (found.cg_below_pivot, found.about_cg, found.gyradius)
     return properties(
@@ -221,23 +202,7 @@ def _model(
         budgets=[one.budget for one in parts],
         flags=found.flags,
         cg_z=cg_z,
-        correlations=_correlations(found, mass, cg_z, f"k_{axis}_m"),
     )
-
-
-def _correlations(
-    found: SwingModel, mass: Estimate, cg_z: Estimate | None, name: str
-) -> dict[tuple[str, str], float]:
-    """Return how mass, place and gyradius hang together: the same moments are in all of them."""
-    place, gyradius = found.cg_below_pivot.budget, found.gyradius.budget
-    weight = linear_budget("mass", lambda model_mass_kg: model_mass_kg, {"model_mass_kg": mass})
-    spread = found.gyradius.result.uncertainty
-    tied = {("mass_kg", name): correlation(weight, gyradius, mass.uncertainty, spread)}
-    if cg_z is not None:
-        of_place = cg_z.uncertainty
-        tied["mass_kg", "cg_z_m"] = correlation(weight, place, mass.uncertainty, of_place)
-        tied["cg_z_m", name] = correlation(place, gyradius, of_place, spread)
-    return tied
 
 
 _STEPS = {

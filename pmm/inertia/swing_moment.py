@@ -1,11 +1,11 @@
 """The first moment of a swing's state, and what the moments of two states have in common."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.swing_static import StaticResult, fit_static
+from analysis.inertia.swing_static import StaticResult, distance, fit_static
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
 from pmm.inertia.stated_values import given
 from pmm.inertia.swing_tables import StateTable
@@ -19,46 +19,35 @@ class Moment:
     ----------
     estimate
         In kg m.
+    cg
+        Distance of the centre of gravity below the pivot, m.
     static
-        The fit to the tilts that it comes from, if it does.
-    tilt_relative, lever_relative
-        The inclinometer's and the levers' part of its relative standard uncertainty.
-    levers
-        Names and lengths of the levers: the same ones are off by the same.
+        The fit to the tilts that they come from, if they do.
     """
 
     estimate: Estimate
+    cg: Estimate
     static: StaticResult | None = None
-    tilt_relative: float = 0.0
-    lever_relative: float = 0.0
-    levers: frozenset[tuple[str, float]] = frozenset()
-
-    def correlation(self, other: "Moment") -> float:
-        """Return the correlation with another state's, read by the same inclinometer."""
-        common = self.tilt_relative * other.tilt_relative
-        if self.levers == other.levers:
-            common += self.lever_relative * other.lever_relative
-        own = self.estimate.relative * other.estimate.relative
-        return min(common / own, 1.0) if own > 0.0 else 0.0
 
 
-def first_moment(table: StateTable) -> Moment:
-    """Return the first moment; the levers' and the inclinometer's errors are common to a series."""
-    if table.levers:
-        return _by_tilts(table)
-    if table.moment_kg_m is not None:
-        return Moment(given(table, "moment_kg_m"))
-    cg, mass = given(table, "cg_below_pivot_m"), given(table, "mass_kg")
-    value = cg.value * mass.value
-    return Moment(Estimate(value, value * math.hypot(cg.relative, mass.relative), "kg m"))
+def first_moment(table: StateTable, mass: Estimate) -> Moment:
+    """Return the first moment of a state of that mass."""
+    if table.cg_below_pivot_m is not None:
+        cg = given(table, "cg_below_pivot_m")
+        return Moment(derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass), cg)
+    static = _tilts(table) if table.levers else None
+    moment = given(table, "moment_kg_m") if static is None else _scaled(table, static)
+    return Moment(moment, distance(moment, mass), static)
 
 
-def _by_tilts(table: StateTable) -> Moment:
-    static = fit_static(
-        [one.series() for one in table.levers], with_offset=table.static_fit == "F2"
-    )
+def _tilts(table: StateTable) -> StaticResult:
+    return fit_static([one.series() for one in table.levers], with_offset=table.static_fit == "F2")
+
+
+def _scaled(table: StateTable, static: StaticResult) -> Estimate:
+    """Add the levers' and the inclinometer's errors, which all states that use them share."""
     own = static.pooled.moment
     lever = float(np.mean([one.u_lever_m / one.lever_m for one in table.levers]))
-    estimate = own.widened(own.value * math.hypot(lever, table.u_tilt_relative))
-    levers = frozenset((one.name, one.lever_m) for one in table.levers)
-    return Moment(estimate, static, table.u_tilt_relative, lever, levers)
+    levers = ", ".join(sorted(f"{one.name} of {one.lever_m:g} m" for one in table.levers))
+    by_levers = own.widened(own.value * lever, label=f"levers {levers}")
+    return by_levers.widened(own.value * table.u_tilt_relative, label="scale of the inclinometer")

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from analysis.inertia.compound_pendulum import torsional_inertia, torsional_stiffness
-from analysis.inertia.elementary_functions import Value
+from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.budget import derived
+from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
@@ -69,7 +70,7 @@ def stiffness(
         return torsional_stiffness(mass_kg * square, period_s)
 
     found = assess("c", rod, inputs, unit="N m/rad", seed=seed)
-    return found.result, [assessed("stiffness_n_m_rad", "torsion rod: stiffness", found)]
+    return found.budget.result, [assessed("stiffness_n_m_rad", "torsion rod: stiffness", found)]
 
 
 def about_rod(rod: Estimate, period: Estimate, seed: int) -> Assessment:
@@ -85,21 +86,16 @@ class TorsionPlane:
     Attributes
     ----------
     axes
-        Angle of each axis to body z, and the inertia about it with the period's uncertainty.
-    scale_relative
-        Standard uncertainty of the stiffness, which all axes share.
+        Angle of each axis to body z, and the inertia about it.
     """
 
     inertia: PlaneInertia
     axes: tuple[tuple[float, Estimate], ...]
-    scale_relative: float
 
     def findings(self) -> Iterator[Finding]:
         """Yield roll, yaw and product of inertia, and the principal axis."""
         for k, (name, what) in enumerate(_IN_PLANE.items()):
-            own = self.inertia.estimate(k)
-            spread = math.hypot(own.uncertainty, own.value * self.scale_relative)
-            yield Finding(name, what, Estimate(own.value, spread, own.unit))
+            yield Finding(name, what, self.inertia.estimate(k))
         yield Finding("psi_rad", "principal x axis, from body x", self.inertia.principal_angle)
 
     def ellipse(self, mass: Estimate) -> PlaneAxes:
@@ -110,8 +106,8 @@ class TorsionPlane:
         DataError
             If a principal inertia is not above zero.
         """
-        xx, zz, xz = (float(value) for value in self.inertia.values)
-        psi = self.inertia.principal_angle_rad
+        xx, zz, xz = (float(value) for value in self.inertia.uncertain.values)
+        psi = self.inertia.principal_angle.value
         first, second = inertias_at(xx, zz, xz, psi)
         if min(first, second) <= 0.0:
             raise DataError(
@@ -131,8 +127,7 @@ _IN_PLANE = {
 
 
 def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
-    value = math.sqrt(inertia.value / mass.value)
-    return Estimate(value, 0.5 * value * inertia.relative, "m")
+    return derived("k", lambda about, mass: sqrt(about / mass), "m", about=inertia, mass=mass)
 
 
 def in_plane(
@@ -145,14 +140,14 @@ def in_plane(
     DataError
         If the axes are too near to each other.
     """
-    about = []
+    stiff = exactly(rod.value, rod.unit)  # its own uncertainty is a factor that all axes share
+    angles, about = [], []
     for number, one in enumerate(axes, 1):
         runs = read_period(job, one, f"torsion.axes[{number}]")
         periods.append(runs)
-        value = torsional_inertia(rod.value, runs.period.value)
-        spread = 2.0 * value * runs.period.relative
-        about.append(Estimate(value, spread, "kg m2", runs.period.degrees_of_freedom))
-    angles = [one.angle.value for one in axes]
-    spread = math.sqrt(sum(one.angle.uncertainty**2 for one in axes) / len(axes))
-    found = plane_inertia(about, angles, angle_uncertainty_rad=spread)
-    return TorsionPlane(found, tuple(zip(angles, about, strict=True)), rod.relative)
+        angles.append(one.angle)
+        inputs = {"stiffness_n_m_rad": stiff, "period_s": runs.period}
+        about.append(derived("I", torsional_inertia, "kg m2", **inputs))
+    found = plane_inertia(about, angles).scaled(rod.following(1.0, 1.0 / rod.value))
+    measured = tuple((angle.value, own) for angle, own in zip(angles, about, strict=True))
+    return TorsionPlane(found, measured)

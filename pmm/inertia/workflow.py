@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.inertia.outcome import Finding
@@ -16,8 +16,6 @@ def guide(
     axis: str,
     findings: list[Finding],
     flags: list[Flag],
-    *,
-    scale_relative: float = 0.0,
 ) -> str | None:
     """Say which step is next, or bring all four together.
 
@@ -31,8 +29,6 @@ def guide(
         The known body's inertia, if the file has it.
     axis
         In words, what the inertias are about.
-    scale_relative
-        See :func:`analysis.inertia.workflow.assess_workflow`.
 
     Raises
     ------
@@ -46,7 +42,7 @@ def guide(
         return f"{len(readings) + 1} of {len(Step)}, [{tables[step]}]: {what}"
     if known is None:
         raise ConfigurationError("the workflow has no known-weight check; add [check]")
-    found = assess_workflow(readings, known, scale_relative=scale_relative)
+    found = assess_workflow(readings, known)
     flags += found.flags
     findings += [
         Finding("workflow_tare_kg_m2", f"both tares: inertia about {axis}", found.tare),
@@ -56,7 +52,7 @@ def guide(
         Finding(
             "workflow_normalised_error",
             "known body's error over its interval",
-            Estimate(found.normalised_error, 0.0),
+            exactly(found.normalised_error),
         ),
     ]
     return None

@@ -47,7 +47,7 @@ def yaw_of(series: Series) -> Estimate:
 def test_gyradius_within_a_thousandth(seed: int) -> None:
     period = yaw_of(yaw_record(seed))
     found = yaw_from_period(
-        period, Estimate(D, 0.0, "m"), Estimate(LINE, 0.0, "m"), Estimate(G, 0.0, "m/s2")
+        period, Estimate.of(D, 0.0, "m"), Estimate.of(LINE, 0.0, "m"), Estimate.of(G, 0.0, "m/s2")
     )
     assert found.result.value == pytest.approx(K, rel=1e-3)
     assert abs(period.value / yaw_period(K, D, LINE, G) - 1.0) < 5e-4
@@ -84,11 +84,11 @@ def test_centre_of_gravity_within_a_millimetre() -> None:
         fit = fit_damped(*pitch_record(rng, 2e-5), modes=2)
         for k in (0, 1):
             runs[k].append(
-                Estimate(fit.modes[k].undamped_period_s, fit.period_uncertainty_s(k), "s")
+                Estimate.of(fit.modes[k].undamped_period_s, fit.period_uncertainty_s(k), "s")
             )
     slow, fast = (combine_runs(own).estimate for own in runs)
-    sway = Estimate(sway_period(LINE, G), 1e-5, "s")
-    found = pitch_from_periods(slow, fast, sway, Estimate(G, 0.0, "m/s2"))
+    sway = Estimate.of(sway_period(LINE, G), 1e-5, "s")
+    found = pitch_from_periods(slow, fast, sway, Estimate.of(G, 0.0, "m/s2"))
     assert found.depth.result.value == pytest.approx(DEPTH, abs=1e-3)
     assert found.gyradius.result.value == pytest.approx(KP, rel=2e-3)
 
@@ -113,9 +113,9 @@ def test_intervals_cover_as_promised_and_are_no_wider_than_they_must() -> None:
                 fit.period_uncertainty_s(0) / a.period_s, fit.period_uncertainty_s(1) / b.period_s
             )
             ratio = a.period_s / b.period_s
-            ratios.append(Estimate(ratio, ratio * u))
+            ratios.append(Estimate.of(ratio, ratio * u))
         ratio = combine_runs(ratios, what="ratio").estimate
-        spacing = Estimate(D + spacing_u * rng.standard_normal(), spacing_u, "m")
+        spacing = Estimate.of(D + spacing_u * rng.standard_normal(), spacing_u, "m")
         budget = linear_budget(
             "k", lambda ratio, d: ratio * d, {"ratio": ratio, "d": spacing}, unit="m"
         )
@@ -128,7 +128,7 @@ def test_intervals_cover_as_promised_and_are_no_wider_than_they_must() -> None:
 
 
 def test_ratio_agrees_with_period_and_needs_no_length() -> None:
-    yaw = Estimate(yaw_period(K, D, LINE, G), 1e-3, "s")
-    sway = Estimate(sway_period(LINE, G), 1e-3, "s")
-    found = yaw_from_ratio(yaw, sway, Estimate(D, 0.0, "m"))
+    yaw = Estimate.of(yaw_period(K, D, LINE, G), 1e-3, "s")
+    sway = Estimate.of(sway_period(LINE, G), 1e-3, "s")
+    found = yaw_from_ratio(yaw, sway, Estimate.of(D, 0.0, "m"))
     assert found.result.value == pytest.approx(K, rel=1e-9)

@@ -41,7 +41,7 @@ def rods() -> Spread:
             fit.period,
             within(spacing / 2.0, 5e-4, "m"),
             within(line, 5e-4, "m"),
-            Estimate(9.81, 0.003, "m/s2"),
+            Estimate.of(9.81, 0.003, "m/s2"),
         )
         geometries.append(SuspensionGyradius(path.name, k.result, spacing / 2.0, line))
     return compare_geometries(geometries)
@@ -75,7 +75,7 @@ def table(name: str) -> dict[str, Estimate]:
     for line in (SHARED / "compound_pendulum" / name).read_text().splitlines():
         key, _, text = line.partition("=")
         numbers = [float(part) for part in text.split("+/-")]
-        rows[key.strip()] = Estimate(numbers[0], numbers[1] if len(numbers) > 1 else 0.0)
+        rows[key.strip()] = Estimate.of(numbers[0], numbers[1] if len(numbers) > 1 else 0.0)
     return rows
 
 
@@ -127,7 +127,7 @@ def test_published_frame_and_fork() -> None:
             "depth", lambda x, z, foot, r: math.hypot(x - foot, z + r), inputs, unit="m"
         ).result
 
-    frame = depth(published["xB"], published["zB"], Estimate(0.0, 0.0), published["rR"])
+    frame = depth(published["xB"], published["zB"], Estimate.of(0.0, 0.0), published["rR"])
     fork = depth(published["xH"], published["zH"], published["w"], published["rF"])
     for found, key in (
         (hanging(rows, "TcB1", "mB", frame), "IByy"),
@@ -143,10 +143,10 @@ def test_published_plane_inertias(part: str, letter: str) -> None:
     lean = published["lam"].value
     about = [torsion(rows, f"Tt{part}{k}") for k in (1, 2, 3)]
     angles = [lean - math.radians(rows[f"alpha{part}{k}"].value) + 0.5 * math.pi for k in (1, 2, 3)]
-    found = plane_inertia(about, angles, angle_uncertainty_rad=math.radians(0.2))
-    values = [found.values[0], found.values[1], -found.values[2]]
+    found = plane_inertia(about, [Estimate.of(one, math.radians(0.2)) for one in angles])
+    xx, zz, xz = found.uncertain.values
     names = (f"I{letter}xx", f"I{letter}zz", f"I{letter}xz")
-    for value, name in zip(values, names, strict=True):
+    for value, name in zip((xx, zz, -xz), names, strict=True):
         assert abs(value - published[name].value) <= published[name].uncertainty, name
 
 

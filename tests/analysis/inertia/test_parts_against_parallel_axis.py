@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.parts import BodyPart, combine, inertia_about, part
 from analysis.uncertainty.estimate import Estimate, exactly
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.errors import ConfigurationError, DataError
 
 finite = st.floats(-2.0, 2.0)
@@ -16,8 +17,8 @@ points = st.lists(st.tuples(st.floats(0.1, 9.0), finite, finite, finite), min_si
 
 def point(name: str, m: float, x: float, y: float, z: float, u: float = 0.0) -> BodyPart:
     zero = exactly(0.0, "m")
-    place = (Estimate(x, u, "m"), Estimate(y, u, "m"), Estimate(z, u, "m"))
-    return part(name, Estimate(m, u, "kg"), place, (zero, zero, zero))
+    place = (Estimate.of(x, u, "m"), Estimate.of(y, u, "m"), Estimate.of(z, u, "m"))
+    return part(name, Estimate.of(m, u, "kg"), place, (zero, zero, zero))
 
 
 @given(points)
@@ -65,18 +66,11 @@ def test_covariance_against_monte_carlo() -> None:
     a, b = point("a", 3.0, 0.5, 0.1, 0.2, 0.01), point("b", 2.0, -0.8, 0.0, -0.1, 0.01)
     drawn = []
     for _ in range(4000):
-        pair = [
-            BodyPart(
-                p.name,
-                rng.multivariate_normal(p.parameters, p.covariance, method="eigh"),
-                p.covariance,
-            )
-            for p in (a, b)
-        ]
+        pair = [BodyPart(p.name, UncertainValues(p.uncertain.drawn(1, rng)[:, 0])) for p in (a, b)]
         drawn.append(combine("w", pair).parameters)
     whole = combine("w", [a, b])
     seen = np.cov(np.array(drawn).T)
-    assert np.sqrt(np.diag(whole.covariance)) == pytest.approx(
+    assert np.sqrt(np.diag(whole.uncertain.covariance())) == pytest.approx(
         np.sqrt(np.diag(seen)), rel=0.06, abs=1e-3
     )
 

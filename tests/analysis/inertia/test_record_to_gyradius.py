@@ -68,13 +68,13 @@ def test_interval_of_the_swings_inertia_covers() -> None:
     inside = 0
     for _ in range(400):
         runs = [
-            Estimate(period * (1.0 + 2e-3 * rng.standard_normal()), 1e-4, "s") for _ in range(5)
+            Estimate.of(period * (1.0 + 2e-3 * rng.standard_normal()), 1e-4, "s") for _ in range(5)
         ]
         below = depth * (1.0 + 4e-3 * rng.standard_normal())
         inputs = {
             "period_s": combine_runs(runs).estimate,
             "mass_kg": exactly(mass, "kg"),
-            "cg_m": Estimate(below, 4e-3 * depth, "m"),
+            "cg_m": Estimate.of(below, 4e-3 * depth, "m"),
             "gravity_m_s2": exactly(9.81),
         }
         low, high = linear_budget("I", inertia_at_cg, inputs).result.interval()
@@ -87,8 +87,8 @@ def test_suspension_forecast() -> None:
         0.303,
         0.352,
         0.253,
-        Estimate(0.28, 5e-4, "m"),
-        Estimate(0.504, 1e-3, "m"),
+        Estimate.of(0.28, 5e-4, "m"),
+        Estimate.of(0.504, 1e-3, "m"),
         exactly(9.81),
         period_scatter_relative=1e-3,
     )

@@ -14,13 +14,13 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 
-BUDGET = linear_budget("k", lambda k: k, {"k": Estimate(0.62, 0.002, "m", 5.0)}, unit="m")
+BUDGET = linear_budget("k", lambda k: k, {"k": Estimate.of(0.62, 0.002, "m", 5.0)}, unit="m")
 RESULT = InertiaResult(
     "hull 7",
-    Estimate(70.0, 0.02, "kg"),
-    Estimate(-0.02, 0.001, "m"),
-    Estimate(0.05, 0.001, "m"),
-    {"pitch": Estimate(0.62, 0.002, "m", 5.0), "yaw": Estimate(0.60, 0.002, "m")},
+    Estimate.of(70.0, 0.02, "kg"),
+    Estimate.of(-0.02, 0.001, "m"),
+    Estimate.of(0.05, 0.001, "m"),
+    {"pitch": Estimate.of(0.62, 0.002, "m", 5.0), "yaw": Estimate.of(0.60, 0.002, "m")},
     budgets=(BUDGET,),
 )
 
@@ -33,7 +33,12 @@ def test_model_table_reads_back_as_the_body() -> None:
     vertical = tomllib.loads(model_toml(RESULT, Plane.VERTICAL))
     expected = 70.0 * (0.62**2 + 0.02**2 + 0.05**2)
     assert vertical["model"]["inertia_kg_m2"] == pytest.approx(expected)
-    assert vertical["model_uncertainty"]["inertia_degrees_of_freedom"] == 5.0
+    pitch, ahead, below = RESULT.gyradii["pitch"], RESULT.cg_x, RESULT.cg_z
+    parts = [expected / 70.0 * RESULT.mass.uncertainty]
+    parts += [140.0 * one.value * one.uncertainty for one in (pitch, ahead, below)]
+    freedom = 5.0 * (math.fsum(part**2 for part in parts) / parts[1] ** 2) ** 2
+    found = vertical["model_uncertainty"]["inertia_degrees_of_freedom"]
+    assert found == pytest.approx(freedom)
 
 
 def test_uncertainty_about_the_midpoint() -> None:
@@ -49,16 +54,19 @@ def test_uncertainty_about_the_midpoint() -> None:
 def test_correlations_enter_the_inertia() -> None:
     from dataclasses import replace
 
-    tied = replace(RESULT, correlations={("k_yaw_m", "mass_kg"): -1.0})
+    mass, yaw = RESULT.mass, RESULT.gyradii["yaw"]
+    common = exactly(yaw.value, "m").widened(-yaw.uncertainty, label="scale")
+    heavy = exactly(mass.value, "kg").widened(mass.uncertainty, label="scale")
+    tied = replace(RESULT, mass=heavy, gyradii={"yaw": common})
     loose, stiff = RESULT.inertia("yaw"), tied.inertia("yaw")
-    expected = loose.value * abs(RESULT.mass.relative - 2.0 * RESULT.gyradii["yaw"].relative)
+    expected = loose.value * abs(mass.relative - 2.0 * yaw.relative)
     assert stiff.uncertainty == pytest.approx(expected)
     assert tied.about_midpoint(Plane.HORIZONTAL).uncertainty < loose.uncertainty
 
 
 def test_json_has_every_number_and_no_nan() -> None:
     numbers = json.loads(json.dumps(RESULT.numbers(), allow_nan=False))
-    assert numbers["quantities"]["k_pitch_m"]["degrees_of_freedom"] == 5.0
+    assert numbers["quantities"]["k_pitch_m"]["degrees_of_freedom"] == pytest.approx(5.0)
     assert numbers["quantities"]["mass_kg"]["degrees_of_freedom"] is None
     assert numbers["quantities"]["i_yaw_kg_m2"]["value"] == pytest.approx(70.0 * 0.36)
     assert numbers["budgets"]["k"][0]["share_percent"] == pytest.approx(100.0)
@@ -70,7 +78,7 @@ def test_an_axis_not_measured_is_refused() -> None:
 
 
 def test_target_passes_fails_or_is_undecided() -> None:
-    k = Estimate(0.62, 0.002, "m")
+    k = Estimate.of(0.62, 0.002, "m")
     assert compare_with_target("k", k, 0.62, 0.01).verdict == "pass"
     assert compare_with_target("k", k, 0.60, 0.01).verdict == "fail"
     found = compare_with_target("k", k, 0.61, 0.01)
@@ -83,7 +91,7 @@ def test_target_passes_fails_or_is_undecided() -> None:
 def steps(tare: float, again: float, check: float) -> tuple[StepResult, ...]:
     values = (tare, 50.0, check, again)
     return tuple(
-        StepResult(step, Estimate(value, 0.05, "kg m2", 2.0))
+        StepResult(step, Estimate.of(value, 0.05, "kg m2", 2.0))
         for step, value in zip(Step, values, strict=True)
     )
 
@@ -97,7 +105,7 @@ def test_workflow_in_order() -> None:
     following = next_step(made[:2])
     assert following is not None
     assert following[0] is Step.CHECK
-    found = assess_workflow(made, Estimate(2.0, 0.002, "kg m2"))
+    found = assess_workflow(made, Estimate.of(2.0, 0.002, "kg m2"))
     assert found.passes
     assert found.flags == ()
     assert found.test_less_tare.value == pytest.approx(9.99)

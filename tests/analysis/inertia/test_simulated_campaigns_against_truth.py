@@ -66,14 +66,14 @@ def forecast(model: RigidPart) -> tuple[bool, float]:
     scatter = RELEASE / math.sqrt(RUNS)
     known = known_moment()
     tare = SwingState(
-        Estimate(period, scatter * period, "s"),
-        Estimate(SWING_2021.mass_kg, SCALE_KG, "kg"),
-        Estimate(moment, known * moment, "kg m"),
+        Estimate.of(period, scatter * period, "s"),
+        Estimate.of(SWING_2021.mass_kg, SCALE_KG, "kg"),
+        Estimate.of(moment, known * moment, "kg m"),
         G,
     )
     found = forecast_swing(
         tare,
-        Estimate(model.mass_kg, SCALE_KG, "kg"),
+        Estimate.of(model.mass_kg, SCALE_KG, "kg"),
         model.lever_m,
         math.sqrt(model.inertia_kg_m2 / model.mass_kg),
         period_scatter_relative=scatter,

@@ -162,8 +162,8 @@ def test_compound_and_lamboley(k: float, a: float, h: float) -> None:
 
 
 def test_depth_drops_out_where_it_equals_the_gyradius() -> None:
-    period = Estimate(pendulum_period(0.5, 0.5, G), 0.0, "s")
-    found = compound_pendulum(period, Estimate(0.5, 1e-3, "m"), exactly(G))
+    period = Estimate.of(pendulum_period(0.5, 0.5, G), 0.0, "s")
+    found = compound_pendulum(period, Estimate.of(0.5, 1e-3, "m"), exactly(G))
     assert found.budget.result.uncertainty < 1e-6
 
 
@@ -195,9 +195,9 @@ def test_principal_axes_there_and_back(px: float, more: float, psi: float) -> No
     a, b = gyradius_about(px, pz, psi + 0.5), gyradius_about(px, pz, psi - 0.4)
     assert roll_from_tilts(kz, a, b, 0.5, -0.4) == pytest.approx(kx, rel=1e-6)
     squares = [exactly(v**2, "kg m2") for v in (kz, a, b)]
-    plane = plane_inertia(squares, [0.0, 0.5, -0.4])
-    assert plane.values[:2] == pytest.approx([kx**2, kz**2], rel=1e-6)
-    assert plane.principal_angle_rad == pytest.approx(psi, abs=1e-6)
+    plane = plane_inertia(squares, [exactly(phi) for phi in (0.0, 0.5, -0.4)])
+    assert plane.uncertain.values[:2] == pytest.approx([kx**2, kz**2], rel=1e-6)
+    assert plane.principal_angle.value == pytest.approx(psi, abs=1e-6)
 
 
 def test_axes_a_right_angle_apart_need_no_angle() -> None:
@@ -213,14 +213,14 @@ def test_tilts_that_tell_nothing_are_refused() -> None:
     with pytest.raises(DataError, match="too near to each other"):
         roll_from_three_yaws(k, k, k, exactly(0.3), exactly(0.31))
     with pytest.raises(DataError, match="too near to each other"):
-        plane_inertia([k, k, k], [0.0, 0.01, 0.02])
+        plane_inertia([k, k, k], [exactly(phi) for phi in (0.0, 0.01, 0.02)])
 
 
 def test_roll_from_tilts_is_as_sensitive_as_the_paper_says() -> None:
     px, pz = 0.625, 1.057
     u = 1e-3
     kz, a, b = (
-        Estimate(gyradius_about(px, pz, angle), u, "m")
+        Estimate.of(gyradius_about(px, pz, angle), u, "m")
         for angle in (0.0, math.radians(30), math.radians(-30))
     )
     found = roll_from_three_yaws(

@@ -107,9 +107,9 @@ def state(mass: float, depth: float, inertia: float, relative: float = 1e-4) -> 
     """Inertia about the own CG; the period follows."""
     period = 2.0 * math.pi * math.sqrt((inertia + mass * depth**2) / (mass * 9.81 * depth))
     return SwingState(
-        Estimate(period, relative * period, "s"),
-        Estimate(mass, relative * mass, "kg"),
-        Estimate(mass * depth, relative * mass * depth, "kg m"),
+        Estimate.of(period, relative * period, "s"),
+        Estimate.of(mass, relative * mass, "kg"),
+        Estimate.of(mass * depth, relative * mass * depth, "kg m"),
         G,
     )
 
@@ -119,7 +119,7 @@ def test_inertia_of_what_hangs() -> None:
     assert found.about_cg.result.value == pytest.approx(39.6, rel=1e-6)
     assert found.about_pivot.result.value == pytest.approx(39.6 + MASS * DEPTH**2, rel=1e-6)
     with pytest.raises(ConfigurationError, match="mass_kg = 0"):
-        swing_inertia(SwingState(Estimate(7.0, 0.1), exactly(0.0), exactly(3.0), G))
+        swing_inertia(SwingState(Estimate.of(7.0, 0.1), exactly(0.0), exactly(3.0), G))
 
 
 def test_model_is_the_difference() -> None:
@@ -138,12 +138,12 @@ def test_model_is_the_difference() -> None:
 def test_small_model_is_forecast_as_not_worth_swinging() -> None:
     """The paper's model: 11.27 kg, 0.836 m below P1; its inertia is a hundredth of the total."""
     tare = SwingState(
-        Estimate(7.2923, 0.0082, "s"),
-        Estimate(MASS, 0.02, "kg"),
-        Estimate(MASS * DEPTH, MASS * 1e-4, "kg m"),
+        Estimate.of(7.2923, 0.0082, "s"),
+        Estimate.of(MASS, 0.02, "kg"),
+        Estimate.of(MASS * DEPTH, MASS * 1e-4, "kg m"),
         G,
     )
-    model = Estimate(11.27, 0.005, "kg")
+    model = Estimate.of(11.27, 0.005, "kg")
     forecast = forecast_swing(
         tare, model, 0.8376, 0.2, period_scatter_relative=1e-3, moment_relative=1e-3
     )
@@ -153,7 +153,7 @@ def test_small_model_is_forecast_as_not_worth_swinging() -> None:
     assert "bifilar" in forecast.flags[0].message
     large = forecast_swing(
         tare,
-        Estimate(80.0, 0.01, "kg"),
+        Estimate.of(80.0, 0.01, "kg"),
         0.6,
         0.9,
         period_scatter_relative=1e-4,
@@ -203,13 +203,13 @@ def pivots(d1: float, d2: float) -> tuple[PivotTest, PivotTest]:
         return 2.0 * math.pi * math.sqrt((inertia + MASS * d * d) / (MASS * 9.81 * d))
 
     return (
-        PivotTest(Estimate(period(0.0713), 1e-3, "s"), Estimate(d1, 2e-4, "m")),
-        PivotTest(Estimate(period(1.2713), 1e-3, "s"), Estimate(d2, 5e-4, "m")),
+        PivotTest(Estimate.of(period(0.0713), 1e-3, "s"), Estimate.of(d1, 2e-4, "m")),
+        PivotTest(Estimate.of(period(1.2713), 1e-3, "s"), Estimate.of(d2, 5e-4, "m")),
     )
 
 
 def test_two_pivots_agree_or_point_at_what_is_wrong() -> None:
-    mass, apart = Estimate(MASS, 0.02, "kg"), Estimate(1.2, 1e-4, "m")
+    mass, apart = Estimate.of(MASS, 0.02, "kg"), Estimate.of(1.2, 1e-4, "m")
     good = check_two_pivots(*pivots(0.0713, 1.2713), mass, apart, G)
     assert good.passes
     assert good.points_to == ()
@@ -221,10 +221,10 @@ def test_two_pivots_agree_or_point_at_what_is_wrong() -> None:
 
 
 def test_the_papers_own_check_fails_and_points_at_the_upper_pivot() -> None:
-    first = PivotTest(Estimate(7.2923, 0.0082, "s"), Estimate(0.0713, 3e-4, "m"))
-    second = PivotTest(Estimate(2.8460, 2e-4, "s"), Estimate(1.2767, 1e-3, "m"))
+    first = PivotTest(Estimate.of(7.2923, 0.0082, "s"), Estimate.of(0.0713, 3e-4, "m"))
+    second = PivotTest(Estimate.of(2.8460, 2e-4, "s"), Estimate.of(1.2767, 1e-3, "m"))
     found = check_two_pivots(
-        first, second, Estimate(42.28, 0.02, "kg"), Estimate(1.2, 1e-4, "m"), G
+        first, second, Estimate.of(42.28, 0.02, "kg"), Estimate.of(1.2, 1e-4, "m"), G
     )
     assert not found.passes
     assert found.distance_excess.value == pytest.approx(5.4e-3)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.inertia.plane_inertia import plane_inertia
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from pmm.inertia import bifilar, parts, pendulum, swing
 from pmm.inertia.outcome import Outcome
@@ -185,7 +185,8 @@ def test_the_principal_angles_uncertainty_is_that_of_its_slopes() -> None:
     generator = np.random.default_rng(3)
     seen = [
         plane_inertia(
-            [Estimate(v + 1e-3 * generator.standard_normal(), 1e-3) for v in about], angles
+            [Estimate.of(v + 1e-3 * generator.standard_normal(), 1e-3) for v in about],
+            [exactly(angle) for angle in angles],
         ).principal_angle
         for _ in range(2000)
     ]

@@ -99,7 +99,7 @@ pivot_above_midpoint_m = 0.7
         own = (G / (4.0 * math.pi**2)) * (loaded_s**2 * s1 - tare_s**2 * s0) - m * place**2
         return own + m * (place - 0.7) ** 2
 
-    inputs = {"m": Estimate(*mass), "s0": Estimate(*tare), "s1": Estimate(*total)}
+    inputs = {"m": Estimate.of(*mass), "s0": Estimate.of(*tare), "s1": Estimate.of(*total)}
     whole = linear_budget("I", midpoint, inputs).result
     own = body.about_midpoint(Plane.VERTICAL)
     assert own.value == pytest.approx(whole.value, rel=1e-4)
@@ -143,16 +143,18 @@ k_pitch_m = 0.2
         return hung - mount * (0.2**2 + 0.1**2)
 
     inputs = {
-        "m": Estimate(*mass),
-        "s0": Estimate(*tare),
-        "s1": Estimate(*total),
-        "mount": Estimate(5.0, 0.002),
+        "m": Estimate.of(*mass),
+        "s0": Estimate.of(*tare),
+        "s1": Estimate.of(*total),
+        "mount": Estimate.of(5.0, 0.002),
     }
     whole = linear_budget("I", midpoint, inputs).result
     own = body.about_midpoint(Plane.VERTICAL)
     assert own.value == pytest.approx(whole.value, rel=1e-6)
     assert own.uncertainty == pytest.approx(whole.uncertainty, rel=0.02)
-    loose = replace(body, correlations={}).about_midpoint(Plane.VERTICAL)
+    k = body.gyradii["pitch"]
+    alone = {"pitch": Estimate.of(k.value, k.uncertainty, "m")}
+    loose = replace(body, gyradii=alone).about_midpoint(Plane.VERTICAL)
     assert abs(loose.uncertainty / whole.uncertainty - 1.0) > 0.2
 
 
@@ -180,7 +182,7 @@ def test_what_lever_and_inclinometer_add_is_common_to_both_states(tmp_path: Path
         about_pivot = scale * (G / (4.0 * math.pi**2)) * (loaded_s**2 * total - tare_s**2 * tare)
         return about_pivot - moment**2 / mass, about_pivot - 0.6 * moment
 
-    scale = {"scale": Estimate(1.0, math.hypot(lever, tilt))}
+    scale = {"scale": Estimate.of(1.0, math.hypot(lever, tilt))}
     inertia, midpoint = (
         linear_budget("I", lambda scale, k=k: own(scale)[k], scale).result for k in (0, 1)
     )
