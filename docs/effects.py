@@ -58,6 +58,20 @@ Effects that do not repeat with the shaft, or change what an analysis takes for 
 place in a periodic steady state; their signatures are tested in the time domain there.
 """
 
+_FORMS: Final = """
+## Families of forms
+
+Nature has most effects in more forms than one: friction turns at once, over the distance in which
+bristles bend or over the speed at which a film carries; a loop is as wide as the force's square, or
+its first power. `Effect.forms()` returns the same effect, at the same size, in other forms of its
+family, each about one standard deviation away from the one above. Sizes are matched where a strut
+moves at a third of the oscillator's largest frequency and eccentricity: there the first harmonic,
+or the loss per cycle, is the same to a fifth. The class's description says where a form comes from.
+
+"""
+
+_FORM_COLUMNS: Final = "| name | other forms |"
+
 _COLUMNS: Final = (
     "| code | name | stage | what it is | parameters: typical (low to high) | off theory |"
 )
@@ -69,7 +83,23 @@ def page() -> str:
     rows = [_row(kind) for kind in kinds]
     head = _HEAD.format(count=len(SET_POINTS), points=POINTS, drift=DRIFT_RAD)
     table = [_COLUMNS, "|---|---|---|---|---|---|", *rows]
-    return f"{head}\n{len(rows)} effects.\n\n" + "\n".join(table) + "\n"
+    families = [_FORM_COLUMNS, "|---|---|", *filter(None, map(_family, kinds))]
+    effects = f"{head}\n{len(rows)} effects.\n\n" + "\n".join(table) + "\n"
+    return effects + _FORMS + "\n".join(families) + "\n"
+
+
+def _family(kind: type[Effect]) -> str:
+    """Return the row of an effect's other forms; empty if it has none."""
+    effect = kind()
+    others = [_other(effect, form) for form in effect.forms()]
+    return f"| `{kind.name}` | {'; '.join(others)} |" if others else ""
+
+
+def _other(effect: Effect, form: Effect) -> str:
+    """Return how a form is switched on, by the parameters that are its own."""
+    names = [one.name for one in effect.parameters()]
+    own = [name for name in names if getattr(form, name) != getattr(effect, name)]
+    return ", ".join(f"`{name}={getattr(form, name):.4g}`" for name in own)
 
 
 def _row(kind: type[Effect]) -> str:

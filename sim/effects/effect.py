@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import Any, ClassVar, Self, TypeAlias
 
@@ -83,6 +83,9 @@ class Parameter:
         size. 0 for all others.
     one_sign
         Why no rig has the other sign, or has it less far; empty where both are alike.
+    forms
+        Of one that tells the form of the effect and not its size: values of other forms that a rig
+        may have as well, each about a standard deviation of what such rigs have. It is held.
     """
 
     name: str
@@ -96,6 +99,7 @@ class Parameter:
     resonance: bool = False
     least: float = 0.0
     one_sign: str = ""
+    forms: tuple[float, ...] = ()
 
     @property
     def plausible(self) -> str:
@@ -115,6 +119,7 @@ class OneSign(StrEnum):
     FRICTION = "friction only opposes the motion"
     LENGTH = "a length"
     LOSS = "a loop only takes energy out"
+    LUBRICATION = "a film grows with the speed"
     MASS = "a mass, or an inertia"
     PLAY = "a clearance is open, or there is none"
     RATE = "a frequency, or a rate"
@@ -140,23 +145,24 @@ def parameter(
     resonance: bool = False,
     least: float = 0.0,
     one_sign: str = "",
+    forms: tuple[float, ...] = (),
 ) -> Any:
     """Declare a field of an effect, a :class:`Parameter`; its default is the typical value.
 
     Raises
     ------
     ConfigurationError
-        If a start lies outside the plausible range.
+        If a start, or another form, lies outside the plausible range.
     """
-    for start in starts:
+    for start in (*starts, *forms):
         if not low <= start <= high:
             raise ConfigurationError(
-                f"parameter {meaning!r}: its start {start:g} is outside the plausible range "
-                f"{low:g} to {high:g}"
+                f"parameter {meaning!r}: {start:g}, a start or a form, is outside the plausible "
+                f"range {low:g} to {high:g}"
             )
     told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
-    sought = {"starts": starts, "held": held, "resonance": resonance}
-    signs = {"least": least, "one_sign": one_sign}
+    sought = {"starts": starts, "held": held or bool(forms), "resonance": resonance}
+    signs = {"least": least, "one_sign": one_sign, "forms": forms}
     return field(default=typical, metadata=told | sought | signs)
 
 
@@ -244,6 +250,19 @@ class Effect(ABC):
 
         For tests, documentation and display only: nothing that diagnoses uses it.
         """
+
+    def forms(self) -> "tuple[Effect, ...]":
+        """Return the same effect, at the same size, in other forms of its family; most have none.
+
+        One for each value that a parameter states as another form, the others left as they are. The
+        size is the first harmonic's at the motion of :mod:`sim.effects.typical`, within a fifth.
+        """
+        return tuple(
+            replace(self, **{one.name: form})
+            for one in self.parameters()
+            for form in one.forms
+            if form != getattr(self, one.name)
+        )
 
     def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:
         """Return the set-point that is really run; most effects leave it."""

@@ -11,7 +11,8 @@ from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, Lines, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import STRUTS, with_laws
 from sim.effects.situation import STRUT_FORCES, Situation, at_struts
-from sim.model.laws import Coulomb, Tone
+from sim.model.friction import Coulomb
+from sim.model.laws import Tone
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:

@@ -7,8 +7,10 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import power_law
 from sim.effects.hydrodynamics import of_law, with_laws
 from sim.effects.situation import Situation
+from sim.effects.typical import speed_m_s
 from sim.model.law_point import Point
 from sim.model.laws import Quadratic
 from sim.rig import SimulatedRig
@@ -21,7 +23,9 @@ POINTS = (Point.THROUGH_WATER, Point.ROTATION)
 class QuadraticDamping(Effect):
     """``B v|v|``: ``8/(3 pi) B V^2`` in quadrature, and a fifth of it at order 3, of the same sign.
 
-    It goes with w^2 a^2; absent in air.
+    It goes with w^2 a^2; absent in air. At small amplitudes the drag coefficient falls as its power
+    -1/3 for a plate (J. M. R. Graham, J. Fluid Mech. 97, 1980), so that the force goes with a power
+    of 5/3; that of a round bilge grows with the amplitude.
     """
 
     code: ClassVar[str] = "H3"
@@ -40,11 +44,28 @@ class QuadraticDamping(Effect):
     rotation_n_m_s2: float = parameter(
         50.0, 0.0, 10000.0, "N m s2", "of pitch or yaw", one_sign=OneSign.DAMPING
     )
+    power: float = parameter(
+        2.0,
+        1.0,
+        3.0,
+        "1",
+        "of the velocity",
+        one_sign="drag grows with the speed",
+        forms=(5.0 / 3.0, 2.5),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s2_m2, self.rotation_n_m_s2)
-        return with_laws(rig, *zip(POINTS, map(Quadratic, sizes), strict=True))
+        if self.power == 2.0:
+            return with_laws(rig, *zip(POINTS, map(Quadratic, sizes), strict=True))
+        speed = speed_m_s(rig)
+        speeds = (speed, speed / rig.oscillator.half_spacing_m)
+        laws = [
+            power_law(size, 2.0, self.power, typical)
+            for size, typical in zip(sizes, speeds, strict=True)
+        ]
+        return with_laws(rig, *zip(POINTS, laws, strict=True))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the describing function of ``cos|cos|``, 8/3pi, 8/15pi, -8/105pi."""

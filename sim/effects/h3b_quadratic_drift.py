@@ -1,18 +1,23 @@
 """H3b: quadratic damping of a model that drifts, too: it stands askew, or there is a current."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import power_law
 from sim.effects.hydrodynamics import of_law, with_laws
 from sim.effects.situation import Situation
+from sim.effects.typical import speed_m_s
 from sim.model.law_point import Point
 from sim.model.laws import Quadratic
 from sim.model.water.force_laws import quadratic_describing_function
 from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.model.force_law import ForceLaw
 
 HIGHEST = 4
 SLOWEST_M_S = 1e-9  # below it there is the drift only
@@ -41,10 +46,22 @@ class QuadraticDrift(Effect):
         one_sign=OneSign.DAMPING,
     )
     drift_m_s: float = parameter(0.01, -0.3, 0.3, "m/s", "v0, mean velocity across")
+    power: float = parameter(
+        2.0,
+        1.0,
+        3.0,
+        "1",
+        "of the velocity",
+        one_sign="drag grows with the speed",
+        forms=(5.0 / 3.0, 2.5),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of heave or sway."""
-        law = Quadratic(self.translation_n_s2_m2, self.drift_m_s)
+        law: ForceLaw = Quadratic(self.translation_n_s2_m2, self.drift_m_s)
+        if self.power != 2.0:
+            size = self.translation_n_s2_m2
+            law = power_law(size, 2.0, self.power, speed_m_s(rig), self.drift_m_s)
         return with_laws(rig, (Point.THROUGH_WATER, law))
 
     def signature(self, situation: Situation) -> Signature:

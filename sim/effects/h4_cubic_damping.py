@@ -7,8 +7,10 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import power_law
 from sim.effects.hydrodynamics import of_law, with_laws
 from sim.effects.situation import Situation
+from sim.effects.typical import speed_m_s
 from sim.model.law_point import Point
 from sim.model.laws import Cubic
 from sim.rig import SimulatedRig
@@ -21,7 +23,8 @@ SHARES = {1: 0.75, 3: 0.25}  # of cos^3
 class CubicDamping(Effect):
     """``B v^3``: ``3/4 B V^3`` in quadrature, and a third of it with the same sign at order 3.
 
-    It goes with w^3 a^3; absent in air.
+    It goes with w^3 a^3; absent in air. As a polynomial's last term it stands for powers from 2.5
+    to 3.5, whatever else there is.
     """
 
     code: ClassVar[str] = "H4"
@@ -40,11 +43,28 @@ class CubicDamping(Effect):
     rotation_n_m_s3: float = parameter(
         80.0, 0.0, 20000.0, "N m s3", "of pitch or yaw", one_sign=OneSign.DAMPING
     )
+    power: float = parameter(
+        3.0,
+        2.0,
+        4.0,
+        "1",
+        "of the velocity",
+        one_sign="drag grows with the speed",
+        forms=(2.5, 3.5),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s3_m3, self.rotation_n_m_s3)
-        return with_laws(rig, *zip(POINTS, map(Cubic, sizes), strict=True))
+        if self.power == 3.0:
+            return with_laws(rig, *zip(POINTS, map(Cubic, sizes), strict=True))
+        speed = speed_m_s(rig)
+        speeds = (speed, speed / rig.oscillator.half_spacing_m)
+        laws = [
+            power_law(size, 3.0, self.power, typical)
+            for size, typical in zip(sizes, speeds, strict=True)
+        ]
+        return with_laws(rig, *zip(POINTS, laws, strict=True))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the describing function of ``cos^3``."""

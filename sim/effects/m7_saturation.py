@@ -18,7 +18,9 @@ from sim.rig import SimulatedRig
 class Saturation(Effect):
     """The reading stays within ``-lower_n`` to ``upper_n``: flat tops beyond a threshold.
 
-    Alike to both sides it leaves odd orders; to one side, a mean and even orders as well.
+    Alike to both sides it leaves odd orders; to one side, a mean and even orders as well. An
+    amplifier bends towards its limit before (Rapp), which then lies a little further out:
+    :func:`sim.gauges.characteristic.limited`.
     """
 
     code: ClassVar[str] = "M7"
@@ -42,17 +44,29 @@ class Saturation(Effect):
         "largest negative reading, its size",
         one_sign="a limit to either side has its own",
     )
+    knee: float = parameter(
+        0.0,
+        0.0,
+        0.3,
+        "1",
+        "how softly it bends towards the limits; 0 for not at all",
+        one_sign="no amplifier bends away from its limit",
+        forms=(0.1, 0.2),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these limits, or the narrower ones that the gauges have."""
+        # As much is lost of a force that is 1.2 times the limit, to 1 % of it for each form.
+        further = 1.0 + 5.2 * self.knee**2
 
         def limited(dynamometer: Dynamometer, _: int) -> Dynamometer:
             lowest = -np.inf if dynamometer.lowest_n is None else dynamometer.lowest_n
             highest = np.inf if dynamometer.highest_n is None else dynamometer.highest_n
             return replace(
                 dynamometer,
-                lowest_n=float(max(lowest, -self.lower_n)),
-                highest_n=float(min(highest, self.upper_n)),
+                lowest_n=float(max(lowest, -self.lower_n * further)),
+                highest_n=float(min(highest, self.upper_n * further)),
+                limit_knee=max(dynamometer.limit_knee, self.knee),
             )
 
         return with_gauges(rig, limited)

@@ -1,16 +1,17 @@
 """S4: friction that is larger near standstill, below the dynamometer."""
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import UNLIKE, at_both_struts
 from sim.effects.situation import Situation, at_struts
-from sim.model.law_point import Acting, Point
-from sim.model.laws import Stribeck
+from sim.model.friction import Stribeck
 from sim.rig import SimulatedRig
 
 
@@ -19,7 +20,9 @@ class StribeckFriction(Effect):
     """``(F_s - F_c) exp(-(v/v_s)^2) sgn(v)`` at each strut, besides Coulomb friction.
 
     In quadrature ``(4/pi) (F_s - F_c) D(p)/p`` with p = a w/v_s and Dawson's integral D, so it
-    falls as 1/p^2; the third harmonic is the larger one for p > 1.30.
+    falls as 1/p^2; the third harmonic is the larger one for p > 1.30. It may turn over the distance
+    in which bristles bend (Dahl), or fall more slowly, ``(1 + |v|/v_n)^-n``, v_n being such that
+    the loss per cycle at p >> 1 is the same.
     """
 
     code: ClassVar[str] = "S4"
@@ -43,12 +46,34 @@ class StribeckFriction(Effect):
         "speed at which 1/e of the excess is left",
         one_sign="a speed, whichever way",
     )
+    presliding_m: float = parameter(
+        0.0,
+        0.0,
+        2e-3,
+        "m",
+        "distance in which bristles bend the other way, 0 for none",
+        one_sign=OneSign.LENGTH,
+        forms=(2e-5,),
+    )
+    tail: float = parameter(
+        0.0,
+        0.0,
+        0.45,
+        "1",
+        "1/n of a fall as a power of the speed; 0 for that of a normal density",
+        one_sign="what slides is not held faster than what sticks",
+        forms=(0.25,),
+    )
+    unlike: float = parameter(0.0, -1.0, 1.0, "1", UNLIKE, forms=(0.3,))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
-        law = Stribeck(self.excess_n, self.stribeck_speed_m_s)
-        added = (Acting(law, Point.AFT), Acting(law, Point.FORE))
-        return replace(rig, forces=(*rig.forces, *added))
+        speed, tail = self.stribeck_speed_m_s, None
+        if self.tail:
+            tail = 1.0 / self.tail
+            speed *= math.sqrt((tail - 1.0) * (tail - 2.0) / 2.0)
+        law = Stribeck(self.excess_n, speed, self.presliding_m or None, tail)
+        return at_both_struts(rig, law, self.unlike)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the describing function, by Dawson's integral; each strut at its own phase."""

@@ -1,7 +1,7 @@
 """S5: friction in proportion to the load on a guide, below the dynamometer."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
@@ -9,9 +9,9 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import UNLIKE, at_both_struts
 from sim.effects.situation import Situation, at_struts
-from sim.model.law_point import Acting, Point
-from sim.model.laws import LoadFriction
+from sim.model.friction import LoadFriction
 from sim.rig import SimulatedRig
 
 HIGHEST = 5
@@ -23,7 +23,8 @@ class LoadDependentFriction(Effect):
 
     Without side load the third harmonic is as large as the first, ``2 mu F/pi`` each where F is in
     phase. A side load that is larger than F gives Coulomb friction, and even harmonics:
-    ``8 mu F/(3 pi)`` at the second order.
+    ``8 mu F/(3 pi)`` at the second order. Dry guides turn it over the distance in which their
+    asperities bend (Dahl).
     """
 
     code: ClassVar[str] = "S5"
@@ -35,12 +36,21 @@ class LoadDependentFriction(Effect):
         0.02, 0.0, 0.3, "1", "coefficient of friction", one_sign=OneSign.FRICTION
     )
     side_load_n: float = parameter(0.0, -500.0, 500.0, "N", "steady load on the guide")
+    presliding_m: float = parameter(
+        0.0,
+        0.0,
+        2e-3,
+        "m",
+        "distance in which bristles bend the other way, 0 for none",
+        one_sign=OneSign.LENGTH,
+        forms=(5e-5, 4e-4),
+    )
+    unlike: float = parameter(0.0, -1.0, 1.0, "1", UNLIKE, forms=(0.3,))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the friction at both struts."""
-        law = LoadFriction(self.friction, self.side_load_n)
-        added = (Acting(law, Point.AFT), Acting(law, Point.FORE))
-        return replace(rig, forces=(*rig.forces, *added))
+        law = LoadFriction(self.friction, self.side_load_n, 1.0, self.presliding_m or None)
+        return at_both_struts(rig, law, self.unlike)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the Fourier coefficients, from the stretches in which no sign changes; exact."""

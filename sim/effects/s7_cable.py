@@ -9,8 +9,9 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
 from sim.model.force_law import ForceLaw
+from sim.model.friction import Coulomb, RubbingSpring
 from sim.model.law_point import Acting, Point
-from sim.model.laws import Coulomb, RubbingSpring, Spring
+from sim.model.laws import Spring
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:

@@ -1,64 +1,22 @@
 """The dynamometers: readings from the forces in the struts."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, NamedTuple, TypeAlias
-
-import numpy as np
+from typing import ClassVar, TypeAlias
 
 from hardware.description.arrays import FloatArray
 from sim import signals
+from sim.gauges.characteristic import Curve, Loop, LoopState, PowerLoop, follow, limited
 from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 from sim.solve.sampled_period import steady_by_samples
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
-
-
-class LoopState(NamedTuple):
-    """Last value, which way it went (-1, 0, 1), and where it turned last, above and below."""
-
-    last: float
-    direction: float
-    highest: float
-    lowest: float
-
-
-def loop(state: LoopState | None, values: FloatArray) -> tuple[LoopState, FloatArray]:
-    """Return the lag of a Rayleigh loop behind each value, not yet multiplied by beta/2.
-
-    On the way up from F1, where F2 was the last upper turning point, it is (F2 - F)(F - F1); on the
-    way down as much with the opposite sign. Beyond F2, and before the first two turns, it is zero.
-
-    Parameters
-    ----------
-    values
-        Shape ``(samples,)``, at least one.
-    """
-    if state is None:
-        first = float(values[0])
-        state = LoopState(first, 0.0, first, first)
-    joined = np.concatenate([[state.last], values])
-    steps = np.sign(np.diff(joined))
-    direction = _carried(steps, steps != 0.0, state.direction)
-    before = np.concatenate([[state.direction], direction[:-1]])
-    highest = _carried(joined[:-1], (before > 0.0) & (direction < 0.0), state.highest)
-    lowest = _carried(joined[:-1], (before < 0.0) & (direction > 0.0), state.lowest)
-    lag = direction * np.maximum((highest - values) * (values - lowest), 0.0)
-    last = (values[-1], direction[-1], highest[-1], lowest[-1])
-    return LoopState(*(float(value) for value in last)), lag
-
-
-def _carried(values: FloatArray, renewed: np.ndarray, before: float) -> FloatArray:
-    """Return at each sample the value at the latest one that is renewed."""
-    at = np.maximum.accumulate(np.where(renewed, np.arange(values.size), -1))
-    return np.where(at < 0, before, values[at])
-
 
 DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
 
 
 @dataclass(frozen=True)
 class Dynamometer:
-    """One dynamometer: reading = gain * (force + curvature * force^2 + hysteresis) + offset.
+    """One dynamometer: reading = gain * (force + curves - loops) + offset, within its limits.
 
     Attributes
     ----------
@@ -66,6 +24,8 @@ class Dynamometer:
         Largest force that it is made for; ``None`` if unknown. Beyond it a run is flagged.
     curvature_1_n
         Quadratic part of the characteristic.
+    curves, loops
+        Further parts of it, and further loops.
     hysteresis_1_n
         beta of a Rayleigh loop: between the extremes F1 and F2 the reading lags by
         (beta/2) (F2 - F)(F - F1), which is (beta/2) (F_m^2 - F^2) between -F_m and F_m.
@@ -75,6 +35,8 @@ class Dynamometer:
         What it has drifted by before time 0; 0 where the zero is taken then.
     lowest_n, highest_n
         Where the reading stops: a mechanical stop, or an amplifier that saturates.
+    limit_knee
+        How softly; see :func:`sim.gauges.characteristic.limited`.
     """
 
     gain: float = 1.0
@@ -86,6 +48,9 @@ class Dynamometer:
     zero_drifted_n: float = 0.0
     lowest_n: float | None = None
     highest_n: float | None = None
+    limit_knee: float = 0.0
+    curves: tuple[Curve, ...] = ()
+    loops: tuple[Loop, ...] = ()
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
@@ -96,15 +61,28 @@ class Dynamometer:
         true = force
         if self.curvature_1_n:
             force = force + self.curvature_1_n * true**2
-        if self.hysteresis_1_n and block.count:
-            state, lag = loop(state, true)
-            force = force - (self.hysteresis_1_n / 2.0) * lag
+        for curve in self.curves:
+            force = force + curve.added(true)
+        if self.remembers and block.count:
+            state, branch = follow(state, true)
+            for loop in self._all_loops:
+                force = force - loop.lag(true, branch)
         reading = self.gain * force + self.offset_n
         if self._drifts:
             reading = reading + (self.zero_drifted_n + self.zero_drift_n_s * block.time_s)
         if self.lowest_n is not None or self.highest_n is not None:
-            reading = np.clip(reading, self.lowest_n, self.highest_n)
+            reading = limited(reading, self.lowest_n, self.highest_n, self.limit_knee)
         return state, reading
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the reading depends on forces that were before."""
+        return bool(self.hysteresis_1_n or self.loops)
+
+    @property
+    def _all_loops(self) -> tuple[Loop, ...]:
+        own = (PowerLoop(self.hysteresis_1_n / 2.0, 1.0),) if self.hysteresis_1_n else ()
+        return (*own, *self.loops)
 
     @property
     def _drifts(self) -> bool:
@@ -173,5 +151,5 @@ class Dynamometers:
             self.cross_talk_aft,
             self.cross_talk_fore,
         )
-        remembers = bool(self.aft.hysteresis_1_n or self.fore.hysteresis_1_n)
+        remembers = self.aft.remembers or self.fore.remembers
         return steady_by_samples(steady, period, inputs, settling=1 if remembers else 0)

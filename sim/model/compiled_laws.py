@@ -11,6 +11,7 @@ from sim.mechanism import geometry
 from sim.mechanism.geometry import AT_REST, LINEAR, BodyMotion
 from sim.model import laws
 from sim.model.force_law import LawInput, direction, dynamic, error_function, half_change
+from sim.model.friction import bristles, film
 from sim.solve.compilation import callable_when_compiled, compile_loop
 
 
@@ -21,7 +22,8 @@ def _error_function(x: float) -> float:
 body_motion = compile_loop(geometry.body_motion)
 body_loads = compile_loop(geometry.body_loads)
 gauge_readings = compile_loop(geometry.gauge_readings)
-callable_when_compiled(half_change, direction, dynamic, *(law.kernel for law in laws.LAWS))
+callable_when_compiled(half_change, direction, dynamic, film, bristles)
+callable_when_compiled(*(law.kernel for law in laws.LAWS))
 callable_when_compiled(error_function, by=_error_function)
 value_of = compile_loop(laws.law_value)
 

@@ -1,4 +1,4 @@
-"""Forces that depend on the motion at once: friction, drag, springs; each one small law.
+"""Forces that depend on the motion at once: drag, springs, friction; each one small law.
 
 A law gives the force that a strut (or the couple that both) has to exert because of it, positive
 along the motion, from the motion at one :class:`sim.model.law_point.Point` of the model.
@@ -23,20 +23,25 @@ import numpy as np
 
 from sim.mechanism.geometry import Value
 from sim.model.force_law import (
-    TURNS,
+    CREEP_M_S,
     Argument,
     Corner,
     LawInput,
     NumberedLaw,
     Parameters,
-    direction,
     dynamic,
-    error_function,
     half_change,
 )
-
-# Of the Stribeck speed: beyond it exp(-9), 1e-4 of the force, is left. It only parts the period.
-_STRIBECK_ENDS = 3.0
+from sim.model.friction import (
+    Coulomb,
+    LoadFriction,
+    RubbingSpring,
+    Stribeck,
+    coulomb,
+    load_friction,
+    rubbing_spring,
+    stribeck,
+)
 
 
 def _viscous(p: Parameters, at: LawInput) -> Value:
@@ -74,6 +79,34 @@ class Quadratic(NumberedLaw):
         return (Corner(Argument.VELOCITY, -self.drift_m_s),)
 
 
+def _power(p: Parameters, at: LawInput) -> Value:
+    # The mean over the sample, by its integral: friction rises steeply from rest.
+    half, velocity, more = half_change(at), at.velocity + p[3], p[2] + 1.0
+    low, high = np.abs(velocity - half) / p[1], np.abs(velocity + half) / p[1]
+    return p[0] * p[1] * (high**more - low**more) / (2.0 * more * half)
+
+
+@dataclass(frozen=True)
+class Power(NumberedLaw):
+    """``F (|v + v0|/V)^n sgn(v + v0)``: F at the speed V, with a mean velocity v0 (drift)."""
+
+    power_n: float
+    reference_m_s: float
+    exponent: float
+    drift_m_s: float = 0.0
+
+    kernel = staticmethod(_power)
+    strengths: ClassVar[tuple[str, ...]] = ("power_n",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return where the flow turns."""
+        return (
+            Corner(Argument.VELOCITY, -self.drift_m_s - CREEP_M_S),
+            Corner(Argument.VELOCITY, -self.drift_m_s + CREEP_M_S),
+        )
+
+
 def _cubic(p: Parameters, at: LawInput) -> Value:
     return p[0] * at.velocity**3
 
@@ -86,77 +119,6 @@ class Cubic(NumberedLaw):
 
     kernel = staticmethod(_cubic)
     strengths: ClassVar[tuple[str, ...]] = ("cubic_n_s3_m3",)
-
-
-def _coulomb(p: Parameters, at: LawInput) -> Value:
-    return p[0] * direction(at) + p[1]
-
-
-@dataclass(frozen=True)
-class Coulomb(NumberedLaw):
-    """``F_c sgn(v)``, and the constant that different friction to either side leaves.
-
-    With F+ and F- the friction forward and backward, ``coulomb_n`` is their mean and ``uneven_n``
-    is (F+ - F-)/2.
-    """
-
-    coulomb_n: float
-    uneven_n: float = 0.0
-
-    kernel = staticmethod(_coulomb)
-    strengths: ClassVar[tuple[str, ...]] = ("coulomb_n", "uneven_n")
-
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """Return where the motion turns."""
-        return TURNS
-
-
-def _stribeck(p: Parameters, at: LawInput) -> Value:
-    # The mean over the sample, by its integral.
-    half, velocity = half_change(at) / p[1], at.velocity / p[1]
-    risen = error_function(np.abs(velocity + half)) - error_function(np.abs(velocity - half))
-    return p[0] * (math.sqrt(math.pi) / 4.0) * risen / half
-
-
-@dataclass(frozen=True)
-class Stribeck(NumberedLaw):
-    """``(F_s - F_c) exp(-(v/v_s)^2) sgn(v)``: what sticking adds to Coulomb friction."""
-
-    excess_n: float
-    stribeck_speed_m_s: float
-
-    kernel = staticmethod(_stribeck)
-    strengths: ClassVar[tuple[str, ...]] = ("excess_n",)
-
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """Return where the motion turns, and where little of the force is left."""
-        rest = _STRIBECK_ENDS * self.stribeck_speed_m_s
-        return (*TURNS, Corner(Argument.VELOCITY, rest), Corner(Argument.VELOCITY, -rest))
-
-
-def _load_friction(p: Parameters, at: LawInput) -> Value:
-    return p[0] * np.abs(p[2] * at.load + p[1]) * direction(at)
-
-
-@dataclass(frozen=True)
-class LoadFriction(NumberedLaw):
-    """``mu |N + N_0| sgn(v)``: N the load that the linear parts put on the strut."""
-
-    friction: float
-    side_load_n: float = 0.0
-    load_share: float = 1.0
-
-    kernel = staticmethod(_load_friction)
-    strengths: ClassVar[tuple[str, ...]] = ("friction",)
-
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """Return where the motion turns, and where the load changes sides."""
-        if not self.load_share:
-            return TURNS
-        return (*TURNS, Corner(Argument.LOAD, -self.side_load_n / self.load_share))
 
 
 def _spring(p: Parameters, at: LawInput) -> Value:
@@ -179,25 +141,6 @@ class Spring(NumberedLaw):
         "stiffness_n_m3",
         "preload_n",
     )
-
-
-def _rubbing_spring(p: Parameters, at: LawInput) -> Value:
-    return p[0] * np.abs(at.position) * direction(at)
-
-
-@dataclass(frozen=True)
-class RubbingSpring(NumberedLaw):
-    """``k_h |x| sgn(v)``: a loss per cycle that does not depend on the frequency (Reid)."""
-
-    rubbing_n_m: float
-
-    kernel = staticmethod(_rubbing_spring)
-    strengths: ClassVar[tuple[str, ...]] = ("rubbing_n_m",)
-
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """Return where the motion turns, and its middle."""
-        return (*TURNS, Corner(Argument.POSITION))
 
 
 def _proximity(p: Parameters, at: LawInput) -> Value:
@@ -270,6 +213,7 @@ AnyLaw = (
     | Stribeck
     | LoadFriction
     | RubbingSpring
+    | Power
 )
 LAWS: Final[tuple[type[NumberedLaw], ...]] = get_args(AnyLaw)
 
@@ -291,9 +235,11 @@ def law_value(number: int, p: Parameters, at: LawInput) -> Value:  # noqa: C901 
     if number == 6:
         return _tone(p, at)
     if number == 7:
-        return _coulomb(p, at)
+        return coulomb(p, at)
     if number == 8:
-        return _stribeck(p, at)
+        return stribeck(p, at)
     if number == 9:
-        return _load_friction(p, at)
-    return _rubbing_spring(p, at)
+        return load_friction(p, at)
+    if number == 10:
+        return rubbing_spring(p, at)
+    return _power(p, at)

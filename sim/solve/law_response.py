@@ -171,8 +171,8 @@ def _ask(
     asked[:] = 0.0
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
         x, v = value_at(own[0], own[1], 0, way), value_at(own[0], own[1], 1, way)
-        load = value_at(own[0], own[1], 3, way)
-        asked_force = law_value(laws, item, LawInput(x, v, 0.0, load, time_s, 0.0, speed_m_s))
+        a, load = value_at(own[0], own[1], 2, way), value_at(own[0], own[1], 3, way)
+        asked_force = law_value(laws, item, LawInput(x, v, a, load, time_s, 0.0, speed_m_s))
         asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
         return
     value = np.empty((1, 8))

@@ -13,8 +13,9 @@ from pmm.cli import cli
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Servo, ShuntMotor
 from sim.mechanism.linkage import Setting
+from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
-from sim.model.laws import Coulomb, Quadratic
+from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
 from sim.model.water.force_laws import CrossFlow
 from sim.solve.periodic import steady_run

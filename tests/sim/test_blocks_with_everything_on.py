@@ -17,8 +17,9 @@ from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.motor import Cogging, Guides, ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
+from sim.model.friction import Coulomb, LoadFriction
 from sim.model.law_point import Acting, Point
-from sim.model.laws import Coulomb, Cubic, LoadFriction, Quadratic, Tone
+from sim.model.laws import Cubic, Quadratic, Tone
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.model.water.tank import Tank, with_walls

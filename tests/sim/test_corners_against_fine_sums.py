@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from hardware.description.setpoint import SetPoint
 from sim.model.force_law import ForceLaw, LawInput
 from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
+from sim.model.friction import Coulomb, LoadFriction, RubbingSpring, Stribeck
 from sim.model.law_point import Acting, Point
 from sim.model.law_table import table_of
-from sim.model.laws import Coulomb, LoadFriction, Quadratic, RubbingSpring, Stribeck
+from sim.model.laws import Power, Quadratic
 from sim.model.numbers import corners_only, geometry_only
 from sim.model.system import HullSystem
 from sim.model.water.force_laws import CrossFlow
@@ -31,6 +32,13 @@ CORNERED: list[ForceLaw] = [
     LoadFriction(0.1, 5.0, 0.8),
     RubbingSpring(100.0),
     Quadratic(300.0, 0.05),
+    Coulomb(2.0, 0.3, presliding_m=4e-4),
+    Coulomb(2.0, 0.3, film_m_s=6e-3),
+    Stribeck(2.0, 0.03, presliding_m=4e-4),
+    Stribeck(2.0, 0.03, tail=3.0),
+    LoadFriction(0.1, 5.0, 0.8, presliding_m=4e-4),
+    Power(2.0, 0.1, 0.6, 0.01),
+    Power(2.0, 0.1, 2.5),
 ]
 COUPLED = CrossFlow(((30.0, 5.0, 7.0, 2.0), (4.0, 6.0, 3.0, 9.0)), ((80.0, 9.0, 8.0, 7.0),) * 2)
 SET_POINT = SetPoint(0.8, 0.03, 0.7, SPEED_M_S)

@@ -10,19 +10,9 @@ from scipy.special import dawsn, iv
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.model.force_law import ForceLaw
+from sim.model.friction import Coulomb, LoadFriction, RubbingSpring, Stribeck
 from sim.model.law_point import Acting, Point
-from sim.model.laws import (
-    Coulomb,
-    Cubic,
-    Exponential,
-    LoadFriction,
-    Proximity,
-    Quadratic,
-    RubbingSpring,
-    Spring,
-    Stribeck,
-    Viscous,
-)
+from sim.model.laws import Cubic, Exponential, Proximity, Quadratic, Spring, Viscous
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import vertical_rig
 from sim.solve.periodic import steady_run

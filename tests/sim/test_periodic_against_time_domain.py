@@ -16,8 +16,9 @@ from sim.drive.carriage import CarriageSettings
 from sim.drive.motor import Cogging, Guides, Servo, ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.mechanism.linkage import Setting
+from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
-from sim.model.laws import Coulomb, Cubic, Quadratic, Spring, Tone
+from sim.model.laws import Cubic, Quadratic, Spring, Tone
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig

@@ -23,8 +23,9 @@ from sim.effects.m8_temperature import Temperature
 from sim.effects.situation import RECORDED_FORCES, Situation
 from sim.effects.switching import switch_on
 from sim.model.force_law import ForceLaw, LawInput
+from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
-from sim.model.laws import LAWS, Coulomb
+from sim.model.laws import LAWS
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.solve.periodic import steady_run
