@@ -9,7 +9,7 @@ from tests.sealed.generator.arranged import drifted
 from tests.sealed.generator.integrate import integrate
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Rig, Run
-from tests.sealed.generator.water import varied
+from tests.sealed.generator.water import damped_wave, varied
 
 # Longest step on rigid gauges, and on gauges, frames or clearances that give way.
 RIGID_STEP_S, LOOSE_STEP_S = 5.1e-3, 0.7e-3
@@ -81,7 +81,7 @@ def retardation(p: FloatArray, interval_s: float) -> FloatArray:
     first = p[P.MEMORY_0] * shape + p[P.ECHO] * p[P.ADDED_00] * echo
     both = np.vstack([first, p[P.MEMORY_1] * shape + p[P.ECHO] * p[P.ADDED_11] * echo])
     if own.any():
-        both += own[:, None] * np.exp(-p[P.KERNEL_RATE] * tau) * np.cos(p[P.KERNEL_OMEGA] * tau)
+        both += own[:, None] * damped_wave(p[P.KERNEL_RATE], p[P.KERNEL_OMEGA], tau)
     return both
 
 

@@ -1,7 +1,8 @@
 """Water that varies with frequency and speed: its truth, and what a campaign believes of it.
 
-The retardation functions are damped cosines, K = k exp(-b t) cos(w0 t), so that added mass and
-damping over frequency have closed forms.
+The retardation functions are damped waves, K = k exp(-b t) (cos(w0 t) - b/w0 sin(w0 t)), so that
+added mass and damping over frequency have closed forms: K(i w) = k i w / ((b + i w)^2 + w0^2). No
+wave is radiated at frequency 0, and the damping is 0 there.
 """
 
 from dataclasses import dataclass
@@ -28,11 +29,16 @@ class Believed:
 
 
 def of_memory(rate: float, turn: float, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return added mass and damping of ``exp(-rate t) cos(turn t)`` over frequency."""
-    low, high = omega - turn, omega + turn
-    damping = 0.5 * rate * (1.0 / (rate**2 + low**2) + 1.0 / (rate**2 + high**2))
-    added = -0.5 / omega * (low / (rate**2 + low**2) + high / (rate**2 + high**2))
-    return added, damping
+    """Return added mass and damping of a damped wave over frequency."""
+    off = rate**2 + turn**2 - omega**2
+    square = off**2 + (2.0 * rate * omega) ** 2
+    return off / square, 2.0 * rate * omega**2 / square
+
+
+def damped_wave(rate: float, turn: float, time_s: FloatArray) -> FloatArray:
+    """Return ``exp(-rate t) (cos(turn t) - rate / turn sin(turn t))``."""
+    turned = np.cos(turn * time_s) - rate / turn * np.sin(turn * time_s)
+    return np.asarray(np.exp(-rate * time_s) * turned)
 
 
 def coefficients(p: FloatArray, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
