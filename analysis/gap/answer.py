@@ -1,7 +1,6 @@
 """What a diagnosis answers: how probable each name is, and what part of a gap it makes go away."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,8 +10,6 @@ from analysis.gap.components import Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit
 from analysis.gap.forecast import Forecast
-from analysis.gap.recentre import Recentred
-from analysis.gap.verdict import COEFFICIENTS, NONE, answer_of
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 
@@ -43,27 +40,11 @@ class NamedAnswer:
     tried: float
 
 
-def probabilities_about(found: Diagnosis, there: Recentred) -> Mapping[str, float]:
-    """Return the answers' probabilities; about a rig that was moved, "none" is "coefficients".
-
-    Where nothing differs from the moved rig, the coefficients by which it was moved are what
-    differs from the stated one.
-    """
-    shares = dict(found.probabilities.by_answer)
-    if there.units:
-        shares[COEFFICIENTS] = shares.get(COEFFICIENTS, 0.0) + shares[NONE]
-        shares[NONE] = 0.0
-    return shares
-
-
-def named_answer(found: Diagnosis, shares: Mapping[str, float]) -> NamedAnswer:
-    """Return what a diagnosis names, given the answers' probabilities."""
-    best = None if found.best is None else found.best.fit
-    rival = None if found.rival is None else found.rival.fit
-    share = 0.0 if best is None else shares[answer_of(best)]
-    return NamedAnswer(
-        best, rival, share, 0.0 if found.shrinkage is None else found.shrinkage.share
-    )
+def named_answer(found: Diagnosis) -> NamedAnswer:
+    """Return what a diagnosis names."""
+    best, shrinks = found.best, found.shrinkage
+    share = 0.0 if best is None else found.answers.by_answer[best.answer]
+    return NamedAnswer(best, found.rival, share, 0.0 if shrinks is None else shrinks.share)
 
 
 def predicted_shrinkage(

@@ -2,43 +2,27 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.hypotheses import Named, Odds, Weighed, weigh
+from analysis.gap.hypotheses import Weighed, weigh
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, Answers, effects_in
 from analysis.gap.leading import leading
 from analysis.gap.noise import pooled
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, Proposal, proposals
 from analysis.gap.regimes import Regime, regimes
-from analysis.gap.verdict import (
-    COEFFICIENTS,
-    NONE,
-    UNKNOWN,
-    Probabilities,
-    answer_of,
-    coefficient_shift,
-    equivalents,
-    passed_on,
-    probabilities,
-    ranked,
-    stage_probabilities,
-)
-from analysis.gap.whence import unknown_stages
+from analysis.gap.verdict import coefficient_shift, equivalents, stage_probabilities
 from analysis.gap.where import Walk, walk
-from analysis.gap.withheld import Predicted, Shrinkage, foretells, predict_withheld, shrinkage
-from hardware.description.arrays import FloatArray
+from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
 from hardware.description.errors import DataError
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
-
-SHIFTED = 3.0  # prior deviations by which a coefficient has to be off to be the answer
-_NAMED = 0.01  # probability below which it does not matter whether a name foretells
 
 
 @dataclass(frozen=True)
@@ -55,15 +39,17 @@ class Settings:
         Regimes to judge by; found from the runs if empty.
     choices
         What the rig can do next; ``None`` proposes nothing.
+    moved
+        By how many tolerances the rig was moved from what is stated, by name.
     """
 
     catalogue: Mapping[str, type[Effect]]
     priors: Priors = field(default_factory=Priors)
-    odds: Odds = field(default_factory=Odds)
     on: tuple[Effect, ...] = ()
     withheld: tuple[Regime, ...] = ()
     choices: Choices | None = None
     reference_channel: str | None = None
+    moved: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,18 +69,14 @@ class Diagnosis:
         Prior deviations by which each coefficient and setting moves.
     before, after
         Withheld runs predicted without and with the best hypothesis.
-    not_foretold
-        Answers that explain what they are fitted to, but do not predict withheld runs: they count
-        as "unknown".
     """
 
     problem: Problem
     walk: Walk
     weighed: Weighed
-    probabilities: Probabilities
     stages: Mapping[str, float]
-    best: Named | None
-    rival: Named | None
+    best: Fit | None
+    rival: Fit | None
     classes: Mapping[str, tuple[tuple[str, float], ...]]
     shift: Mapping[str, float]
     before: tuple[Predicted, ...]
@@ -102,14 +84,16 @@ class Diagnosis:
     shrinkage: Shrinkage | None
     rival_shrinkage: Shrinkage | None
     proposals: tuple[Proposal, ...]
-    not_foretold: tuple[str, ...] = ()
+
+    @property
+    def answers(self) -> Answers:
+        """How probable each answer is."""
+        return self.weighed.answers
 
     @property
     def cause(self) -> Fit | None:
-        """What the answer names as the cause; ``None`` where it names none, or says "unknown"."""
-        if self.best is None or self.probabilities.best == UNKNOWN:
-            return None
-        return self.best.fit
+        """What the answer names as the cause; ``None`` where it names none."""
+        return self.best if effects_in(self.answers.best) else None
 
 
 def diagnose(
@@ -141,10 +125,8 @@ def diagnose(
     problem = problem_of(rig, runs, settings, free)
     progress("walking along the chain")
     walked = walk(problem)
-    weighed = weigh(problem, settings.catalogue, executor, settings.odds, progress, free)
-    found = _with_coefficients(probabilities(weighed), problem, free)
-    done = _concluded(problem, walked, weighed, found, settings, free, progress)
-    return refuted(done, _not_foretelling(done, settings), settings.catalogue)
+    weighed = weigh(problem, settings.catalogue, executor, progress, free)
+    return _concluded(problem, walked, weighed, settings, free, progress)
 
 
 def problem_of(
@@ -155,7 +137,8 @@ def problem_of(
     on = (*settings.on, *_always(rig, stack, settings.priors))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = Nuisances(columns(simulator, free, settings.priors))
-    return Problem(simulator, nuisances, tuple(one.name for one in free))
+    names = tuple(one.name for one in free)
+    return Problem(simulator, nuisances, names, moved=settings.moved)
 
 
 def _always(rig: SimulatedRig, stack: Stack, priors: Priors) -> tuple[Effect, ...]:
@@ -166,116 +149,57 @@ def _always(rig: SimulatedRig, stack: Stack, priors: Priors) -> tuple[Effect, ..
     return (TriggerJitter(priors.pulse_scatter_rad),)
 
 
-def _with_coefficients(
-    found: Probabilities, problem: Problem, free: Sequence[Free]
-) -> Probabilities:
-    """Say "coefficients" in place of "none" where they are what differs."""
-    shift = coefficient_shift(problem, problem.residual)
-    off = [abs(shift[one.name]) for one in free if one.is_coefficient]
-    share = max(off, default=0.0) / SHIFTED
-    moved = found.by_answer[NONE] * min(1.0, share**4 / (1.0 + share**4) if share else 0.0)
-    answers = {**found.by_answer, NONE: found.by_answer[NONE] - moved, COEFFICIENTS: moved}
-    return Probabilities(answers)
-
-
-def refuted(
-    done: Diagnosis, names: Sequence[str], catalogue: Mapping[str, type[Effect]]
-) -> Diagnosis:
-    """Return a diagnosis in which answers that foretell too little count as "unknown"."""
-    if not names:
-        return done
-    found = passed_on(done.probabilities, names)
-    unknown = unknown_stages(done.problem, done.walk, done.weighed, catalogue)
-    return replace(
-        done,
-        probabilities=found,
-        stages=stage_probabilities(found, catalogue, unknown),
-        not_foretold=(*done.not_foretold, *names),
-    )
-
-
-def _not_foretelling(done: Diagnosis, settings: Settings) -> tuple[str, ...]:
-    """Return the most probable names, down to the first that foretells regimes from the others."""
-    shares, names = done.probabilities.by_answer, []
-    withheld = settings.withheld or regimes(done.problem.simulator.stack.runs)
-    for one in ranked(done.weighed, done.probabilities) if done.best is not None else ():
-        known = done.after if one is done.best else None
-        after = known or predict_withheld(done.problem, one.fit, withheld)
-        if shares[answer_of(one.fit)] < _NAMED or foretells(done.before, after):
-            break
-        names.append(answer_of(one.fit))
-    return tuple(names)
-
-
 def _concluded(
     problem: Problem,
     walked: Walk,
     weighed: Weighed,
-    found: Probabilities,
     settings: Settings,
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
     fits = [one.fit for one in weighed.looked if one.fit is not None]
-    ones = ranked(weighed, found)
-    best = ones[0] if ones and _names(found) else None
-    classes = {} if best is None else equivalents(problem, best.fit, fits)
+    ones, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
+    best = None if calm or not ones else ones[0]
+    classes = {} if best is None else equivalents(problem, best, fits)
     rival = _rival(best, ones, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
-    after = before if best is None else predict_withheld(problem, best.fit, withheld)
-    other = before if rival is None else predict_withheld(problem, rival.fit, withheld)
+    after = before if best is None else predict_withheld(problem, best, withheld)
+    other = before if rival is None else predict_withheld(problem, rival, withheld)
     named = best is not None and bool(before)
     progress("choosing the next run")
     return Diagnosis(
         problem,
         walked,
         weighed,
-        found,
-        stage_probabilities(
-            found, settings.catalogue, unknown_stages(problem, walked, weighed, settings.catalogue)
-        ),
+        stage_probabilities(weighed.answers, settings.catalogue),
         best,
         rival,
         classes,
-        coefficient_shift(problem, _explained(problem, best)),
+        coefficient_shift(problem, best),
         before,
         after,
         shrinkage(before, after) if named else None,
         shrinkage(before, other) if named and rival is not None else None,
-        _next(problem, weighed, found, settings, free),
+        _next(problem, weighed, settings, free),
     )
 
 
-def _explained(problem: Problem, best: Named | None) -> FloatArray:
-    return problem.residual if best is None else problem.residual - best.fit.signature
-
-
-def _names(found: Probabilities) -> bool:
-    """Tell whether naming an effect is right, be it beside "unknown"."""
-    return found.best not in (NONE, COEFFICIENTS)
-
-
 def _rival(
-    best: Named | None,
-    ones: Sequence[Named],
+    best: Fit | None,
+    ones: Sequence[Fit],
     classes: Mapping[str, tuple[tuple[str, float], ...]],
-) -> Named | None:
+) -> Fit | None:
     """Return the wrong-effect control: the next best of which none passes for the best's."""
     if best is None:
         return ones[0] if ones else None
-    alike = {*best.fit.names, *(name for own in classes.values() for name, _ in own)}
-    return next((one for one in ones if not set(one.fit.names) & alike), None)
+    alike = {*best.names, *(name for own in classes.values() for name, _ in own)}
+    return next((one for one in ones if not set(one.names) & alike), None)
 
 
 def _next(
-    problem: Problem,
-    weighed: Weighed,
-    found: Probabilities,
-    settings: Settings,
-    free: tuple[Free, ...],
+    problem: Problem, weighed: Weighed, settings: Settings, free: tuple[Free, ...]
 ) -> tuple[Proposal, ...]:
     if settings.choices is None:
         return ()
-    ones = leading(weighed, found)
-    return proposals(problem, ones, settings.choices, free, settings.priors)
+    return proposals(problem, leading(weighed), settings.choices, free, settings.priors)

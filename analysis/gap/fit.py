@@ -1,8 +1,7 @@
 """Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,8 +11,10 @@ from analysis.gap.candidate import STEP, Axis, Candidate, least_step
 from analysis.gap.components import Part
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
-from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior, scales
-from hardware.description.arrays import FloatArray
+from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior
+from analysis.gap.inference.answers import answer_of
+from analysis.gap.inference.hypothesis import Evidence, Hypothesis, within
+from hardware.description.arrays import BoolArray, FloatArray
 from sim.effects.effect import Effect
 
 
@@ -31,12 +32,15 @@ class Problem:
         Names of the nuisances' first columns: coefficients and settings.
     numbers
         The same to change a rig by, where effects are to act on it as its coefficients are.
+    moved
+        By how many tolerances the rig was moved from what is stated, by name.
     """
 
     simulator: Simulator
     nuisances: Nuisances
     free: tuple[str, ...]
     numbers: tuple[Free, ...] = ()
+    moved: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -50,6 +54,13 @@ class Problem:
         if pulses.any() and found[pulses].mean() < 0.0:
             found[pulses] = 0.0
         return found
+
+    @cached_property
+    def stated(self) -> FloatArray:
+        """Measured minus the rig as it is stated, in sigma, to first order about the moved one."""
+        moved = np.array([self.moved.get(name, 0.0) for name in self.free])
+        shift = self.nuisances.columns[:, : len(moved)] @ moved
+        return np.asarray(self.residual + shift, np.float64)
 
     def whitened(self, change: FloatArray) -> FloatArray:
         """Return a change of the observations in sigma."""
@@ -74,8 +85,8 @@ class Fit:
         Chi-square that is left, coefficients fitted too, and that of the parameters' priors.
     shared
         Log determinant of the nuisances.
-    form
-        By how much of itself the signature may be off: no rig has an effect in a catalogue's form.
+    forms
+        What the other forms of its effects' families change, in sigma, ``(observations, any)``.
     """
 
     candidates: tuple[Candidate, ...]
@@ -85,12 +96,22 @@ class Fit:
     cost: float
     posterior: Posterior
     shared: float
-    form: float = 0.0
+    forms: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def names(self) -> tuple[str, ...]:
         """The effects' names."""
         return tuple(one.name for one in self.candidates)
+
+    @property
+    def answer(self) -> str:
+        """The effects in alphabetical order, as an answer names them."""
+        return answer_of(self.names)
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Where each effect acts."""
+        return tuple(one.kind.stage.value for one in self.candidates)
 
     @property
     def log_evidence(self) -> float:
@@ -100,28 +121,18 @@ class Fit:
     @cached_property
     def log_volume(self) -> float:
         """Log of what is left of the priors' volume, whatever the scale of the effects' sizes."""
-        sizes = np.array([one.is_size for one in self.axes], dtype=bool)
-        groups = [sizes & (self.whose == number) for number in range(len(self.candidates))]
-        reaches = [one.reach for one in self.candidates]
-        return self.posterior.log_volume + any_size(self.posterior, groups, reaches)
+        return self.posterior.log_volume + any_size(self.posterior, self.sizes, self.reaches)
 
-    @cached_property
-    def suited(self) -> tuple[FloatArray, float]:
-        """The prior widths of the mixture that suit the sizes as they are, and their log share.
-
-        In prior deviations, shape ``(p,)``; 1 for what is no size.
-        """
-        widths, share = np.ones(len(self.units)), 0.0
-        told = np.diagonal(self.posterior.precision) - 1.0
+    @property
+    def sizes(self) -> list[BoolArray]:
+        """Which parameters are sizes, for each effect, shape ``(p,)``; those share their scale."""
         sizes = np.array([one.is_size for one in self.axes], dtype=bool)
-        for number, one in enumerate(self.candidates):
-            group = sizes & (self.whose == number)
-            if group.any():
-                every = scales(told[group], one.reach)
-                size = max(float(np.abs(self.units[group]).max()), float(every.min()))
-                widths[group] = every[np.argmin(np.abs(np.log(every / size)))]
-                share -= math.log(len(every))
-        return widths, share
+        return [sizes & (self.whose == number) for number in range(len(self.candidates))]
+
+    @property
+    def reaches(self) -> list[float]:
+        """Largest plausible standard deviation of each effect's sizes, in prior deviations."""
+        return [one.reach for one in self.candidates]
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -173,23 +184,8 @@ def bounds(parts: Sequence[Candidate]) -> FloatArray:
 
 
 def most_probable(fit: Fit) -> FloatArray:
-    """Return the most probable parameters within the plausible ranges, to first order.
-
-    A parameter that would leave its range is held at its end, and the others are found anew.
-    """
-    low, high = bounds(fit.candidates)
-    precision = fit.posterior.precision
-    target = precision @ fit.posterior.mean
-    units, free = fit.posterior.mean.copy(), np.ones(len(fit.units), dtype=bool)
-    for _ in range(len(units)):
-        outside = free & ((units < low) | (units > high))
-        if not outside.any():
-            break
-        free &= ~outside
-        units = np.where(free, units, np.clip(units, low, high))
-        pull = target[free] - precision[np.ix_(free, ~free)] @ units[~free]
-        units[free] = np.linalg.solve(precision[np.ix_(free, free)], pull)
-    return np.asarray(np.clip(units, low, high), np.float64)
+    """Return the most probable parameters within the plausible ranges, to first order."""
+    return within(fit.posterior, bounds(fit.candidates))
 
 
 def at(
@@ -250,6 +246,40 @@ def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
         np.hstack((first.columns, second.columns)),
         first.signature + second.signature,
     )
+
+
+def with_forms(problem: Problem, fit: Fit) -> Fit:
+    """Return a fit with what the other forms of its effects change, where they repeat."""
+    if not fit.repeats or fit.is_costly:
+        return replace(fit, forms=np.zeros((len(fit.signature), 0)))
+    simulator, effects = problem.simulator, fit.effects
+    base = simulator.predict(effects)
+    found = [np.zeros((len(base), 0))]
+    for number, one in enumerate(effects):
+        rest = [other for at_, other in enumerate(effects) if at_ != number]
+        for form in one.forms():
+            changed = simulator.predict((*rest, form))
+            found.append(problem.whitened(changed - base)[:, None])
+    return replace(fit, forms=np.hstack(found))
+
+
+def hypothesis(problem: Problem, fit: Fit) -> Hypothesis:
+    """Return a fit as one equation weighs it, against the rig as it is stated."""
+    return Hypothesis(
+        fit.names,
+        fit.linearised(problem.stated),
+        fit.columns,
+        fit.forms,
+        bounds(fit.candidates),
+        fit.sizes,
+        fit.reaches,
+    )
+
+
+def settled(fit: Fit, found: Evidence) -> Fit:
+    """Return a fit whose parameters are as they are beside what suits it best."""
+    signature = fit.signature + fit.columns @ (found.units - fit.units)
+    return replace(fit, units=found.units, signature=signature, posterior=found.posterior)
 
 
 def _slope(

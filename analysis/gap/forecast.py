@@ -134,7 +134,7 @@ def forecast(
         return found
     # What the coefficients make up for, they make up for in any form.
     alone = mean - forecast(problem, there, None).mean
-    return replace(found, form=_of_form(there, alone, max(fit.form, LEAST_FORM)))
+    return replace(found, form=_of_form(there, alone, LEAST_FORM))
 
 
 def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:

@@ -15,6 +15,7 @@ import numpy as np
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
 from analysis.gap.priors import Priors
+from analysis.gap.smooth_changes import smooth_changes
 from analysis.gap.spectrum import spread_about
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
@@ -154,9 +155,9 @@ def with_coefficients(
 def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
     """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
 
-    After those of ``free`` there is a column for each displacement sensor, for each run's frequency
-    and phase reference, and for each kind of noise of each channel: a rig that is noisier than
-    believed has no gap for that.
+    After those of ``free`` there are columns for each displacement sensor, for each run's frequency
+    and phase reference, for what coefficients do with frequency and speed, and for each kind of
+    noise of each channel: a rig that is noisier than believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
@@ -166,7 +167,9 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
         *_by_run(stack, _frequencies(simulator, base, priors.frequency_relative)),
         *_by_run(stack, _turned(stack, base, 1.0) * references_rad(stack, priors.reference_rad)),
     ]
-    return np.column_stack([*found, *sensors, *own, *_noise_levels(stack)])
+    levels = {one.name: column for one, column in zip(free, found, strict=True) if one.is_sought}
+    smooth = smooth_changes(stack, levels, priors)
+    return np.column_stack([*found, *sensors, *own, *smooth, *_noise_levels(stack)])
 
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:

@@ -4,20 +4,20 @@ from typing import Final
 
 from analysis.gap.fit import Fit
 from analysis.gap.hypotheses import Weighed
-from analysis.gap.verdict import NONE, UNKNOWN, Probabilities, answer_of, ranked
+from analysis.gap.inference.answers import NAMELESS
 
 _MOST: Final = 4
 _DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
 
 
-def leading(weighed: Weighed, found: Probabilities) -> list[tuple[Fit | None, float]]:
+def leading(weighed: Weighed) -> list[tuple[Fit | None, float]]:
     """Return the most probable answer, those that share no effect with it, and no gap at last.
 
     Each with its probability; ``None`` stands for no gap, and for what nobody knows.
     """
-    shares, fits = found.by_answer, [one.fit for one in ranked(weighed, found)]
+    shares, fits = weighed.answers.by_answer, weighed.ranked
     others = [one for one in fits[1:] if not {*one.names} & {*fits[0].names}]
     ones: list[tuple[Fit | None, float]] = [
-        (one, max(shares[answer_of(one)], _DOUBTED)) for one in [*fits[:1], *others][:_MOST]
+        (one, max(shares[one.answer], _DOUBTED)) for one in [*fits[:1], *others][:_MOST]
     ]
-    return [*ones, (None, max(shares[NONE] + shares.get(UNKNOWN, 0.0), _DOUBTED))]
+    return [*ones, (None, max(sum(shares[name] for name in NAMELESS), _DOUBTED))]

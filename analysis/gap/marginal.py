@@ -8,7 +8,8 @@ from typing import Final
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.gaussian import misfit, posterior
-from analysis.gap.verdict import ALIKE, beside_rest, effects_in, equivalents, ranked
+from analysis.gap.inference.answers import effects_in
+from analysis.gap.verdict import ALIKE, beside_rest, equivalents
 from hardware.description.errors import PmmError
 
 LEAST: Final = 0.01  # probability that is worth a class
@@ -47,7 +48,7 @@ def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
     Parameters
     ----------
     by_answer
-        Probabilities of answers, as :class:`analysis.gap.verdict.Probabilities` has them.
+        Probabilities of answers, as :class:`analysis.gap.inference.answers.Answers` has them.
     """
     names = {name for answer in by_answer for name in effects_in(answer)}
     shares = {name: of_any(by_answer, [name]) for name in names}
@@ -63,15 +64,15 @@ def of_any(by_answer: Mapping[str, float], names: Sequence[str]) -> float:
 
 def marginals(found: Diagnosis) -> tuple[Marginal, ...]:
     """Return the effects that are not out of the question, most probable first."""
-    shares = found.probabilities.by_answer
-    fits = [one.fit for one in ranked(found.weighed, found.probabilities)]
+    shares = found.answers.by_answer
+    fits = found.weighed.ranked
     leading = [name for name, share in by_effect(shares).items() if share > LEAST][:_MOST]
     best = {name: next(one for one in fits if name in one.names) for name in leading}
     return tuple(_marginal(found, name, fit) for name, fit in best.items())
 
 
 def _marginal(found: Diagnosis, name: str, fit: Fit) -> Marginal:
-    shares = found.probabilities.by_answer
+    shares = found.answers.by_answer
     number = fit.names.index(name)
     stage = fit.candidates[number].kind.stage.value
     size = _size(found.problem, fit, number)

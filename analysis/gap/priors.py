@@ -15,6 +15,11 @@ class Priors:
     added_mass_relative, damping_relative, restoring_relative
         Of the water's matrices; a coupling has ``coupling_relative`` times the root of the product
         of the two diagonal terms.
+    added_mass_per_octave, damping_per_octave
+        By how much of itself each changes, smoothly, over an octave of frequency beyond what is
+        stated: panel tables of ship models.
+    added_mass_per_speed, damping_per_speed
+        The same where the carriage's speed is doubled: tests at several Froude numbers.
     mass_relative, inertia_relative, cg_m
         Of the model's mass, inertia and centre of gravity.
     gain_relative, zero_n
@@ -39,6 +44,10 @@ class Priors:
     damping_relative: float = 0.3
     restoring_relative: float = 0.02
     coupling_relative: float = 0.1
+    added_mass_per_octave: float = 0.05
+    damping_per_octave: float = 0.05
+    added_mass_per_speed: float = 0.03
+    damping_per_speed: float = 0.1
     mass_relative: float = 0.002
     inertia_relative: float = 0.01
     cg_m: float = 0.001

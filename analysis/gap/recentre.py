@@ -1,8 +1,7 @@
-"""A nominal model that is far off: go on about the coefficients that the campaign itself fits.
+"""The point about which a diagnosis is linear: the coefficients that the campaign itself fits.
 
-The diagnosis is linear in the free coefficients about what the campaign states. Where a campaign
-says 40 kg of added mass and the water says 75, that no longer holds; so the rig is moved to what
-fits best, by steps, and the diagnosis begins there. How far it was moved is part of the answer.
+Where a campaign says 40 kg of added mass and the water says 75, nothing is linear about the 40; so
+the rig is moved to what fits best, by steps. The tolerances stay about what is stated.
 
 Only added mass and damping are moved. Mass, inertia and restoring are known beforehand: where they
 seem to be many tolerances off, something else is there, and moving them would hide it.
@@ -25,10 +24,9 @@ from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
-FAR: Final = 3.0  # prior deviations beyond which a coefficient is moved
 _STEPS: Final = 5
 _LONGEST: Final = 4.0
-_SETTLED: Final = 0.3
+_SETTLED: Final = 0.3  # prior deviations: a smaller step changes no slope
 
 
 @dataclass(frozen=True)
@@ -38,9 +36,9 @@ class Recentred:
     Attributes
     ----------
     rig
-        The one that was given where nothing is far off.
+        The one that was given where the campaign fits what is stated.
     units
-        By how many prior deviations each coefficient was moved; empty where nothing was.
+        By how many prior deviations each coefficient was moved; empty where none was.
     moved
         The same in each coefficient's own unit.
     """
@@ -57,24 +55,22 @@ def recentred(
     on: Sequence[Effect] = (),
     reference_channel: str | None = None,
 ) -> Recentred:
-    """Move a rig to the coefficients that fit, if any of them is far from what was stated."""
+    """Move a rig to the coefficients that fit."""
     free = free_numbers(rig, priors)
     stack = Stack.of([repeating_only(one) for one in pooled(runs, rig)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))
-    for number in range(_STEPS):
-        step = np.where(owned, _step(simulator, free, priors), 0.0)
-        if number == 0 and not (np.abs(step) > FAR).any():
-            return Recentred(rig)
+    for _ in range(_STEPS):
+        step = np.where(owned, _step(simulator, free, priors, total), 0.0)
+        if np.abs(step).max(initial=0.0) < _SETTLED:
+            break
         try:
             there = with_coefficients(rig, free, list(total + step))
             Simulator(there, simulator.stack, simulator.on, reference_channel).steady(())
         except PmmError:
             break
         total, simulator = total + step, simulator.with_rig(there)
-        if np.abs(step).max() < _SETTLED:
-            break
     return _result(simulator.rig, free, total)
 
 
@@ -87,9 +83,7 @@ def repeating_only(run: GapRun) -> GapRun:
 
 
 def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recentred:
-    pairs = [
-        (one, float(unit)) for one, unit in zip(free, total, strict=True) if one.is_coefficient
-    ]
+    pairs = [(one, float(unit)) for one, unit in zip(free, total, strict=True) if unit]
     return Recentred(
         rig,
         {one.name: unit for one, unit in pairs},
@@ -97,9 +91,13 @@ def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recen
     )
 
 
-def _step(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
+def _step(
+    simulator: Simulator, free: Sequence[Free], priors: Priors, total: FloatArray
+) -> FloatArray:
+    """Return how far to go on from where the rig is, the tolerances about what is stated."""
     stack = simulator.stack
     nuisances = Nuisances(columns(simulator, free, priors))
     left = (stack.values - simulator.steady(())) / stack.uncertainty
-    units = nuisances.fitted(left)[: len(free)]
+    stated = left + nuisances.columns[:, : len(free)] @ total
+    units = nuisances.fitted(stated)[: len(free)] - total
     return np.asarray(units * min(1.0, _LONGEST / max(float(np.abs(units).max()), 1e-12)))

@@ -119,8 +119,8 @@ _FED: Final = (
 
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
-    stack, whole = problem.simulator.stack, problem.residual
-    left = left_by_step(problem, whole)
+    stack, whole = problem.simulator.stack, problem.stated
+    left = left_by_step(problem, problem.residual)
     steps = []
     for what in CHAIN:
         rows = _of_step(stack.components, what)
@@ -201,7 +201,7 @@ def _rms(values: FloatArray) -> float:
 
 
 def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
-    stack, whole = problem.simulator.stack, problem.residual
+    stack, whole = problem.simulator.stack, problem.stated
     forces = np.array([one.channel in FORCES for one in stack.components])
     for kind in contrasts(stack.runs):
         rows = forces & np.isin(stack.run, kind.runs)

@@ -17,7 +17,6 @@ from analysis.gap.gaussian import misfit, posterior
 from analysis.gap.regimes import Regime
 from hardware.description.arrays import BoolArray, FloatArray
 
-_FEWEST = 2  # regimes that can refute a name: one may itself be off
 _DRAWS = 400
 _SEED = 4711
 
@@ -84,23 +83,6 @@ def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
         problem, residual, columns, ~out
     )
     return Predicted(regime, rows, rest[rows] / spread, density)
-
-
-def foretells(before: Sequence[Predicted], after: Sequence[Predicted]) -> bool:
-    """Tell whether a hypothesis predicts at least half of the withheld regimes that it speaks of.
-
-    That is to leave less than u, or less than half of the gap. It speaks of those whose prediction
-    it changes by u or more; of fewer than two, nothing is held against it. More than no effect
-    predicts is not asked: what is a setting beyond its tolerance (a zero, a speed) the free numbers
-    predict as well once the other runs have moved them there.
-    """
-    pairs = [
-        (gap_of(one.left), gap_of(two.left))
-        for one, two in zip(before, after, strict=True)
-        if np.mean((one.left - two.left) ** 2) > 1.0
-    ]
-    told = sum(left <= max(1.0, 0.5 * first) for first, left in pairs)
-    return len(pairs) < _FEWEST or 2 * told >= len(pairs)
 
 
 def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatArray]:

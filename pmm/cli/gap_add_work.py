@@ -67,7 +67,7 @@ def _effects(examined: Examined, request: GapAddOptions) -> Sequence[Effect]:
     """Return what to add: the named effect as fitted, or the one that was found."""
     found = examined.diagnosis
     if request.effect is not None:
-        fits = [one.fit for one in found.weighed.singles if one.fit.names == (request.effect,)]
+        fits = [one for one in found.weighed.singles if one.names == (request.effect,)]
         if not fits:
             reason = found.weighed.refused.get(request.effect, "these runs do not show it")
             raise DataError(f"{request.effect}: cannot be fitted: {reason}")

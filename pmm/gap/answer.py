@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.answer import NamedAnswer, named_answer, predicted_shrinkage, probabilities_about
+from analysis.gap.answer import NamedAnswer, named_answer, predicted_shrinkage
 from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
@@ -18,10 +18,10 @@ from analysis.gap.measurements import INJECTED_HZ
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
-from analysis.gap.recentre import Recentred
 from hardware.description.arrays import FloatArray
 from pmm.gap.case import HeldOut
 from sim.effects.effect import FurtherMeasurement
+from sim.rig import SimulatedRig
 
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
@@ -30,7 +30,7 @@ _TWO_SIDED = 1.96
 def answer(
     name: str,
     diagnosis: Diagnosis,
-    there: Recentred,
+    rig: SimulatedRig,
     held_out: Sequence[HeldOut],
     priors: Priors,
 ) -> dict[str, Any]:
@@ -40,20 +40,19 @@ def answer(
     ----------
     name
         Of the case.
-    there
+    rig
         The rig that the diagnosis began with.
     held_out
         Runs whose outcome is to be foretold.
     """
-    free = free_numbers(there.rig, priors)
-    shares = probabilities_about(diagnosis, there)
-    named = named_answer(diagnosis, shares)
+    free = free_numbers(rig, priors)
+    named = named_answer(diagnosis)
     best = named.best
     foretold = _Foretold(diagnosis.problem, named, held_out, free, priors)
     found: dict[str, Any] = {
         "schema": SCHEMA,
         "case": name,
-        "probabilities": _summing_to_one(shares),
+        "probabilities": _summing_to_one(diagnosis.answers.by_answer),
         "stages": _summing_to_one(diagnosis.stages) if best is not None else {},
         "classes": [
             sorted([own, *(other for other, _ in alike)])

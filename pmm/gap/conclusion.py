@@ -1,8 +1,8 @@
 """What a diagnosis comes to: the one value from which every word about it is made.
 
-The probabilities weigh all numbers of a campaign together; the walk looks at each step by itself,
-and the withheld runs at how much of the gap an effect takes. Where they would be at odds on a page,
-this is where it is decided, once, so that headline, tables and what is proposed agree.
+The probabilities weigh all numbers of a campaign together, and the most probable answer is the
+verdict; the walk looks at each step by itself, and the withheld runs at how much of the gap an
+effect takes. Headline, tables and what is proposed all begin here.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,17 +10,16 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
-from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN, effects_in
+from analysis.gap.inference.answers import UNKNOWN, effects_in
 from pmm.gap.steps import StepRow
 
 EFFECT: Final = "effect"
-TAKES_IT: Final = 0.95  # of the withheld gap: what takes as much is not refused as "unknown"
 _FITS: Final = 2.0  # u: a step below it needs no coefficient to fit
 
 
 @dataclass(frozen=True)
 class Weighing:
-    """What the evidence says, before it is held against the walk.
+    """What the evidence says.
 
     Attributes
     ----------
@@ -36,6 +35,8 @@ class Weighing:
         Part of the withheld gap that goes away with it; NaN where nothing was withheld.
     stage
         Where the gap most probably comes from; ``""`` where there is none.
+    odd_run
+        The run that most probably went wrong by itself.
     restricted
         How many effects were considered, where that is not the whole catalogue.
     """
@@ -46,6 +47,7 @@ class Weighing:
     titles: Mapping[str, str]
     takes: float
     stage: str
+    odd_run: str
     restricted: int | None = None
 
 
@@ -56,7 +58,7 @@ class Conclusion:
     Attributes
     ----------
     verdict
-        ``"none"``, ``"coefficients"``, ``"unknown"`` or ``"effect"``.
+        ``"none"``, ``"coefficients"``, ``"unknown"``, ``"odd-run"`` or ``"effect"``.
     walk
         Steps along the chain.
     remains
@@ -74,11 +76,6 @@ class Conclusion:
         return (
             effects_in(self.weighing.best) if self.verdict == EFFECT and self.weighing.best else ()
         )
-
-    @property
-    def likeliest(self) -> str:
-        """The most probable of all answers, whatever the walk says."""
-        return next(iter(self.weighing.shares))
 
     @property
     def adds(self) -> bool:
@@ -119,17 +116,7 @@ def class_probability(
     return min(sum(shares.get(name, 0.0) for name in answers), 1.0)
 
 
-def verdict_of(weighing: Weighing, walk: Sequence[StepRow]) -> str:
-    """Return the verdict: what the evidence says, as far as the page beside it bears it out.
-
-    Where no step of the walk shows a gap, nothing is missing, whatever all of the numbers together
-    lean towards. An effect that takes the gap away where nobody had looked is the answer,
-    though what it leaves be unknown.
-    """
+def verdict_of(weighing: Weighing) -> str:
+    """Return the verdict: the most probable answer, ``"effect"`` where it names one or two."""
     best = next(iter(weighing.shares))
-    if not any(one.gap for one in walk):
-        calm = (NONE, COEFFICIENTS)
-        return best if best in calm else max(calm, key=lambda one: weighing.shares.get(one, 0.0))
-    if best == UNKNOWN and weighing.best and weighing.takes >= TAKES_IT:
-        return EFFECT
     return EFFECT if effects_in(best) else best

@@ -10,22 +10,21 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.answer import probabilities_about
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.description import Description, describe
-from analysis.gap.diagnose import Diagnosis, diagnose, refuted
+from analysis.gap.diagnose import Diagnosis, diagnose
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers
 from analysis.gap.gaussian import Nuisances
+from analysis.gap.inference.answers import NONE
 from analysis.gap.marginal import Marginal, marginals
 from analysis.gap.noise import pooled
 from analysis.gap.polynomial import polynomial
 from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.verdict import NONE, answer_of, ranked
-from analysis.gap.withheld import Predicted, foretells, gap_of, predict_withheld, shrinkage
+from analysis.gap.withheld import Predicted, gap_of, predict_withheld, shrinkage
 from hardware.description.arrays import FloatArray
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
@@ -82,11 +81,6 @@ class Judged:
     by_answer: Mapping[str, float]
     chosen: bool
 
-    @property
-    def is_foretold(self) -> bool:
-        """Whether the best answer foretells the runs that a user withheld; or nothing was asked."""
-        return not (self.chosen and self.cured) or foretells(self.plain, self.cured)
-
 
 @dataclass(frozen=True, eq=False)
 class Examined:
@@ -128,23 +122,20 @@ class Examined:
     @property
     def shares(self) -> Mapping[str, float]:
         """Probabilities of the answers, most probable first."""
-        found = probabilities_about(self.diagnosis, self.recentred)
-        return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+        return dict(sorted(self.diagnosis.answers.by_answer.items(), key=lambda pair: -pair[1]))
 
     @cached_property
     def conclusion(self) -> Conclusion:
         """What all of it comes to: whoever says something of this campaign says it from here."""
         problem, weighing = self.diagnosis.problem, self._weighing()
-        steps = walk_rows(problem, self.diagnosis.walk)
-        verdict = verdict_of(weighing, steps)
+        steps, verdict = walk_rows(problem, self.diagnosis.walk), verdict_of(weighing)
         left = problem.residual - self._explained(verdict)
         return Conclusion(verdict, weighing, steps, tuple(remains(problem, left)))
 
     @property
     def cause(self) -> Fit | None:
         """The effect that the answer names, as fitted; ``None`` where it names none."""
-        best = self.diagnosis.best
-        return best.fit if best is not None and self.conclusion.verdict == EFFECT else None
+        return self.diagnosis.cause
 
     @property
     def left(self) -> FloatArray:
@@ -160,12 +151,12 @@ class Examined:
         best = self.diagnosis.best
         if best is None or verdict != EFFECT:
             return np.zeros_like(self.diagnosis.problem.residual)
-        return best.fit.signature
+        return best.signature
 
     def _weighing(self) -> Weighing:
         found, judged = self.diagnosis, self.judged
-        best = "" if found.best is None else answer_of(found.best.fit)
-        told = bool(judged.plain and judged.cured)
+        best = "" if found.best is None else found.best.answer
+        told, odd = bool(judged.plain and judged.cured), found.answers.odd_runs
         return Weighing(
             self.shares,
             best,
@@ -173,6 +164,7 @@ class Examined:
             {one.name: one.title for one in self.catalogue.values()},
             shrinkage(judged.plain, judged.cured).share if told else math.nan,
             max(found.stages, key=lambda name: found.stages[name], default=""),
+            max(odd, key=lambda name: odd[name], default=""),
             None if catalogue().keys() <= self.catalogue.keys() else len(self.catalogue),
         )
 
@@ -200,8 +192,6 @@ def examine(
     progress("predicting withheld runs")
     free = free_numbers(there.rig, priors)
     judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
-    if found.cause is not None and not judgement.is_foretold:
-        found = refuted(found, [answer_of(found.cause)], known)
     return Examined(ready, free, found, judgement, marginals(found), known)
 
 
@@ -231,9 +221,9 @@ def _judged(
 
 def _likeliest(found: Diagnosis) -> dict[str, Fit]:
     """Return the likeliest named answers, and the control."""
-    likeliest = ranked(found.weighed, found.probabilities)[:_LIKELIEST]
+    likeliest = found.weighed.ranked[:_LIKELIEST]
     ones = (*likeliest, *(one for one in (found.best, found.rival) if one is not None))
-    return {answer_of(one.fit): one.fit for one in ones}
+    return {one.answer: one for one in ones}
 
 
 def _joint(
@@ -261,9 +251,7 @@ def _foretold(
 ) -> Judged:
     """Ask answers, by name, for what is withheld."""
     told = {name: predict_withheld(problem, fit, withheld) for name, fit in asked.items()}
-    best, rival = (
-        () if one is None else told[answer_of(one.fit)] for one in (found.best, found.rival)
-    )
+    best, rival = (() if one is None else told[one.answer] for one in (found.best, found.rival))
     free_form = predict_withheld(problem, control, withheld)
     by_answer = {name: _gap(one) for name, one in told.items()}
     return Judged(told[NONE], best, rival, free_form, by_answer, chosen)

@@ -9,10 +9,10 @@ from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict
 from analysis.inertia.spread import SURE
-from pmm.gap.conclusion import TAKES_IT
 
 CAUSE: Final = "cause"
 UNTOLD: Final = "untold"
+_TAKES_IT: Final = 0.95  # of the withheld gap: what takes as much is not refused as "unknown"
 _SHOWN: Final = 8  # answers
 _LEAST: Final = 1e-4  # probability that is worth a row
 
@@ -70,7 +70,7 @@ def conclude(
     if not best:
         return PendulumConclusion(NONE, (), math.nan)
     if best == (UNKNOWN,):
-        verdict = CAUSE if names and foretells >= TAKES_IT else UNKNOWN
+        verdict = CAUSE if names and foretells >= _TAKES_IT else UNKNOWN
     else:
         verdict = CAUSE if foretells >= SURE else UNTOLD
     return PendulumConclusion(verdict, names, foretells)

@@ -108,6 +108,7 @@ def prepare(
         on=tuple(on),
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
+        moved=there.units,
     )
     for one in loaded.at_rest:
         (withheld if one.name in held_out else fitted).append(one)

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from analysis.gap.description import Description
-from analysis.gap.diagnose import SHIFTED
 from analysis.gap.fit import Fit
 from analysis.gap.marginal import Marginal
-from analysis.gap.odd_run import OddRun
 from analysis.gap.propose import Proposal
 from analysis.gap.twins import coefficient_error, separating_measurements
-from analysis.gap.verdict import answer_of, coefficient_shift, coefficient_twins, effects_in
+from analysis.gap.verdict import coefficient_shift, coefficient_twins
 from analysis.gap.where import left_by_step
 from analysis.gap.withheld import Predicted, gap_of, shrinkage
 from hardware.description.arrays import FloatArray
@@ -25,7 +23,7 @@ from pmm.gap.hull_report import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
-from pmm.gap.steps import StepRow, step_row
+from pmm.gap.steps import FAR, StepRow, step_row
 from pmm.gap.words import Remedies, joined, sentences
 
 _SHOWN: Final = 8  # hypotheses of the ranking
@@ -82,7 +80,7 @@ def gap_report(examined: Examined) -> GapReport:
     next_runs = tuple(_next(one) for one in found.proposals[:PROPOSED])
     measures = tuple(how for one in ranking for how in one.measure)
     run = next_runs[0]["said"] if next_runs else ""
-    todo = Remedies("" if odd is None else odd.name, measures, run)
+    todo = Remedies(odd, measures, run)
     return GapReport(
         examined.campaign.name,
         tuple(run.name for run in stack.runs),
@@ -114,53 +112,42 @@ def _difference(examined: Examined) -> FloatArray:
     return left_by_step(examined.diagnosis.problem, examined.left)
 
 
-def _notes(examined: Examined, odd: OddRun | None) -> Iterator[str]:
-    moved = examined.recentred
-    far = sorted(moved.units, key=lambda name: -abs(moved.units[name]))[:3]
-    if far:
-        said = ", ".join(f"{name} {moved.moved[name]:+.4g}" for name in far)
-        yield f"the stated model is far off ({said}); the diagnosis goes on about what fits"
-    for name in examined.diagnosis.not_foretold:
-        if effects_in(name) != examined.conclusion.names:
-            yield (
-                f"{joined(name)} explains the runs that it is fitted to, but does not foretell "
-                "those that are withheld: what it stands for counts as unknown"
-            )
-    if odd is not None:
-        yield odd_note(odd)
+def _notes(examined: Examined, odd: str) -> Iterator[str]:
+    if odd:
+        yield odd_note(odd, examined.diagnosis.answers.odd_runs[odd])
     yield from run_notes(examined)
     yield from noise_notes(examined)
-    pulled = coefficient_shift(examined.diagnosis.problem, examined.diagnosis.problem.residual)
-    beyond = [f"{name} {units:+.1f}" for name, units in pulled.items() if abs(units) > SHIFTED]
+    pulled = coefficient_shift(examined.diagnosis.problem, None)
+    beyond = [f"{name} {units:+.1f}" for name, units in pulled.items() if abs(units) > FAR]
     if beyond:
         yield f"without an effect these would be off by so many tolerances: {', '.join(beyond)}"
     if examined.cause is not None:
-        yield from _of_cause(examined, examined.cause, alone=odd is None)
+        yield from _of_cause(examined, examined.cause)
 
 
-def _of_cause(examined: Examined, cause: Fit, *, alone: bool) -> Iterator[str]:
+def _of_cause(examined: Examined, cause: Fit) -> Iterator[str]:
     """Yield what else could do what is named, and how much of its form is not the catalogue's."""
     twins = coefficient_twins(examined.diagnosis.problem, cause, examined.free)
     for name, (off, units) in twins.items():
         how = separating_measurements([coefficient_error(name), *cause.names])
         yield (
             f"{name} off by {off:+.4g} {UNITS.get(name, '')} ({abs(units):.3g} tolerances) "
-            f"would do the same in these runs as {joined(answer_of(cause))}"
+            f"would do the same in these runs as {joined(cause.answer)}"
             + (f"; to tell them apart: {'; '.join(how)}" if how else "")
         )
-    best = examined.diagnosis.best
-    if alone and best is not None and best.remainder > 0.2:
+    besides = examined.diagnosis.answers.besides[cause.answer]
+    if besides > 0.5:
         yield (
-            f"{joined(answer_of(best.fit))} leaves {100.0 * best.remainder:.0f} % of its own size "
-            "unexplained: its form is not quite that of the catalogue"
+            f"beside {joined(cause.answer)} there is something that the catalogue does not have "
+            f"(probability {besides:.2f}): another form of it, or something smaller"
         )
 
 
 def _ranking(examined: Examined) -> Iterator[Ranked]:
     found = examined.diagnosis
     fits: dict[str, Fit] = {}
-    for one in (*found.weighed.singles, *found.weighed.pairs):
-        fits.setdefault(answer_of(one.fit), one.fit)
+    for one in found.weighed.ranked:
+        fits.setdefault(one.answer, one)
     shares = examined.shares
     ranked, best = list(shares), examined.conclusion.weighing.best
     kept = [
@@ -188,9 +175,9 @@ def _controls(examined: Examined) -> Iterator[ControlRow]:
     rows: list[tuple[str, Sequence[Predicted]]] = []
     if found.best is not None:
         near = "nearest, but not it: " if examined.cause is None else ""
-        rows.append((near + joined(answer_of(found.best.fit)), judged.cured))
+        rows.append((near + joined(found.best.answer), judged.cured))
     if found.rival is not None:
-        rows.append((f"second best: {joined(answer_of(found.rival.fit))}", judged.rival))
+        rows.append((f"second best: {joined(found.rival.answer)}", judged.rival))
     rows.append(("free polynomial", judged.free_form))
     for what, after in rows:
         if judged.plain and after:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import Final
 
-from analysis.gap.odd_run import OddRun, odd_run
 from analysis.gap.sensors import heard_rms
 from analysis.gap.withheld import gap_of
 from pmm.gap.examine import Examined
@@ -31,25 +30,17 @@ def noise_notes(examined: Examined) -> Iterator[str]:
             )
 
 
-def odd_one(examined: Examined) -> OddRun | None:
-    """Return the run that alone is off, unless the cause explains it too.
-
-    An effect may show beyond noise in the one run that drives it hardest.
-    """
-    if not examined.conclusion.unexplained:
-        return None
-    looked = examined.diagnosis.weighed.looked
-    fits = [one.fit for one in looked if one.fit is not None]
-    return odd_run(examined.diagnosis.problem, fits)
+def odd_one(examined: Examined) -> str:
+    """Return the run that is more probably odd than not; empty where there is none."""
+    odd = examined.diagnosis.answers.odd_runs
+    return next((name for name, share in odd.items() if share > 0.5), "")
 
 
-def odd_note(found: OddRun) -> str:
-    """Return what is said of it."""
-    named = " and ".join(found.beside)
-    rest = f"{named} explains the others" if named else "the others show no gap beyond u"
+def odd_note(name: str, probability: float) -> str:
+    """Return what is said of an odd run."""
     return (
-        f"run {found.name} alone is off: without it {rest} (it leaves {found.rms:.3g} u); a bad "
-        f"run? withhold it with --hold-out {found.name}"
+        f"run {name} alone has a gain or a zero of its own (probability {probability:.2f}); a bad "
+        f"run? withhold it with --hold-out {name}"
     )
 
 

@@ -3,13 +3,15 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 
-from analysis.gap.diagnose import SHIFTED
 from analysis.gap.fit import Problem
 from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of
 from hardware.description.arrays import FloatArray
+
+FAR: Final = 3.0  # tolerances, beyond which a number is said to be off
 
 
 @dataclass(frozen=True)
@@ -68,13 +70,14 @@ def step_row(one: Gap, strained: Mapping[str, float] = MappingProxyType({})) -> 
 
 def walk_rows(problem: Problem, walk: Walk) -> tuple[StepRow, ...]:
     """Return the steps of a walk."""
-    out = strained(problem, problem.residual)
+    out = strained(problem, problem.stated)
     return tuple(step_row(one, out.get(one.what, {})) for one in walk.steps)
 
 
 def remains(problem: Problem, residual: FloatArray) -> Iterator[StepRow]:
     """Yield what an answer leaves of a whitened difference, step by step along the chain."""
-    left, out = left_by_step(problem, residual), strained(problem, residual)
+    left = left_by_step(problem, residual)
+    out = strained(problem, residual + problem.stated - problem.residual)
     stack = problem.simulator.stack
     for what in CHAIN:
         rows = np.array([step_of(one) == what for one in stack.components])
@@ -96,7 +99,7 @@ def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, floa
             upstream |= steps == what
             units = problem.nuisances.among(upstream).fitted(residual[upstream])
             pulled = zip(problem.free, units.tolist(), strict=False)
-            far = {name: unit for name, unit in pulled if abs(unit) > SHIFTED and name not in seen}
+            far = {name: unit for name, unit in pulled if abs(unit) > FAR and name not in seen}
             seen |= far.keys()
             found[what] = far
     return found

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.gap.verdict import COEFFICIENTS, NONE, UNKNOWN
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN
 from pmm.gap.conclusion import EFFECT, Conclusion
 from pmm.gap.sizes import HowLarge
 
@@ -46,7 +46,13 @@ def sentences(
 
 def what_is_wrong(found: Conclusion) -> str:
     """Return what separates rig and simulation, and how probable that is."""
-    said = {NONE: _none, COEFFICIENTS: _coefficients, UNKNOWN: _unknown, EFFECT: _effect}
+    said = {
+        NONE: _none,
+        COEFFICIENTS: _coefficients,
+        ODD_RUN: _odd_run,
+        UNKNOWN: _unknown,
+        EFFECT: _effect,
+    }
     return f"{said[found.verdict](found)}."
 
 
@@ -58,23 +64,20 @@ def _none(found: Conclusion) -> str:
         )
     fitted = " once the coefficients are fitted" if found.fitted else ""
     agree = f"rig and simulation agree{fitted} within what the recordings can tell"
-    return f"No gap: {agree}{_leaning(found) or f' (probability {found.probability:.2f})'}"
+    return f"No gap: {agree} (probability {found.probability:.2f})"
 
 
 def _coefficients(found: Conclusion) -> str:
     left = f"; they do not explain the difference in {_steps(found)}" if found.unexplained else ""
     missing = "No effect is missing: the coefficients are not those that the campaign states"
-    return f"{missing}{_leaning(found)}{left}"
+    return f"{missing} (probability {found.probability:.2f}){left}"
 
 
-def _leaning(found: Conclusion) -> str:
-    """Return what all numbers together lean towards, though no step shows it."""
-    best = found.likeliest
-    if best in (NONE, COEFFICIENTS):
-        return ""
-    what = OUTSIDE if best == UNKNOWN else joined(best)
-    share = found.weighing.shares[best]
-    return f", though all numbers together lean towards {what} (probability {share:.2f})"
+def _odd_run(found: Conclusion) -> str:
+    return (
+        f"Run {found.weighing.odd_run} alone is off, by a gain or a zero of its own "
+        f"(probability {found.probability:.2f})"
+    )
 
 
 def _unknown(found: Conclusion) -> str:
@@ -95,11 +98,6 @@ def _effect(found: Conclusion) -> str:
     what = " and ".join(f"{given.titles.get(one, one)} ({one})" for one in found.names)
     verb = "is" if len(found.names) == 1 else "are"
     said = f"{what} {verb} missing in the simulation"
-    if found.likeliest == UNKNOWN:
-        return (
-            f"{said}: {100.0 * given.takes:.0f} % of the difference goes away with it; the rest is "
-            f"{OUTSIDE} (probability {given.shares[UNKNOWN]:.2f})"
-        )
     alike = [
         f"{' or '.join(others)} would look the same as {own} in these runs"
         for own, others in given.alike.items()
@@ -140,8 +138,6 @@ def what_to_do(found: Conclusion, todo: Remedies) -> str:
         return f"Look at what remains, below, and {make}."
     if found.verdict == COEFFICIENTS:
         return "Put the fitted coefficients into the campaign file: to find them is what it is for."
-    if _leaning(found):
-        return f"Nothing has to be done; to be sure, {make}."
     return "Nothing has to be done: the coefficients of this campaign may be reported."
 
 

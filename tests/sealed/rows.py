@@ -5,7 +5,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tests.sealed.controls import CONTROLS, Answerer
-from tests.sealed.one_equation.row import one_equation
 from tests.sealed.peers.by_bic import lmfit_bic
 from tests.sealed.peers.largest import largest_residual
 from tests.sealed.peers.scene import scene
@@ -18,9 +17,8 @@ PEERS: Mapping[str, tuple[Answerer, str]] = {
     "lmfit": (lmfit_bic, "lmfit"),
     "pysindy": (pysindy_stlsq, "pysindy"),
     "faultdiagnosistoolbox": (structural, "faultdiagnosistoolbox"),
-    "one-equation": (one_equation, ""),
 }
-SHARING = frozenset(PEERS) - {"one-equation"}
+SHARING = frozenset(PEERS)
 """Rows that start from the same prepared case."""
 
 

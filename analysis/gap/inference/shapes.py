@@ -1,4 +1,4 @@
-"""The shapes that a deviation may have: those of the catalogue's effects, as these runs show them.
+"""Shapes that a deviation may have: those of the catalogue's effects, as these runs show them.
 
 What nobody knows looks like physics: it moves, pushes or delays something that is there. So the
 covariance of what is unknown is that of the effects' signatures in this very campaign.
@@ -11,25 +11,43 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.look import Looked
-from hardware.description.arrays import FloatArray
-from tests.sealed.one_equation.constants import ALIKE, PLAIN
-from tests.sealed.one_equation.metric import Metric
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.inference.constants import ALIKE, PLAIN
+from hardware.description.arrays import BoolArray, FloatArray
 
 _LEAST: Final = 0.03  # of an effect's largest direction, below which one is rounding
 
 
 @dataclass(frozen=True, eq=False)
-class Learned:
+class Looked:
+    """What a first look at an effect shows.
+
+    Attributes
+    ----------
+    stage
+        Where it acts.
+    signature, columns
+        What it changes, and its slopes, in sigma: shapes ``(observations,)`` and
+        ``(observations, p)``.
+    """
+
+    name: str
+    stage: str
+    signature: FloatArray
+    columns: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
     """Directions in which effects move the observations.
 
     Attributes
     ----------
     columns
-        Each effect's signature and slopes, orthogonal, in sigma at a root mean square of 1 in the
-        kernel's units, shape ``(observations, directions)``.
+        Each effect's signature and slopes, orthogonal, in sigma at a root mean square of 1 in units
+        of a deviation, shape ``(observations, directions)``.
     effects, stages
-        Whose they are, and where that one acts, shape ``(directions,)``.
+        Whose they are, and where that one acts, one for each direction.
     alike
         For each effect those whose signatures these runs hardly tell from its own, itself included.
     """
@@ -40,7 +58,7 @@ class Learned:
     alike: dict[str, frozenset[str]]
 
     @classmethod
-    def of(cls, looked: Sequence[Looked], scale: FloatArray, tolerances: Metric) -> "Learned":
+    def of(cls, looked: Sequence[Looked], scale: FloatArray, tolerances: Nuisances) -> "Shapes":
         """Learn from first looks at effects.
 
         Parameters
@@ -50,28 +68,26 @@ class Learned:
         """
         columns, effects, stages = [np.zeros((len(scale), 0))], [], []
         for one in looked:
-            if one.fit is not None:
-                found = _directions(np.column_stack((one.fit.signature, one.fit.columns)), scale)
-                columns.append(found)
-                effects += [one.name] * found.shape[1]
-                stages += [one.fit.candidates[0].kind.stage.value] * found.shape[1]
+            found = _directions(np.column_stack((one.signature, one.columns)), scale)
+            columns.append(found)
+            effects += [one.name] * found.shape[1]
+            stages += [one.stage] * found.shape[1]
         return cls(np.hstack(columns), tuple(effects), tuple(stages), _alike(looked, tolerances))
 
     def beside(self, names: Sequence[str]) -> FloatArray:
-        """Return the shapes of what may stand beside effects: of all that is not like them."""
+        """Return the weights of what may stand beside effects: of all that is not like them."""
         out = frozenset[str]().union(*(self.alike.get(name, frozenset((name,))) for name in names))
-        return self._of(lambda at: self.effects[at] not in out)
+        return self._weights(lambda at: self.effects[at] not in out)
 
     def at(self, stage: str) -> FloatArray:
-        """Return the shapes of what is unknown in a stage."""
-        return self._of(lambda at: self.stages[at] == stage)
+        """Return the weights of what is unknown in a stage."""
+        return self._weights(lambda at: self.stages[at] == stage)
 
-    def _of(self, chosen: Callable[[int], bool]) -> FloatArray:
-        """Return some directions, so weighed that together they have a mean square of 1."""
-        kept = [at for at in range(len(self.effects)) if chosen(at)]
-        count = len({self.effects[at] for at in kept})
-        share = math.sqrt((1.0 - PLAIN) / max(count, 1))
-        return np.asarray(share * self.columns[:, kept], np.float64)
+    def _weights(self, chosen: Callable[[int], bool]) -> FloatArray:
+        """Return by what directions are scaled so that together they have a mean square of 1."""
+        kept: BoolArray = np.array([chosen(at) for at in range(len(self.effects))], dtype=bool)
+        count = len({self.effects[at] for at in np.flatnonzero(kept)})
+        return np.asarray(kept * math.sqrt((1.0 - PLAIN) / max(count, 1)), np.float64)
 
 
 def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
@@ -82,11 +98,10 @@ def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
     return np.asarray(left[:, kept] * values[kept], np.float64)
 
 
-def _alike(looked: Sequence[Looked], tolerances: Metric) -> dict[str, frozenset[str]]:
-    seen = [(one.name, one.fit.signature) for one in looked if one.fit is not None]
-    if not seen:
+def _alike(looked: Sequence[Looked], tolerances: Nuisances) -> dict[str, frozenset[str]]:
+    if not looked:
         return {}
-    names, signatures = [name for name, _ in seen], np.column_stack([own for _, own in seen])
+    names, signatures = [one.name for one in looked], np.column_stack([o.signature for o in looked])
     gram = signatures.T @ tolerances.whiten(signatures)
     size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))
     near = np.abs(gram) > ALIKE * np.outer(size, size)

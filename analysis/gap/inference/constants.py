@@ -1,14 +1,15 @@
 """Every number that decides, with its unit and where it comes from.
 
-Tolerances in physical units are not among them: they are the user's (:mod:`analysis.gap.priors`).
+``docs/gap-constants.md`` has how much the score moves when each is halved or doubled. Tolerances in
+physical units are not among them: they are the user's (:mod:`analysis.gap.priors`).
 """
 
 from dataclasses import dataclass
 from typing import Final
 
-TAUS: Final = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0)
+TAUS: Final = (0.0, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0)
 """Sizes of a deviation of no particular form, relative to a channel's predicted first harmonic: a
-grid of orders of magnitude, from what no record resolves to the whole of it."""
+grid of orders of magnitude, from none at all to the whole of it."""
 
 TOLERATED: Final = 1e-3
 """Size up to which a deviation that is smooth over set-points is no gap: ITTC asks 1 % of forces
@@ -31,8 +32,7 @@ WIDE: Final = 10.0
 """Tolerances by which coefficients are off where they are the answer: a decade."""
 
 ETA: Final = 0.5
-"""Power of the evidence: fitted on development boards of worlds A and B (seed 11, 42 cases each);
-between 0.35 and 0.7 the mean log loss there changes by 0.03 and by 0.15."""
+"""Power of the evidence, the only calibrator: fitted on development boards of worlds A and B."""
 
 ALIKE: Final = 0.99
 """Cosine of two effects' signatures, beside the tolerances, above which one is left out of what
@@ -45,7 +45,7 @@ class Odds:
 
     Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
     that no catalogue knows it, one in ten is two effects; in one campaign of sixteen coefficients
-    are off by more than anybody thought.
+    are off by more than anybody thought, and in one of sixteen a single run went wrong.
     """
 
     none: float = 0.12
@@ -53,3 +53,7 @@ class Odds:
     pair: float = 0.09
     unknown: float = 0.18
     coefficients: float = 0.06
+    odd_run: float = 0.06
+
+
+ODDS: Final = Odds()

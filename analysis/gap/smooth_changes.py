@@ -5,41 +5,38 @@ departs from it smoothly.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
 
 from analysis.gap.components import Stack
-from analysis.gap.free import Free
 from analysis.gap.priors import Priors
 from hardware.description.arrays import FloatArray
-
-PER_OCTAVE_AND_SPEED: Final = {"a": (0.05, 0.03), "b": (0.05, 0.10)}
-"""Relative standard deviations of a coefficient's change: panel tables of ship models, and tests at
-several Froude numbers."""
 
 _LEAST: Final = 1e-3  # of a smooth change's variance, below which it needs no further column
 
 
 def smooth_changes(
-    stack: Stack, free: Sequence[Free], levels: Sequence[FloatArray], priors: Priors
+    stack: Stack, levels: Mapping[str, FloatArray], priors: Priors
 ) -> Iterator[FloatArray]:
     """Yield the columns, in sigma per prior deviation.
 
     Parameters
     ----------
     levels
-        What a prior deviation of each of ``free`` changes, in sigma.
+        What a prior deviation of each coefficient changes, in sigma, by name: ``"a11"``.
     """
-    ways = {kind: _ways(stack, *PER_OCTAVE_AND_SPEED[kind]) for kind in "ab"}
+    ways = {
+        "a": _ways(stack, priors.added_mass_per_octave, priors.added_mass_per_speed),
+        "b": _ways(stack, priors.damping_per_octave, priors.damping_per_speed),
+    }
     own = {"a": priors.added_mass_relative, "b": priors.damping_relative}
-    for one, level in zip(free, levels, strict=True):
-        if one.is_sought:
-            kind, row, column = one.name
-            relative = own[kind] if row == column else priors.coupling_relative
-            for change in ways[kind]:
-                yield level / relative * change
+    for name, level in levels.items():
+        kind, diagonal = name[0], name[1] == name[2]
+        for change in ways[kind]:
+            relative = own[kind] if diagonal else priors.coupling_relative
+            yield level / relative * change
 
 
 def _ways(stack: Stack, per_octave: float, per_speed: float) -> list[FloatArray]:

@@ -1,0 +1,155 @@
+"""What stands beside every hypothesis of a campaign: how large, and how alike from run to run.
+
+A deviation is alike for runs that are alike in frequency, amplitude, strut phase, speed, medium and
+drift; each run has a part of its own.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.components import SETTLING, TRENDS, Component, Part, Stack
+from analysis.gap.fit import Problem
+from analysis.gap.inference.evidence import Background
+from analysis.gap.inference.kernel import Kernel
+from analysis.gap.inference.shapes import Looked as Shown
+from analysis.gap.inference.shapes import Shapes
+from analysis.gap.look import Looked
+from hardware.description.arrays import BoolArray, FloatArray
+from hardware.description.channels import DISPLACEMENTS, FORCES
+from hardware.description.setpoint import Medium, SetPoint
+
+_OWN: Final = 0.2  # share of a cell's variance that is every run's own
+_DRIFT_RAD: Final = 0.1  # of drift, after which runs are hardly alike
+_HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS)
+# What a deviation of 1 is of what has no harmonics: an e-fold of noise, every pulse; of the
+# frequency, which is known to 1e-4, a hundredth.
+_UNITS: Final = {Part.FREQUENCY: 0.01}
+_FLOORS: Final = dict.fromkeys(DISPLACEMENTS, 1e-3) | dict.fromkeys(FORCES, 1.0)  # m, N
+_KINDS: Final = {
+    Part.MEAN: "means",
+    Part.TREND: "means",
+    **dict.fromkeys(SETTLING, "trends"),
+    Part.CYCLE_SCATTER: "scatter",
+    Part.PERIOD_SCATTER: "scatter",
+    Part.BETWEEN: "lines",
+    Part.LINE: "lines",
+}
+
+
+def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) -> Background:
+    """Return what stands beside every hypothesis of a campaign.
+
+    Parameters
+    ----------
+    looked
+        First looks at the effects of the catalogue.
+    sought
+        Which of the free numbers such a test is made to find, shape ``(free,)``.
+    """
+    stack, nominal = problem.simulator.stack, problem.simulator.nominal
+    scale = units(stack, nominal) / stack.uncertainty
+    columns = problem.nuisances.columns
+    wide = np.zeros(columns.shape[1], dtype=bool)
+    wide[: len(sought)] = sought
+    shown = [
+        Shown(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
+        for one in looked
+        if one.fit is not None
+    ]
+    cells = _cells(stack)
+    alike = likeness([run.set_point for run in stack.runs])
+    each = [alike[np.ix_(stack.run[rows], stack.run[rows])] for rows in cells]
+    return Background(
+        problem.stated,
+        columns,
+        wide,
+        Kernel.of(cells, each, scale),
+        Shapes.of(shown, scale, problem.nuisances),
+        dict(_own(stack, nominal / stack.uncertainty, scale)),
+        _kinds(stack),
+    )
+
+
+def likeness(set_points: Sequence[SetPoint]) -> FloatArray:
+    """Return how alike a deviation is between runs, shape ``(runs, runs)``; 1 on the diagonal."""
+    places = np.array([_place(one) for one in set_points])
+    distance = np.sum((places[:, None, :] - places[None, :, :]) ** 2, axis=2)
+    shared = (1.0 - _OWN) * np.exp(-0.5 * distance)
+    return np.asarray(shared + _OWN * np.eye(len(places)))
+
+
+def _place(one: SetPoint) -> tuple[float, ...]:
+    return (
+        math.log(one.frequency_hz),
+        math.log(max(one.eccentricity_m, 1e-6)),
+        math.cos(one.strut_phase_rad),
+        math.sin(one.strut_phase_rad),
+        one.carriage_speed_m_s,
+        2.0 * (one.medium is Medium.AIR),
+        one.drift_rad / _DRIFT_RAD,
+    )
+
+
+def _cells(stack: Stack) -> list[NDArray[np.intp]]:
+    places: dict[Component, list[int]] = {}
+    for at, one in enumerate(stack.components):
+        places.setdefault(one, []).append(at)
+    return [np.array(rows) for rows in places.values()]
+
+
+def units(stack: Stack, nominal: FloatArray) -> FloatArray:
+    """Return how large a deviation of 1 is at each observation, in the observation's unit.
+
+    Of a channel its predicted first harmonic, root mean square over the campaign, over the order;
+    of a mean the same; of a change per period that over the periods.
+
+    Parameters
+    ----------
+    nominal
+        What the simulation says, shape ``(observations,)``.
+    """
+    squares: dict[str, list[float]] = {}
+    for one, value in zip(stack.components, nominal, strict=True):
+        first = one.part in (Part.IN_PHASE, Part.QUADRATURE) and one.order == 1
+        standing = one.part is Part.MEAN and one.channel not in (*FORCES, *DISPLACEMENTS)
+        if first or standing:
+            squares.setdefault(one.channel, []).append(float(value) ** 2)
+    runs = max(len(stack.turning), 1)
+    sizes = {name: math.sqrt(sum(found) / runs) for name, found in squares.items()}
+    out = np.ones(len(stack.components))
+    for at, one in enumerate(stack.components):
+        if one.part in _HARMONIC:
+            size = max(sizes.get(one.channel, 0.0), _FLOORS.get(one.channel, 0.1))
+            out[at] = size / max(one.order, 1)
+            if one.part in TRENDS:
+                out[at] /= max(stack.runs[stack.run[at]].periods, 1)
+        else:
+            out[at] = _UNITS.get(one.part, 1.0)
+    return out
+
+
+def _kinds(stack: Stack) -> dict[str, BoolArray]:
+    """Return the observations of each kind, and all of them: where something unknown may show."""
+    kinds = [
+        f"{one.channel or 'photocell'}: {_KINDS.get(one.part, 'harmonics')}"
+        for one in stack.components
+    ]
+    found = {kind: np.array([one == kind for one in kinds]) for kind in dict.fromkeys(kinds)}
+    return {**found, "all": np.ones(len(kinds), dtype=bool)}
+
+
+def _own(stack: Stack, nominal: FloatArray, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+    """Yield by run what a gain and a zero of its own change of each force."""
+    for number, run in enumerate(stack.runs):
+        columns = []
+        for channel in FORCES:
+            here = np.array([one.channel == channel for one in stack.components])
+            here &= stack.run == number
+            mean = here & np.array([one.part is Part.MEAN for one in stack.components])
+            columns.append(np.where(here & stack.steady, nominal, 0.0))
+            columns.append(np.where(mean, scale, 0.0))
+        yield run.name, np.column_stack(columns)

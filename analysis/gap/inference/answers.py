@@ -1,0 +1,182 @@
+"""From evidence and prior odds to probabilities; nothing is patched afterwards."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.inference.constants import ETA, ODDS, SHAPED, TAUS, TOLERATED, WITHIN
+from analysis.gap.inference.evidence import Background
+from analysis.gap.inference.hypothesis import Evidence, Hypothesis
+from hardware.description.arrays import BoolArray, FloatArray
+
+NONE: Final = "none"
+UNKNOWN: Final = "unknown"
+COEFFICIENTS: Final = "coefficients"
+ODD_RUN: Final = "odd-run"
+NAMELESS: Final = (NONE, UNKNOWN, COEFFICIENTS, ODD_RUN)
+_TINY: Final = 1e-300
+_SMALL: Final = np.array(TAUS) <= TOLERATED
+_BESIDE: Final = 2  # named answers that are asked beside an odd run
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What is how probable.
+
+    Attributes
+    ----------
+    by_answer
+        Over :data:`NAMELESS`, effects, and pairs ``"a+b"``; sums to 1.
+    unknown_stages
+        Of what is unknown, from which stage it comes; sums to 1, empty where nothing tells.
+    odd_runs
+        How probable it is that each run is odd, alone or beside an effect.
+    besides
+        Of each named answer, how probable it is that something else is there too.
+    settled
+        Each named answer's parameters beside the deviation that suits it best.
+    """
+
+    by_answer: Mapping[str, float]
+    unknown_stages: Mapping[str, float]
+    odd_runs: Mapping[str, float]
+    besides: Mapping[str, float]
+    settled: Mapping[str, Evidence]
+
+    @property
+    def best(self) -> str:
+        """The most probable answer."""
+        return max(self.by_answer, key=lambda name: self.by_answer[name])
+
+
+@dataclass(frozen=True, eq=False)
+class Considered:
+    """What was considered.
+
+    Attributes
+    ----------
+    singles, pairs
+        What was fitted.
+    count
+        How many effects were considered.
+    concealed
+        How many of them these runs cannot show, or do not: as good as none.
+    """
+
+    singles: Sequence[Hypothesis]
+    pairs: Sequence[Hypothesis]
+    count: int
+    concealed: int
+
+
+def answers(given: Considered, beside: Background) -> Answers:
+    """Weigh every hypothesis.
+
+    Posterior is prior odds times evidence to a power, summed over the sizes of a deviation of no
+    particular form: small ones only where nothing is there, or coefficients or one run are what
+    differs, visible ones where something unknown is, any beside a named effect.
+    """
+    odds, count = ODDS, max(given.count, 1)
+    share = given.concealed / count
+    none = odds.none + odds.single * share + odds.pair * share**2
+    small, large = _even(_SMALL), _even(~_SMALL)
+    any_size = WITHIN * small + (1.0 - WITHIN) * large
+    each_odd = odds.odd_run / max(len(beside.own), 1)
+    logs = {
+        NONE: _log_weight(beside.none(), small, none),
+        COEFFICIENTS: _log_weight(beside.coefficients(), small, odds.coefficients),
+    }
+    found: dict[str, list[Evidence]] = {}
+    pair = odds.pair / max(count * (count - 1) / 2, 1)
+    priors: dict[str, float] = {}
+    for each, ones in ((odds.single / count, given.singles), (pair, given.pairs)):
+        for one in ones:
+            name = answer_of(one.names)
+            found[name], priors[name] = beside.named(one), each
+            logs[name] = _log_weight(_evidences(found[name]), any_size, each)
+    odd = {run: _log_weight(one, _seen(one), each_odd) for run, one in beside.odd_runs().items()}
+    leading = sorted((*given.singles, *given.pairs), key=lambda one: -logs[answer_of(one.names)])
+    beside_odd = {
+        (answer_of(one.names), run): _log_weight(
+            beside.named_beside(one, run, _calmest(found[answer_of(one.names)])),
+            large,
+            each_odd * priors[answer_of(one.names)],
+        )
+        for one in leading[:_BESIDE]
+        for run in beside.own
+    }
+    for (name, _), log in beside_odd.items():
+        logs[name] = float(np.logaddexp(logs[name], log))
+    stages = _of_unknown(beside.unknown(), SHAPED * odds.unknown)
+    kinds = _of_unknown(beside.alone(), (1.0 - SHAPED) * odds.unknown)
+    logs[UNKNOWN] = _sum([*stages.values(), *kinds.values()])
+    logs[ODD_RUN] = _sum(list(odd.values()))
+    total = _sum(list(logs.values()))
+    shaped = _sum(list(stages.values()))
+    return Answers(
+        {name: math.exp(log - total) for name, log in logs.items()},
+        {stage: math.exp(log - shaped) for stage, log in stages.items()} if stages else {},
+        {
+            run: math.exp(_sum([log, *(b for (_, r), b in beside_odd.items() if r == run)]) - total)
+            for run, log in odd.items()
+        },
+        {name: _above(found[name], any_size) for name in found},
+        {name: max(ones, key=lambda one: one.log_evidence) for name, ones in found.items()},
+    )
+
+
+def answer_of(names: Sequence[str]) -> str:
+    """Return the name of a hypothesis: its effects in alphabetical order."""
+    return "+".join(sorted(names))
+
+
+def effects_in(answer: str) -> tuple[str, ...]:
+    """Return the effects that an answer names; none for one that names no effect."""
+    return () if answer in NAMELESS else tuple(answer.split("+"))
+
+
+def _evidences(found: Sequence[Evidence]) -> FloatArray:
+    return np.array([one.log_evidence for one in found])
+
+
+def _calmest(found: Sequence[Evidence]) -> float:
+    """Return the tolerated size of a deviation that suits named effects best."""
+    logs = np.where(_SMALL, _evidences(found), -np.inf)
+    return TAUS[int(np.argmax(logs))]
+
+
+def _above(found: Sequence[Evidence], sizes: FloatArray) -> float:
+    """Return the part of a named answer's weight at deviations larger than is tolerated."""
+    logs = ETA * _evidences(found) + np.log(sizes)
+    return float(np.exp(np.logaddexp.reduce(logs[~_SMALL]) - np.logaddexp.reduce(logs)))
+
+
+def _of_unknown(found: Mapping[str, FloatArray], share: float) -> dict[str, float]:
+    """Return the log weights of something unknown, each way of it as likely as the others."""
+    each = share / max(len(found), 1)
+    return {name: _log_weight(logs, _seen(logs), each) for name, logs in found.items()}
+
+
+def _seen(logs: FloatArray) -> FloatArray:
+    return _even(np.isfinite(logs))
+
+
+def _even(sizes: BoolArray) -> FloatArray:
+    """Return equal prior weights for some sizes, 0 for all others."""
+    return np.asarray(sizes / max(int(sizes.sum()), 1), np.float64)
+
+
+def _log_weight(logs: FloatArray, sizes: FloatArray, share: float) -> float:
+    """Return the log weight of an answer, over all sizes of the deviation."""
+    there = sizes > 0.0
+    if not there.any():
+        return math.log(_TINY)
+    each = ETA * logs[there] + np.log(sizes[there])
+    return float(np.logaddexp.reduce(each)) + math.log(max(share, _TINY))
+
+
+def _sum(logs: Sequence[float]) -> float:
+    return float(np.logaddexp.reduce(logs)) if len(logs) else math.log(_TINY)
