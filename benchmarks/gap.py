@@ -65,7 +65,7 @@ def run(quick: bool, report: Report) -> Outcome:
             prepared = prepare(folder / "rig", known)
             found = diagnose(prepared.there.rig, prepared.fitted, prepared.settings, executor)
             taken, own = time.perf_counter() - started, time.process_time() - busy
-    answer, probability = max(found.probabilities.by_answer.items(), key=lambda one: one[1])
+    answer, probability = max(found.answers.by_answer.items(), key=lambda one: one[1])
     return Outcome(
         {
             "A campaign": [

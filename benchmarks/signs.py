@@ -50,9 +50,9 @@ def _rows(
             "effect": name,
             "sign": f"{sign:+g}",
             "tried": len(found),
-            "named": sum(one.probabilities.best == name for one in found),
+            "named": sum(one.answers.best == name for one in found),
             "in the class": sum(_in_class(one, name) for one in found),
-            "else": ", ".join(one.probabilities.best for one in found if not _in_class(one, name)),
+            "else": ", ".join(one.answers.best for one in found if not _in_class(one, name)),
         }
 
 

@@ -13,14 +13,16 @@ from numpy.typing import NDArray
 
 from analysis.gap.components import SETTLING, TRENDS, Component, Part, Stack
 from analysis.gap.fit import Problem
-from analysis.gap.inference.evidence import Background
+from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Looked as Shown
 from analysis.gap.inference.shapes import Shapes
 from analysis.gap.look import Looked
+from analysis.gap.observe import SPEED
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.effect import StageName
 
 _OWN: Final = 0.2  # share of a cell's variance that is every run's own
 _DRIFT_RAD: Final = 0.1  # of drift, after which runs are hardly alike
@@ -29,8 +31,15 @@ _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS)
 # frequency, which is known to 1e-4, a hundredth.
 _UNITS: Final = {Part.FREQUENCY: 0.01}
 _FLOORS: Final = dict.fromkeys(DISPLACEMENTS, 1e-3) | dict.fromkeys(FORCES, 1.0)  # m, N
+# Where something shows that acts at a stage: in its own channels, and in those behind it.
+_BEHIND: Final = {
+    StageName.MECHANISM: (*DISPLACEMENTS, *FORCES),
+    StageName.CARRIAGE: (SPEED, *FORCES),
+    **dict.fromkeys((StageName.STRUCTURE, StageName.MODEL, StageName.DYNAMOMETERS), FORCES),
+}
+# Something in the instruments shows in one channel alone, by the kind of its numbers.
 _KINDS: Final = {
-    Part.MEAN: "means",
+    **dict.fromkeys((Part.MEAN, Part.IN_PHASE, Part.QUADRATURE), "harmonics"),
     Part.TREND: "means",
     **dict.fromkeys(SETTLING, "trends"),
     Part.CYCLE_SCATTER: "scatter",
@@ -70,7 +79,8 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
         Kernel.of(cells, each, scale),
         Shapes.of(shown, scale, problem.nuisances),
         dict(_own(stack, nominal / stack.uncertainty, scale)),
-        _kinds(stack),
+        dict(_behind(stack)),
+        dict(_kinds(stack)),
     )
 
 
@@ -132,14 +142,33 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
     return out
 
 
-def _kinds(stack: Stack) -> dict[str, BoolArray]:
-    """Return the observations of each kind, and all of them: where something unknown may show."""
-    kinds = [
-        f"{one.channel or 'photocell'}: {_KINDS.get(one.part, 'harmonics')}"
-        for one in stack.components
-    ]
-    found = {kind: np.array([one == kind for one in kinds]) for kind in dict.fromkeys(kinds)}
-    return {**found, "all": np.ones(len(kinds), dtype=bool)}
+def _behind(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
+    """Yield by stage where something that acts there may show; everywhere if nothing is said."""
+    for stage in StageName:
+        channels = _BEHIND.get(stage)
+        yield (
+            stage.value,
+            np.array([channels is None or one.channel in channels for one in stack.components]),
+        )
+
+
+def _kinds(stack: Stack) -> Iterator[tuple[str, Kind]]:
+    """Yield where something unknown may show alone: in one channel, by kind, or in all alike."""
+    channels = np.array([one.channel for one in stack.components])
+    kinds = np.array([_KINDS.get(one.part, "timing") for one in stack.components])
+    for channel in dict.fromkeys(channels.tolist()):
+        for kind in dict.fromkeys(kinds[channels == channel].tolist()):
+            rows = (channels == channel) & (kinds == kind)
+            yield f"{channel} {kind}".strip(), Kind(rows, (_instrument(channel, kind),))
+    every = tuple(one.value for one in StageName)
+    yield "all", Kind(np.ones(len(channels), dtype=bool), every)
+
+
+def _instrument(channel: str, kind: str) -> str:
+    if not channel:
+        return StageName.PHOTOCELL.value
+    gauge = channel in FORCES and kind in ("harmonics", "means")
+    return (StageName.DYNAMOMETERS if gauge else StageName.ACQUISITION).value
 
 
 def _own(stack: Stack, nominal: FloatArray, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:

@@ -19,7 +19,7 @@ ODD_RUN: Final = "odd-run"
 NAMELESS: Final = (NONE, UNKNOWN, COEFFICIENTS, ODD_RUN)
 _TINY: Final = 1e-300
 _SMALL: Final = np.array(TAUS) <= TOLERATED
-_BESIDE: Final = 2  # named answers that are asked beside an odd run
+_LEADING, _ODDEST = 4, 2  # effects, and runs, that are tried beside each other
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,15 +98,13 @@ def answers(given: Considered, beside: Background) -> Answers:
             found[name], priors[name] = beside.named(one), each
             logs[name] = _log_weight(_evidences(found[name]), any_size, each)
     odd = {run: _log_weight(one, _seen(one), each_odd) for run, one in beside.odd_runs().items()}
-    leading = sorted((*given.singles, *given.pairs), key=lambda one: -logs[answer_of(one.names)])
+    leading = sorted(given.singles, key=lambda one: -logs[answer_of(one.names)])
     beside_odd = {
         (answer_of(one.names), run): _log_weight(
-            beside.named_beside(one, run, _calmest(found[answer_of(one.names)])),
-            large,
-            each_odd * priors[answer_of(one.names)],
+            beside.named_beside(one, run), large, each_odd * priors[answer_of(one.names)]
         )
-        for one in leading[:_BESIDE]
-        for run in beside.own
+        for one in leading[:_LEADING]
+        for run in sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
     }
     for (name, _), log in beside_odd.items():
         logs[name] = float(np.logaddexp(logs[name], log))
@@ -115,10 +113,10 @@ def answers(given: Considered, beside: Background) -> Answers:
     logs[UNKNOWN] = _sum([*stages.values(), *kinds.values()])
     logs[ODD_RUN] = _sum(list(odd.values()))
     total = _sum(list(logs.values()))
-    shaped = _sum(list(stages.values()))
+    located = _located(stages, kinds, beside)
     return Answers(
         {name: math.exp(log - total) for name, log in logs.items()},
-        {stage: math.exp(log - shaped) for stage, log in stages.items()} if stages else {},
+        located,
         {
             run: math.exp(_sum([log, *(b for (_, r), b in beside_odd.items() if r == run)]) - total)
             for run, log in odd.items()
@@ -126,6 +124,20 @@ def answers(given: Considered, beside: Background) -> Answers:
         {name: _above(found[name], any_size) for name in found},
         {name: max(ones, key=lambda one: one.log_evidence) for name, ones in found.items()},
     )
+
+
+def _located(
+    shaped: Mapping[str, float], alone: Mapping[str, float], beside: Background
+) -> dict[str, float]:
+    """Return from which stage what is unknown comes, by what it looks like and where it shows."""
+    parts: dict[str, list[float]] = {stage: [log] for stage, log in shaped.items()}
+    for kind, log in alone.items():
+        stages = beside.kinds[kind].stages
+        for stage in stages:
+            parts.setdefault(stage, []).append(log - math.log(len(stages)))
+    logs = {stage: _sum(own) for stage, own in parts.items()}
+    total = _sum(list(logs.values()))
+    return {stage: math.exp(log - total) for stage, log in logs.items()}
 
 
 def answer_of(names: Sequence[str]) -> str:
@@ -140,12 +152,6 @@ def effects_in(answer: str) -> tuple[str, ...]:
 
 def _evidences(found: Sequence[Evidence]) -> FloatArray:
     return np.array([one.log_evidence for one in found])
-
-
-def _calmest(found: Sequence[Evidence]) -> float:
-    """Return the tolerated size of a deviation that suits named effects best."""
-    logs = np.where(_SMALL, _evidences(found), -np.inf)
-    return TAUS[int(np.argmax(logs))]
 
 
 def _above(found: Sequence[Evidence], sizes: FloatArray) -> float:

@@ -21,6 +21,9 @@ VISIBLE: Final = 3.0
 PLAIN: Final = 1e-3
 """Share of a deviation's variance that has no effect's shape: a thirtieth of its size."""
 
+STRANGE: Final = 0.1
+"""The same of what is unknown: a third of its size."""
+
 SHAPED: Final = 0.7
 """Probability that what is unknown looks like a stage's effects; else it shows in one kind of
 observation alone."""

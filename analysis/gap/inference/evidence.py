@@ -1,18 +1,34 @@
 """The evidence of each hypothesis of one problem, beside a deviation of each size."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from analysis.gap.inference.constants import PLAIN, TAUS, TOLERATED, VISIBLE, WIDE
+from analysis.gap.inference.constants import PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.gram import Reduced, Weighted
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis, weighed
 from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Shapes
 from hardware.description.arrays import BoolArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """Observations in which something unknown may show, and no others.
+
+    Attributes
+    ----------
+    rows
+        Which ones, shape ``(observations,)``; whole cells of the kernel.
+    stages
+        Where something acts that shows in these alone, each as probable as the others.
+    """
+
+    rows: BoolArray
+    stages: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +45,11 @@ class Background:
         Which of them are the coefficients that a test is made to find, shape ``(tolerances,)``.
     own
         By run, its own gains and zeros at a deviation of 1, each ``(observations, any)``.
+    behind
+        By stage, the observations in which something that acts there may show; whole cells of the
+        kernel.
     kinds
-        The observations of each kind, by its name; of whole cells of the kernel.
+        Observations in which something may show alone, by name.
     """
 
     residual: FloatArray
@@ -39,7 +58,8 @@ class Background:
     kernel: Kernel
     shapes: Shapes
     own: Mapping[str, FloatArray]
-    kinds: Mapping[str, BoolArray]
+    behind: Mapping[str, BoolArray]
+    kinds: Mapping[str, Kind]
 
     def none(self) -> FloatArray:
         """Return the log evidence of no effect, beside a smooth deviation of each size."""
@@ -49,45 +69,52 @@ class Background:
         """Return that of coefficients that are off by more than anybody thought: one, or all."""
         ones = [np.arange(len(self.sought)) == at for at in np.flatnonzero(self.sought)]
         wide = [np.where(own, WIDE, 1.0) for own in (*ones, self.sought)]
-        logs = [self._smooth(self._scale(tolerances=one)) for one in wide]
-        return np.asarray(np.logaddexp.reduce(logs, axis=0) - math.log(len(logs)), np.float64)
+        return _mean(self._smooth(self._scale(tolerances=one)) for one in wide)
 
     def unknown(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the stage whose effects it looks like."""
-        return {
-            stage: self._seen(
-                [
-                    self._plain[at].reduced(self._beside(tau, self.shapes.at(stage)), self._of)
-                    for at, tau in enumerate(TAUS)
-                ]
-            )
+        shaped = {
+            stage: np.hstack((self.tolerances, self.shapes.at(stage)))
             for stage in dict.fromkeys(self.shapes.stages)
+        }
+        return {
+            stage: self._spread(columns, STRANGE, self.behind[stage])
+            for stage, columns in shaped.items()
         }
 
     def alone(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the kind of observations in which it shows."""
-        values, scale = self.kernel.values, self._scale()
         return {
-            kind: self._seen(
-                [
-                    Weighted(self._columns, 1.0 + tau**2 * values * rows).reduced(scale, self._of)
-                    for tau in TAUS
-                ]
-            )
-            for kind, rows in self.kinds.items()
+            kind: self._spread(self.tolerances, 1.0, one.rows) for kind, one in self.kinds.items()
         }
+
+    def _spread(self, columns: FloatArray, share: float, rows: BoolArray) -> FloatArray:
+        """Return the log evidence of shapes, and of a share of none in some observations.
+
+        Parameters
+        ----------
+        columns
+            The tolerances, and shapes behind them.
+        """
+        turned, count = self.kernel.turned(columns), self.tolerances.shape[1]
+        shape = np.arange(columns.shape[1]) >= count
+        values = share * self.kernel.values * rows
+        return self._seen(
+            [
+                Weighted(turned, 1.0 + tau**2 * values).reduced(np.where(shape, tau, 1.0), self._of)
+                for tau in TAUS
+            ]
+        )
 
     def odd_runs(self) -> dict[str, FloatArray]:
         """Return that of one run with a gain or a zero of its own, by run."""
-        small = [one for one, tau in zip(self._calm, TAUS, strict=True) if tau <= TOLERATED]
-        found = {}
-        for run in self.own:
-            logs = [
+        return {
+            run: _mean(
                 self._seen([calm.reduced(self._odd(run, tau), self._of) for tau in TAUS])
-                for calm in small
-            ]
-            found[run] = np.logaddexp.reduce(logs, axis=0) - math.log(len(small))
-        return found
+                for calm in self._tolerated
+            )
+            for run in self.own
+        }
 
     def named(self, one: Hypothesis) -> list[Evidence]:
         """Return what named effects are worth beside a deviation of each size."""
@@ -97,22 +124,19 @@ class Background:
             for at, tau in enumerate(TAUS)
         ]
 
-    def named_beside(self, one: Hypothesis, run: str, tau: float) -> FloatArray:
-        """Return the log evidence of named effects beside one odd run.
-
-        Parameters
-        ----------
-        tau
-            Size of the smooth deviation that is there too.
-        """
-        calm = self._calm[TAUS.index(tau)]
-        found = [
-            self._weighed(one, calm, self._odd(run, own)).log_evidence
-            if own > TOLERATED
-            else -np.inf
-            for own in TAUS
-        ]
-        return np.array(found)
+    def named_beside(self, one: Hypothesis, run: str) -> FloatArray:
+        """Return the log evidence of named effects beside one odd run."""
+        return _mean(
+            np.array(
+                [
+                    self._weighed(one, calm, self._odd(run, tau)).log_evidence
+                    if tau > TOLERATED
+                    else -np.inf
+                    for tau in TAUS
+                ]
+            )
+            for calm in self._tolerated
+        )
 
     def _weighed(self, one: Hypothesis, under: Weighted, scale: FloatArray) -> Evidence:
         turned = self.kernel.turned(np.column_stack((one.target, one.columns)))
@@ -130,6 +154,11 @@ class Background:
     def _calm(self) -> Sequence[Weighted]:
         """Under a smooth deviation of each size."""
         return self._under(1.0)
+
+    @property
+    def _tolerated(self) -> Sequence[Weighted]:
+        """Under a smooth deviation of each tolerated size."""
+        return [one for one, tau in zip(self._calm, TAUS, strict=True) if tau <= TOLERATED]
 
     @cached_property
     def _plain(self) -> Sequence[Weighted]:
@@ -186,6 +215,12 @@ class Background:
         return np.array(
             [_density(one) if one.log_determinant > self._least else -np.inf for one in found]
         )
+
+
+def _mean(each: Iterable[FloatArray]) -> FloatArray:
+    """Return the log of the mean evidence over equally probable deviations."""
+    logs = list(each)
+    return np.asarray(np.logaddexp.reduce(logs, axis=0) - math.log(len(logs)), np.float64)
 
 
 def _density(found: Reduced) -> float:

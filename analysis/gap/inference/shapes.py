@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.inference.constants import ALIKE, PLAIN
+from analysis.gap.inference.constants import ALIKE, PLAIN, STRANGE
 from hardware.description.arrays import BoolArray, FloatArray
 
 _LEAST: Final = 0.03  # of an effect's largest direction, below which one is rounding
@@ -77,17 +77,24 @@ class Shapes:
     def beside(self, names: Sequence[str]) -> FloatArray:
         """Return the weights of what may stand beside effects: of all that is not like them."""
         out = frozenset[str]().union(*(self.alike.get(name, frozenset((name,))) for name in names))
-        return self._weights(lambda at: self.effects[at] not in out)
+        return self._weights(lambda at: self.effects[at] not in out, PLAIN)
 
     def at(self, stage: str) -> FloatArray:
-        """Return the weights of what is unknown in a stage."""
-        return self._weights(lambda at: self.stages[at] == stage)
+        """Return the shapes of what is unknown in a stage, ``(observations, directions)``."""
+        weights = self._weights(lambda at: self.stages[at] == stage, STRANGE)
+        return np.asarray((self.columns * weights)[:, weights > 0.0], np.float64)
 
-    def _weights(self, chosen: Callable[[int], bool]) -> FloatArray:
-        """Return by what directions are scaled so that together they have a mean square of 1."""
+    def _weights(self, chosen: Callable[[int], bool], plain: float) -> FloatArray:
+        """Return by what directions are scaled so that together they have a mean square of 1.
+
+        Parameters
+        ----------
+        plain
+            Share of it that has no shape.
+        """
         kept: BoolArray = np.array([chosen(at) for at in range(len(self.effects))], dtype=bool)
         count = len({self.effects[at] for at in np.flatnonzero(kept)})
-        return np.asarray(kept * math.sqrt((1.0 - PLAIN) / max(count, 1)), np.float64)
+        return np.asarray(kept * math.sqrt((1.0 - plain) / max(count, 1)), np.float64)
 
 
 def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:

@@ -20,15 +20,15 @@ def diagnosed(rig: SimulatedRig, said: str, seed: int) -> Diagnosis:
 
 def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
     found = diagnosed(rig, "carriage-speed:relative=0.02", 71)
-    assert found.probabilities.by_answer["carriage-speed"] > 0.75
+    assert found.answers.by_answer["carriage-speed"] > 0.75
     assert found.best is not None
-    (effect,) = found.best.fit.effects
+    (effect,) = found.best.effects
     assert getattr(effect, "relative", 0.0) == pytest.approx(0.02, rel=0.05)
 
 
 def test_a_speed_that_is_uneven(rig: SimulatedRig) -> None:
     """The walk along the chain begins with the carriage, and ends there where it deviates."""
     found = diagnosed(rig, "carriage-fluctuation:relative=0.002,frequency_hz=0.37", 72)
-    assert found.probabilities.best == "carriage-fluctuation"
+    assert found.answers.best == "carriage-fluctuation"
     assert CARRIAGE in {one.what for one in found.walk.steps if one.beyond}
     assert [stage.value for stage in found.walk.stages] == ["carriage"]

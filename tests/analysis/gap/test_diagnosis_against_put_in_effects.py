@@ -10,9 +10,10 @@ from analysis.gap.components import STEADY_PARTS
 from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import free_numbers
+from analysis.gap.inference.answers import NONE, UNKNOWN
 from analysis.gap.priors import Priors
 from analysis.gap.sensors import as_recorded
-from analysis.gap.verdict import NONE, UNKNOWN, coefficient_twins
+from analysis.gap.verdict import coefficient_twins
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint
@@ -35,9 +36,9 @@ def diagnosed(
 @pytest.mark.parametrize("seed", [11, 12, 13])
 def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -> None:
     found = diagnosed(rig, (), seed)
-    assert found.probabilities.best == NONE
+    assert found.answers.best == NONE
     assert found.best is None
-    assert sum(found.probabilities.by_answer.values()) == pytest.approx(1.0)
+    assert sum(found.answers.by_answer.values()) == pytest.approx(1.0)
     assert not any(one.beyond for one in found.walk.steps)
 
 
@@ -50,7 +51,7 @@ def test_an_encoder_tells_the_phase_without_scatter(rig: SimulatedRig) -> None:
     runs = [one_run(real, (), 15, k, point, told) for k, point in enumerate(POINTS)]
     believed = as_recorded(real, runs, None)
     found = diagnose(believed, runs, Settings({name: find(name) for name in FEW}))
-    assert found.probabilities.best == NONE
+    assert found.answers.best == NONE
 
 
 def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
@@ -61,7 +62,7 @@ def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
     stated = replace(rig, water=replace(rig.water, restoring=((1.25 * c11, c12), second)))
     runs = [run for run in record(rig, (), 14) if run.set_point.carriage_speed_m_s]
     found = diagnose(stated, runs, Settings({"dynamic-trim": find("dynamic-trim")}))
-    assert found.probabilities.best == "dynamic-trim"
+    assert found.answers.best == "dynamic-trim"
     assert found.cause is not None
     twins = coefficient_twins(found.problem, found.cause, free_numbers(stated, Priors()))
     assert twins["c11"][0] == pytest.approx(-0.25 * c11, rel=0.05)
@@ -97,7 +98,7 @@ def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: Simulated
     point = SetPoint(0.75, 0.03, 0.0, 1.0)
     there = further(problem, [planned(problem, point, 0)], free_numbers(rig, priors), priors)
     assert friction.best is not None
-    told = forecast(problem, there, friction.best.fit)
+    told = forecast(problem, there, friction.best)
     plain = forecast(problem, there, None)
     really = there.simulator.steady([build("coulomb-friction:friction_n=0.3")])
     steady = np.array([one.part in STEADY_PARTS for one in there.simulator.stack.components])
@@ -117,21 +118,21 @@ def test_other_effects_are_named_with_their_parameters(rig: SimulatedRig, said: 
 def test_two_at_once_are_both_named(rig: SimulatedRig) -> None:
     put_in = ("coulomb-friction:friction_n=0.3", "cross-talk:aft=0.03,fore=0.02")
     found = diagnosed(rig, put_in, 23, ("coulomb-friction", "cross-talk"))
-    assert found.probabilities.best == "coulomb-friction+cross-talk"
+    assert found.answers.best == "coulomb-friction+cross-talk"
     _holds(found, put_in[0])
 
 
 def test_an_effect_that_is_taken_out_of_the_catalogue_is_unknown(rig: SimulatedRig) -> None:
     found = diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 24, ("amplifier-lag",))
-    assert found.probabilities.best == UNKNOWN
+    assert found.answers.best == UNKNOWN
 
 
 def _holds(found: Diagnosis, said: str) -> None:
     """Hold the named effect's intervals against what was put in, a quarter wider than 95 %."""
     put_in = build(said)
     assert found.best is not None
-    assert put_in.name in found.probabilities.best.split("+")
-    (row,) = [one for one in effect_rows(found.best.fit) if one["name"] == put_in.name]
+    assert put_in.name in found.answers.best.split("+")
+    (row,) = [one for one in effect_rows(found.best) if one["name"] == put_in.name]
     for key, value in asdict(put_in).items():
         told = row["parameters"][key]
         wider = 0.25 * (told["high"] - told["low"])

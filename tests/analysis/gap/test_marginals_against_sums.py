@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.gap.diagnose import Diagnosis, Settings, diagnose
+from analysis.gap.inference.answers import COEFFICIENTS, NAMELESS, NONE, UNKNOWN
 from analysis.gap.marginal import LEAST, Marginal, by_effect, marginals, of_any
-from analysis.gap.verdict import ALIKE, COEFFICIENTS, NONE, UNKNOWN, Probabilities
+from analysis.gap.verdict import ALIKE
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record
@@ -54,7 +55,7 @@ def test_a_class_is_no_less_than_its_members_and_no_more_than_their_sum(
     whole = of_any(told, sorted(members))
     assert max(alone, default=0.0) <= whole + 1e-12
     assert whole <= min(sum(alone), 1.0) + 1e-12
-    named = 1.0 - sum(told.get(one, 0.0) for one in (NONE, UNKNOWN, COEFFICIENTS)) if told else 0.0
+    named = 1.0 - sum(told.get(one, 0.0) for one in NAMELESS) if told else 0.0
     assert of_any(told, EFFECTS) == pytest.approx(named, abs=1e-9)
 
 
@@ -67,16 +68,17 @@ def friction(rig: SimulatedRig) -> Diagnosis:
 @pytest.fixture
 def alike(friction: Diagnosis) -> dict[str, Marginal]:
     """The effects where all answers are as probable, so that none is out of the question."""
-    names = friction.probabilities.by_answer
-    even = Probabilities(dict.fromkeys(names, 1.0 / len(names)))
-    return {one.name: one for one in marginals(replace(friction, probabilities=even))}
+    names = friction.answers.by_answer
+    even = replace(friction.answers, by_answer=dict.fromkeys(names, 1.0 / len(names)))
+    weighed = replace(friction.weighed, answers=even)
+    return {one.name: one for one in marginals(replace(friction, weighed=weighed))}
 
 
 def test_friction_passes_for_the_cable_and_both_count(friction: Diagnosis) -> None:
     first = marginals(friction)[0]
     assert first.name == "coulomb-friction"
     assert first.stage == "structure"
-    told = friction.probabilities.by_answer
+    told = friction.answers.by_answer
     assert first.probability == pytest.approx(by_effect(told)[first.name])
     assert "cable" in first.alike
     assert first.alike == dict(friction.classes[first.name])
@@ -89,7 +91,7 @@ def test_none_is_out_of_the_question(friction: Diagnosis, alike: dict[str, Margi
     assert [one.probability for one in every] == sorted(
         (one.probability for one in every), reverse=True
     )
-    assert set(alike) == set(by_effect(friction.probabilities.by_answer))
+    assert set(alike) == set(by_effect(friction.answers.by_answer))
 
 
 def test_what_is_smaller_than_the_noise_has_no_class(alike: dict[str, Marginal]) -> None:
@@ -107,8 +109,8 @@ def test_what_is_smaller_than_the_noise_has_no_class(alike: dict[str, Marginal])
 def test_a_size_is_what_least_squares_leave(friction: Diagnosis) -> None:
     """Of friction alone: the nuisances, held by their priors, take what they can."""
     assert friction.best is not None
-    assert friction.best.fit.names == ("coulomb-friction",)
-    columns, signature = friction.problem.nuisances.columns, friction.best.fit.signature
+    assert friction.best.names == ("coulomb-friction",)
+    columns, signature = friction.problem.nuisances.columns, friction.best.signature
     held = np.vstack((columns, np.eye(columns.shape[1])))
     target = np.concatenate((signature, np.zeros(columns.shape[1])))
     left = target - held @ np.linalg.lstsq(held, target)[0]

@@ -31,7 +31,7 @@ def test_both_are_named(rig: SimulatedRig, said: tuple[str, str], seed: int) -> 
     """The slot's bow is 40 times less than a usual rod makes, the swell a third."""
     runs = record(rig, [build(one) for one in said], seed)
     found = diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
-    assert found.probabilities.best == "+".join(sorted(one.split(":")[0] for one in said))
+    assert found.answers.best == "+".join(sorted(one.split(":")[0] for one in said))
 
 
 def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
@@ -41,10 +41,10 @@ def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
     names = ("coulomb-friction", "quadratic-damping", "cubic-damping", "amplifier-lag",
              "channel-skew", "viscous-guides", "strut-tare", "memory", "cable")  # fmt: skip
     found = diagnose(rig, runs, Settings({name: find(name) for name in names}))
-    assert found.probabilities.best == "coulomb-friction+quadratic-damping"
+    assert found.answers.best == "coulomb-friction+quadratic-damping"
     assert "cable" in dict(found.classes["coulomb-friction"])
     assert found.rival is not None
-    assert not {"cable", *found.best.fit.names} & set(found.rival.fit.names)
+    assert not {"cable", *found.best.names} & set(found.rival.names)
 
 
 def test_every_start_is_within_its_range() -> None:

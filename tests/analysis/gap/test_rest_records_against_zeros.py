@@ -118,9 +118,9 @@ def both(rig: SimulatedRig, effect: Effect, seed: int) -> tuple[GapRun, ...]:
 
 def named(found: Diagnosis, kind: type[E]) -> E:
     """Return the effect that is named, alone, with three quarters of the probability."""
-    assert found.probabilities.by_answer[kind.name] > 0.75
+    assert found.answers.by_answer[kind.name] > 0.75
     assert found.best is not None
-    (effect,) = found.best.fit.effects
+    (effect,) = found.best.effects
     assert isinstance(effect, kind)
     return effect
 
@@ -169,7 +169,7 @@ def test_no_gap_stays_no_gap(
     rig: SimulatedRig, clean: tuple[GapRun, ...], still: tuple[GapRun, ...]
 ) -> None:
     found = diagnosed(rig, (*clean, *still), (ZeroOffset, CampaignDrift, *MOVING))
-    assert found.probabilities.best == "none"
+    assert found.answers.best == "none"
 
 
 def test_what_acts_on_motion_predicts_nothing(rig: SimulatedRig, still: tuple[GapRun, ...]) -> None:

@@ -40,9 +40,9 @@ def test_it_is_named_with_either_sign(
     assert there is not None
     known = {one: find(one) for one in (*RIVALS, name)}
     found = diagnose(rig, record(rig, [there], seed=51), Settings(known))
-    assert found.probabilities.best == name
+    assert found.answers.best == name
     assert found.best is not None
-    fitted = asdict(found.best.fit.effects[0])
+    fitted = asdict(found.best.effects[0])
     for one, value in asdict(there).items():
         assert fitted[one] * value >= 0.0, one
 
@@ -52,8 +52,8 @@ def test_three_milliseconds_are_named_and_measured(skew_s: float, rig: Simulated
     runs = record(rig, [ChannelSkew(skew_s, 0.0)], seed=52)
     known = {one: find(one) for one in (*RIVALS, "channel-skew", "photocell-delay")}
     found = diagnose(rig, runs, Settings(known))
-    assert found.probabilities.best == "channel-skew"
+    assert found.answers.best == "channel-skew"
     assert found.best is not None
-    fitted = found.best.fit.effects[0]
+    fitted = found.best.effects[0]
     assert isinstance(fitted, ChannelSkew)
     assert fitted.aft_s == pytest.approx(skew_s, rel=0.05)

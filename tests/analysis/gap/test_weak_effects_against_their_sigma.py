@@ -7,7 +7,7 @@ from analysis.gap.components import GapRun
 from analysis.gap.diagnose import Settings, diagnose
 from analysis.gap.fit import Problem
 from analysis.gap.gaussian import left_over
-from analysis.gap.verdict import NONE
+from analysis.gap.inference.answers import NONE
 from sim.effects.catalogue import build, find
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
@@ -45,7 +45,7 @@ def test_it_is_named(said: str, rig: SimulatedRig, problem: Problem) -> None:
     there = sized(problem, said)
     known = {name: find(name) for name in KNOWN}
     found = [diagnose(rig, record(rig, [there], seed), Settings(known)) for seed in SEEDS]
-    named = [one.probabilities.best for one in found]
+    named = [one.answers.best for one in found]
     # At 7 sigma beside noise of 1 all three are above 4.5 but twice in a hundred.
     assert named == [there.name] * len(SEEDS)
 
@@ -56,5 +56,5 @@ def test_a_third_of_it_is_not(rig: SimulatedRig, problem: Problem) -> None:
     friction = build(f"coulomb-friction:friction_n={whole.friction_n / 3.0}")
     known = {name: find(name) for name in KNOWN}
     found = [diagnose(rig, record(rig, [friction], seed), Settings(known)) for seed in SEEDS]
-    assert NONE in [one.probabilities.best for one in found]
-    assert np.mean([one.probabilities.by_answer[NONE] for one in found]) > 0.2
+    assert NONE in [one.answers.best for one in found]
+    assert np.mean([one.answers.by_answer[NONE] for one in found]) > 0.2

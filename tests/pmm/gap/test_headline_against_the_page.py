@@ -34,9 +34,12 @@ from pmm.gap.steps import StepRow
 from pmm.gap.words import Remedies, sentences
 from tests.pmm.gap.rigs import FEW, made, rewritten, run, with_friction
 
-CALM = ("none", "coefficients")
-CALM_WORDS = ("No gap: ", "No effect is missing: ", "Nothing that was considered")
-OUTSIDE = ("Something that the catalogue does not have", "Something else than the ")
+BEGINNINGS = {
+    "none": ("No gap: ", "Nothing that was considered"),
+    "coefficients": ("No effect is missing: ",),
+    "odd-run": ("Run ",),
+    "unknown": ("Something that the catalogue does not have", "Something else than the "),
+}
 
 
 @dataclass
@@ -70,11 +73,10 @@ def _check_headline(shown: Shown) -> None:
     assert [*words] == steps
     assert [*walk_words_of_page(shown.page)][: len(steps)] == steps
     assert {name: walk_words_of_page(shown.page)[name] for name in steps} == words
-    if not {*words.values()} & {"gap", "out of tolerance"}:
-        assert verdict in CALM
-        assert said[0].startswith(CALM_WORDS)
-    if verdict == "unknown":
-        assert said[0].startswith(OUTSIDE)
+    if verdict in BEGINNINGS:
+        assert said[0].startswith(BEGINNINGS[verdict])
+    else:
+        assert said[0].endswith("or whatever acts alike.") or "would look the same" in said[0]
     if said[0].startswith("No gap: "):
         own = [one for one in shown.document["walk"] if "," not in one["what"]]  # fed by nothing
         assert not any(one["beyond"] for one in own)
@@ -103,8 +105,6 @@ def _check_what_is_added(shown: Shown) -> None:
     if verdict == "unknown":
         assert "gap add" not in shown.terminal
         assert "gap add" not in shown.page.partition("How this page was made")[0]
-        near = [one for one in shown.document["controls"] if "nearest, but not it" in one["what"]]
-        assert all(one["share"] < 0.95 for one in near)
 
 
 def _check_caution(text: str, document: dict[str, Any]) -> None:
@@ -123,7 +123,7 @@ def _check_that_u_is_explained_first(text: str) -> None:
 # Diagnoses made by hand
 
 STEPS = ("shaft", "strut motion", "forces", "forces, with the measured motion")
-ANSWERS = ("none", "coefficients", "unknown", "cable", "cable+hum", "friction")
+ANSWERS = ("none", "coefficients", "unknown", "odd-run", "cable", "cable+hum", "friction")
 
 
 @st.composite
@@ -149,8 +149,8 @@ def weighings(draw: st.DrawFn) -> Weighing:
     weights = [draw(st.floats(1e-6, 1.0)) ** 4 for _ in ANSWERS]
     pairs = sorted(zip(ANSWERS, weights, strict=True), key=lambda pair: -pair[1])
     shares = {name: weight / math.fsum(weights) for name, weight in pairs}
-    named = [name for name in shares if name not in ("none", "coefficients", "unknown")]
-    best = "" if next(iter(shares)) in CALM else named[0]
+    named = [name for name in shares if name not in BEGINNINGS]
+    best = "" if next(iter(shares)) in ("none", "coefficients") else named[0]
     alike = {one: draw(st.sampled_from([(), ("kin",), ("kin", "kith")])) for one in best.split("+")}
     return Weighing(
         shares,
@@ -159,6 +159,7 @@ def weighings(draw: st.DrawFn) -> Weighing:
         {"cable": "Cable between model and carriage"},
         draw(st.floats(-1.0, 1.0)) if best else math.nan,
         draw(st.sampled_from(["structure", ""])),
+        "run-7",
         draw(st.none() | st.integers(1, 50)),
     )
 
@@ -177,7 +178,7 @@ def rows(draw: st.DrawFn, *, named: bool) -> CoefficientRow:
 @st.composite
 def reports(draw: st.DrawFn) -> GapReport:
     weighing, walk = draw(weighings()), draw(steps())
-    verdict = verdict_of(weighing, walk)
+    verdict = verdict_of(weighing)
     named = verdict == "effect"
     remains = tuple(one for one in (draw(steps()) if named else walk) if "," not in one.what)
     found = Conclusion(verdict, weighing, walk, remains)
@@ -222,12 +223,13 @@ def without_figures(told: Document) -> Document:
 
 @given(report=reports())
 @settings(max_examples=300, deadline=None, derandomize=True)
-def test_what_takes_the_gap_is_not_refused(report: GapReport) -> None:
+def test_the_most_probable_answer_is_what_is_said(report: GapReport) -> None:
     found = report.conclusion
-    gap = any(one.verdict in ("gap", "out of tolerance") for one in found.walk)
-    if gap and found.weighing.best and found.weighing.takes >= 0.95:
-        assert found.adds
-        assert set(found.weighing.best.split("+")) <= set(re.findall(r"[\w-]+", report.said[0]))
+    first = max(found.weighing.shares, key=lambda name: found.weighing.shares[name])
+    assert found.verdict == (first if first in BEGINNINGS else "effect")
+    assert found.adds == (first not in BEGINNINGS)
+    if found.adds:
+        assert set(first.split("+")) <= set(re.findall(r"[\w-]+", report.said[0]))
 
 
 @given(
