@@ -13,9 +13,9 @@ from analysis.gap.hypotheses import Weighed, weigh
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, Answers, effects_in
 from analysis.gap.leading import leading
 from analysis.gap.noise import pooled
-from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, Proposal, proposals
 from analysis.gap.regimes import Regime, regimes
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.verdict import coefficient_shift, equivalents, stage_probabilities
 from analysis.gap.where import Walk, walk
 from analysis.gap.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
@@ -44,7 +44,7 @@ class Settings:
     """
 
     catalogue: Mapping[str, type[Effect]]
-    priors: Priors = field(default_factory=Priors)
+    tolerances: Tolerances = field(default_factory=Tolerances)
     on: tuple[Effect, ...] = ()
     withheld: tuple[Regime, ...] = ()
     choices: Choices | None = None
@@ -121,7 +121,7 @@ def diagnose(
     """
     if len(runs) < 3:
         raise DataError(f"{len(runs)} runs: a diagnosis needs 3 or more")
-    free = free_numbers(rig, settings.priors)
+    free = free_numbers(rig, settings.tolerances)
     problem = problem_of(rig, runs, settings, free)
     progress("walking along the chain")
     walked = walk(problem)
@@ -134,19 +134,19 @@ def problem_of(
 ) -> Problem:
     """Return what every hypothesis about a campaign is held against."""
     stack = Stack.of(pooled(runs, rig))
-    on = (*settings.on, *_always(rig, stack, settings.priors))
+    on = (*settings.on, *_always(rig, stack, settings.tolerances))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
-    nuisances = Nuisances(columns(simulator, free, settings.priors))
+    nuisances = Nuisances(columns(simulator, free, settings.tolerances))
     names = tuple(one.name for one in free)
     return Problem(simulator, nuisances, names, moved=settings.moved)
 
 
-def _always(rig: SimulatedRig, stack: Stack, priors: Priors) -> tuple[Effect, ...]:
+def _always(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Effect, ...]:
     """Return what every photocell has: pulses that scatter a little; an encoder's turns do not."""
     pulsed = any(one.part in (Part.PULSES, Part.PERIOD_SCATTER) for one in stack.components)
-    if rig.photocell is None or not pulsed or not priors.pulse_scatter_rad:
+    if rig.photocell is None or not pulsed or not tolerances.pulse_scatter_rad:
         return ()
-    return (TriggerJitter(priors.pulse_scatter_rad),)
+    return (TriggerJitter(tolerances.pulse_scatter_rad),)
 
 
 def _concluded(
@@ -202,4 +202,4 @@ def _next(
 ) -> tuple[Proposal, ...]:
     if settings.choices is None:
         return ()
-    return proposals(problem, leading(weighed), settings.choices, free, settings.priors)
+    return proposals(problem, leading(weighed), settings.choices, free, settings.tolerances)

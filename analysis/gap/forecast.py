@@ -11,8 +11,8 @@ from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.free import Free, columns
 from analysis.gap.gaussian import Nuisances
-from analysis.gap.priors import Priors
 from analysis.gap.together import signature_on
+from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
@@ -89,11 +89,11 @@ def planned(
 
 
 def further(
-    problem: Problem, runs: Sequence[GapRun], free: Sequence[Free], priors: Priors
+    problem: Problem, runs: Sequence[GapRun], free: Sequence[Free], tolerances: Tolerances
 ) -> Problem:
     """Return the same problem at further runs."""
     simulator = replace(problem.simulator, stack=Stack.of(runs))
-    nuisances = Nuisances(columns(simulator, free, priors))
+    nuisances = Nuisances(columns(simulator, free, tolerances))
     return Problem(simulator, nuisances, problem.free, tuple(free))
 
 

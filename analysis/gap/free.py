@@ -1,4 +1,4 @@
-"""What is left free in every hypothesis: coefficients, settings and noise, within their priors.
+"""What is left free in every hypothesis: coefficients, settings and noise, within their tolerances.
 
 Nobody knows added mass and damping beforehand: that is what the test is for. And nobody sets a
 gain, a phase or an eccentricity without a tolerance. A difference that these explain is no gap, and
@@ -14,9 +14,9 @@ import numpy as np
 
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
-from analysis.gap.priors import Priors
 from analysis.gap.smooth_changes import smooth_changes
 from analysis.gap.spectrum import spread_about
+from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.a3_photocell_angle import PhotocellAngle
@@ -79,22 +79,22 @@ class Free:
         return rig if self.change is None else self.change(rig, value)
 
 
-def free_numbers(rig: SimulatedRig, priors: Priors) -> tuple[Free, ...]:
+def free_numbers(rig: SimulatedRig, tolerances: Tolerances) -> tuple[Free, ...]:
     """Return what is left free for a rig; what has no tolerance is not."""
-    every = (*_coefficients(rig, priors), *_settings(rig, priors))
+    every = (*_coefficients(rig, tolerances), *_settings(rig, tolerances))
     return tuple(one for one in every if one.deviation > 0.0)
 
 
-def _coefficients(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
+def _coefficients(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
     for term in _TERMS:
-        yield from _of_matrix(rig, term, priors)
-    yield _of_body("mass_kg", priors.mass_relative * rig.body.mass_kg)
-    yield _of_body("inertia_kg_m2", priors.inertia_relative * rig.body.inertia_kg_m2)
-    yield _of_body("cg_x_m", priors.cg_m)
-    yield _of_body("cg_z_m", priors.cg_m)
+        yield from _of_matrix(rig, term, tolerances)
+    yield _of_body("mass_kg", tolerances.mass_relative * rig.body.mass_kg)
+    yield _of_body("inertia_kg_m2", tolerances.inertia_relative * rig.body.inertia_kg_m2)
+    yield _of_body("cg_x_m", tolerances.cg_m)
+    yield _of_body("cg_z_m", tolerances.cg_m)
 
 
-def _of_matrix(rig: SimulatedRig, term: str, priors: Priors) -> Iterator[Free]:
+def _of_matrix(rig: SimulatedRig, term: str, tolerances: Tolerances) -> Iterator[Free]:
     matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
     # Where a table or nothing at all states what the water does, the body says what is much.
     if term != "restoring":
@@ -103,8 +103,8 @@ def _of_matrix(rig: SimulatedRig, term: str, priors: Priors) -> Iterator[Free]:
     for row in range(2):
         for column in range(2):
             scale = float(np.sqrt(matrix[row, row] * matrix[column, column]))
-            own = getattr(priors, f"{term}_relative")
-            weight = own if row == column else priors.coupling_relative
+            own = getattr(tolerances, f"{term}_relative")
+            weight = own if row == column else tolerances.coupling_relative
             name = f"{_TERMS[term]}{row + 1}{column + 1}"
             yield Free(name, weight * scale, _adding(term, row, column))
 
@@ -128,19 +128,19 @@ def _of_body(field: str, deviation: float) -> Free:
     return Free(field, deviation, change)
 
 
-def _settings(rig: SimulatedRig, priors: Priors) -> Iterator[Free]:
-    gain, zero, arm = priors.gain_relative, priors.zero_n, priors.eccentricity_m
+def _settings(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
+    gain, zero, arm = tolerances.gain_relative, tolerances.zero_n, tolerances.eccentricity_m
     yield Free("gain aft", gain, effect=lambda x: GainError(aft=x, fore=0.0))
     yield Free("gain fore", gain, effect=lambda x: GainError(aft=0.0, fore=x))
     yield Free("zero aft", zero, effect=lambda x: ZeroOffset(aft_n=x, fore_n=0.0))
     yield Free("zero fore", zero, effect=lambda x: ZeroOffset(aft_n=0.0, fore_n=x))
     yield Free("eccentricity aft", arm, effect=lambda x: EccentricityError(x, 0.0))
     yield Free("eccentricity fore", arm, effect=lambda x: EccentricityError(0.0, x))
-    yield Free("strut phase", priors.strut_phase_rad, effect=StrutPhaseError)
-    speed = priors.carriage_speed_relative
+    yield Free("strut phase", tolerances.strut_phase_rad, effect=StrutPhaseError)
+    speed = tolerances.carriage_speed_relative
     yield Free("carriage speed", speed, effect=CarriageSpeedError)
     if rig.photocell is not None:
-        yield Free("photocell", priors.photocell_angle_rad, effect=PhotocellAngle)
+        yield Free("photocell", tolerances.photocell_angle_rad, effect=PhotocellAngle)
 
 
 def with_coefficients(
@@ -152,7 +152,7 @@ def with_coefficients(
     return rig
 
 
-def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> FloatArray:
+def columns(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) -> FloatArray:
     """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
 
     After those of ``free`` there are columns for each displacement sensor, for each run's frequency
@@ -161,14 +161,16 @@ def columns(simulator: Simulator, free: Sequence[Free], priors: Priors) -> Float
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
-    sensors = _sensors(simulator.stack, base, priors.displacement_gain_relative)
+    sensors = _sensors(simulator.stack, base, tolerances.displacement_gain_relative)
     stack = simulator.stack
     own = [
-        *_by_run(stack, _frequencies(simulator, base, priors.frequency_relative)),
-        *_by_run(stack, _turned(stack, base, 1.0) * references_rad(stack, priors.reference_rad)),
+        *_by_run(stack, _frequencies(simulator, base, tolerances.frequency_relative)),
+        *_by_run(
+            stack, _turned(stack, base, 1.0) * references_rad(stack, tolerances.reference_rad)
+        ),
     ]
     levels = {one.name: column for one, column in zip(free, found, strict=True) if one.is_sought}
-    smooth = smooth_changes(stack, levels, priors)
+    smooth = smooth_changes(stack, levels, tolerances)
     return np.column_stack([*found, *sensors, *own, *smooth, *_noise_levels(stack)])
 
 

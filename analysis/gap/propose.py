@@ -23,8 +23,8 @@ from analysis.gap.forecast import forecast, further, next_place, planned
 from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.measurements import BESIDES, INJECTED_HZ, measured_besides
-from analysis.gap.priors import Priors
 from analysis.gap.regimes import describe
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.worth import Leading, Worth, apart, by_itself
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
@@ -122,11 +122,11 @@ def proposals(
     leading: Leading,
     choices: Choices,
     free: Sequence[Free],
-    priors: Priors,
+    tolerances: Tolerances,
 ) -> tuple[Proposal, ...]:
     """Return runs in the order of what they are worth."""
     place = next_place(problem)
-    weighed = partial(_weighed, problem, leading, free=free, priors=priors)
+    weighed = partial(_weighed, problem, leading, free=free, tolerances=tolerances)
     found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and FurtherMeasurement.PRELOAD in choices.special:
@@ -207,12 +207,12 @@ def _weighed(
     leading: Leading,
     some: Sequence[_Choice],
     free: Sequence[Free],
-    priors: Priors,
+    tolerances: Tolerances,
 ) -> Iterator[tuple[_Choice, Worth]]:
     """Yield each choice with what it is worth."""
     if not some:
         return
-    there = further(problem, [one.run for one in some], free, priors)
+    there = further(problem, [one.run for one in some], free, tolerances)
     told = [forecast(problem, there, fit) for fit, _ in leading]
     shares = [share for _, share in leading]
     for number, one in enumerate(some):

@@ -10,8 +10,8 @@ from analysis.gap.doubt import Doubt
 from analysis.gap.forward import Simulator
 from analysis.gap.odd_harmonics import of_first_harmonics
 from analysis.gap.odd_records import of_records, of_scatter
-from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, recentred
+from analysis.gap.tolerances import Tolerances
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
@@ -47,7 +47,7 @@ def doubts(
 def judged(
     rig: SimulatedRig,
     runs: Sequence[GapRun],
-    priors: Priors,
+    tolerances: Tolerances,
     on: Sequence[Effect] = (),
     reference_channel: str | None = None,
 ) -> tuple[Recentred, tuple[Doubt, ...]]:
@@ -69,6 +69,6 @@ def judged(
     fitted = [some for some in (good, runs) if len(some) >= _FEW]
     tried = []
     for some in fitted if bad else fitted[:1]:
-        there = recentred(rig, some, priors, on, reference_channel)
+        there = recentred(rig, some, tolerances, on, reference_channel)
         tried.append((there, doubts(there.rig, runs, on, reference_channel)))
     return min(tried, key=lambda one: len(one[1])) if tried else (Recentred(rig), found)

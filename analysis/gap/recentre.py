@@ -18,7 +18,7 @@ from analysis.gap.forward import Simulator
 from analysis.gap.free import Free, columns, free_numbers, with_coefficients
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
-from analysis.gap.priors import Priors
+from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -51,18 +51,18 @@ class Recentred:
 def recentred(
     rig: SimulatedRig,
     runs: Sequence[GapRun],
-    priors: Priors,
+    tolerances: Tolerances,
     on: Sequence[Effect] = (),
     reference_channel: str | None = None,
 ) -> Recentred:
     """Move a rig to the coefficients that fit."""
-    free = free_numbers(rig, priors)
+    free = free_numbers(rig, tolerances)
     stack = Stack.of([repeating_only(one) for one in pooled(runs, rig)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))
     for _ in range(_STEPS):
-        step = np.where(owned, _step(simulator, free, priors, total), 0.0)
+        step = np.where(owned, _step(simulator, free, tolerances, total), 0.0)
         if np.abs(step).max(initial=0.0) < _SETTLED:
             break
         try:
@@ -92,11 +92,11 @@ def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recen
 
 
 def _step(
-    simulator: Simulator, free: Sequence[Free], priors: Priors, total: FloatArray
+    simulator: Simulator, free: Sequence[Free], tolerances: Tolerances, total: FloatArray
 ) -> FloatArray:
     """Return how far to go on from where the rig is, the tolerances about what is stated."""
     stack = simulator.stack
-    nuisances = Nuisances(columns(simulator, free, priors))
+    nuisances = Nuisances(columns(simulator, free, tolerances))
     left = (stack.values - simulator.steady(())) / stack.uncertainty
     stated = left + nuisances.columns[:, : len(free)] @ total
     units = nuisances.fitted(stated)[: len(free)] - total

@@ -11,14 +11,14 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.components import Stack
-from analysis.gap.priors import Priors
+from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 
 _LEAST: Final = 1e-3  # of a smooth change's variance, below which it needs no further column
 
 
 def smooth_changes(
-    stack: Stack, levels: Mapping[str, FloatArray], priors: Priors
+    stack: Stack, levels: Mapping[str, FloatArray], tolerances: Tolerances
 ) -> Iterator[FloatArray]:
     """Yield the columns, in sigma per prior deviation.
 
@@ -28,14 +28,14 @@ def smooth_changes(
         What a prior deviation of each coefficient changes, in sigma, by name: ``"a11"``.
     """
     ways = {
-        "a": _ways(stack, priors.added_mass_per_octave, priors.added_mass_per_speed),
-        "b": _ways(stack, priors.damping_per_octave, priors.damping_per_speed),
+        "a": _ways(stack, tolerances.added_mass_per_octave, tolerances.added_mass_per_speed),
+        "b": _ways(stack, tolerances.damping_per_octave, tolerances.damping_per_speed),
     }
-    own = {"a": priors.added_mass_relative, "b": priors.damping_relative}
+    own = {"a": tolerances.added_mass_relative, "b": tolerances.damping_relative}
     for name, level in levels.items():
         kind, diagonal = name[0], name[1] == name[2]
         for change in ways[kind]:
-            relative = own[kind] if diagonal else priors.coupling_relative
+            relative = own[kind] if diagonal else tolerances.coupling_relative
             yield level / relative * change
 
 

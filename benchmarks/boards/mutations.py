@@ -115,10 +115,10 @@ def _columns(folder: Folder, rng: Random) -> None:
 def _beside(folder: Folder, rng: Random) -> None:
     """Put another file beside the campaign's."""
     files = (
-        ("case.toml", "[priors]\nadded_mass_relative = 0.0\ndamping_relative = 0.0\n"),
-        ("case.toml", "[priors]\nzero_n = -1.0\n"),
+        ("case.toml", "[tolerances]\nadded_mass_relative = 0.0\ndamping_relative = 0.0\n"),
+        ("case.toml", "[tolerances]\nzero_n = -1.0\n"),
         ("case.toml", "schema = 1\n"),
-        ("case.toml", "[priors]\nmass_relative = 1e9\n"),
+        ("case.toml", "[tolerances]\nmass_relative = 1e9\n"),
         ("coefficients.toml", "harmonics = 0\n"),
         ("coefficients.toml", 'system = "prime"\n'),
         ("coefficients.toml", "tared = true\n"),

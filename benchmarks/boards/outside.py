@@ -112,7 +112,7 @@ def written(case: Case, folder: Path, *, stated: bool) -> Path:
         text = re.sub(r"\[acquisition\]\n.*?\n\n", "", text, flags=re.DOTALL)
     text = re.sub(r'(\[\[runs\]\]\nname = "(.+?)"\n)', r'\1file = "\2.csv.gz"\n', text)
     (folder / "campaign.toml").write_text(f"{text}\n{_columns(rig.sensors)}", encoding="utf-8")
-    (folder / "case.toml").write_text(table("[priors]", STATED), encoding="utf-8")
+    (folder / "case.toml").write_text(table("[tolerances]", STATED), encoding="utf-8")
     return folder
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import ClassVar
 
+from analysis.gap.tolerances import Tolerances
 from analysis.readers import ColumnMap
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
@@ -83,6 +84,8 @@ class Campaign:
     tared
         Whether the gauges' zeros were taken off the recordings before they were written, so that
         means are forces as they stand and no zero runs are needed.
+    tolerances
+        What the simulation and the rig's settings may be off by: no gap within them.
     """
 
     name: str = "campaign"
@@ -110,6 +113,7 @@ class Campaign:
     runs: tuple[Run, ...] = ()
     at_rest: tuple[AtRest, ...] = ()
     tared: bool = False
+    tolerances: Tolerances = field(default_factory=Tolerances)
 
     # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
     __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}

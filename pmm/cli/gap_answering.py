@@ -154,4 +154,4 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     known = {name: kind for name, kind in catalogue().items() if name not in left_out}
     ready = prepare(folder, known)
     found = diagnose(ready.there.rig, ready.fitted, ready.settings)
-    return answer(folder.name, found, ready.there.rig, ready.case.held_out, ready.case.priors)
+    return answer(folder.name, found, ready.there.rig, ready.case.held_out, ready.case.tolerances)

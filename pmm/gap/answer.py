@@ -16,8 +16,8 @@ from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import Free, free_numbers
 from analysis.gap.measurements import INJECTED_HZ
 from analysis.gap.polynomial import polynomial, polynomial_ahead
-from analysis.gap.priors import Priors
 from analysis.gap.propose import Proposal
+from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from pmm.gap.case import HeldOut
 from sim.effects.effect import FurtherMeasurement
@@ -32,7 +32,7 @@ def answer(
     diagnosis: Diagnosis,
     rig: SimulatedRig,
     held_out: Sequence[HeldOut],
-    priors: Priors,
+    tolerances: Tolerances,
 ) -> dict[str, Any]:
     """Return a diagnosis as a dictionary of numbers and texts.
 
@@ -45,10 +45,10 @@ def answer(
     held_out
         Runs whose outcome is to be foretold.
     """
-    free = free_numbers(rig, priors)
+    free = free_numbers(rig, tolerances)
     named = named_answer(diagnosis)
     best = named.best
-    foretold = _Foretold(diagnosis.problem, named, held_out, free, priors)
+    foretold = _Foretold(diagnosis.problem, named, held_out, free, tolerances)
     found: dict[str, Any] = {
         "schema": SCHEMA,
         "case": name,
@@ -123,11 +123,11 @@ class _Foretold:
         named: NamedAnswer,
         held_out: Sequence[HeldOut],
         free: Sequence[Free],
-        priors: Priors,
+        tolerances: Tolerances,
     ) -> None:
         self._names = [one.name for one in held_out]
         runs = [planned(problem, one.set_point, at) for at, one in enumerate(held_out)]
-        self._there = further(problem, runs, free, priors) if runs else None
+        self._there = further(problem, runs, free, tolerances) if runs else None
         self._problem, self._named = problem, named
 
     def as_dict(self) -> dict[str, Any]:

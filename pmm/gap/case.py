@@ -3,12 +3,13 @@
 Any campaign may have one: tolerances, runs whose outcome is to be foretold, what the rig can do.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices
+from analysis.gap.tolerances import Tolerances
+from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium
 from pmm.campaign.campaign import Campaign
@@ -51,7 +52,7 @@ class Case:
 
     schema: str = "sealed-case-1"
     sensors: tuple[str, ...] = ()
-    priors: Priors = field(default_factory=Priors)
+    tolerances: Tolerances = field(default_factory=Tolerances)
     held_out: tuple[HeldOut, ...] = ()
     rig: RigChoices | None = None
 
@@ -90,20 +91,54 @@ class Case:
         )
 
 
-def read_case(folder: Path) -> Case:
-    """Read a campaign's ``case.toml``; without one everything is as usual.
+def read_case(file: Path) -> Case:
+    """Read the ``case.toml`` beside a campaign file; without one everything is as usual.
+
+    Tolerances that the campaign file states hold too.
 
     Raises
     ------
     ConfigurationError
-        With every error of the file.
+        With every error of the file, or with the tolerances that both files state differently.
     """
-    path = folder / CASE_FILE
-    if not path.exists():
-        return Case()
-    table: dict[str, Any] = read_toml(path)
+    path = file.parent / CASE_FILE
+    table: dict[str, Any] = read_toml(path) if path.exists() else {}
     faults: list[Fault] = []
     case = validate(Case, table, faults)
     if case is None or faults:
         raise as_error(path, faults, table)
-    return case
+    given = {name: value for name, (value, _) in stated_tolerances(file).items()}
+    return replace(case, tolerances=Tolerances(**given))
+
+
+def stated_tolerances(file: Path) -> dict[str, tuple[float, str]]:
+    """Return the tolerances that are stated, by key, each with the file that states it.
+
+    Parameters
+    ----------
+    file
+        The campaign file; it and the ``case.toml`` beside it have been checked.
+
+    Raises
+    ------
+    ConfigurationError
+        If both state a key, with other values.
+    """
+    own, beside = file.parent / CASE_FILE, (file, file.parent / CASE_FILE)
+    tables = {path.name: _tolerances_of(path) for path in beside if path.exists()}
+    found: dict[str, tuple[float, str]] = {}
+    for name, table in tables.items():
+        for key, value in table.items():
+            before, where = found.get(key, (value, name))
+            if before != value:
+                raise ConfigurationError(
+                    f"{own}: tolerances.{key} = {value:g}, and {before:g} in {where}; state it in "
+                    "one of the two"
+                )
+            found[key] = value, name
+    return found
+
+
+def _tolerances_of(path: Path) -> dict[str, float]:
+    table: dict[str, float] = read_toml(path).get("tolerances", {})
+    return table

@@ -21,9 +21,9 @@ from analysis.gap.inference.answers import NONE
 from analysis.gap.marginal import Marginal, marginals
 from analysis.gap.noise import pooled
 from analysis.gap.polynomial import polynomial
-from analysis.gap.priors import Priors
 from analysis.gap.recentre import Recentred, repeating_only
 from analysis.gap.regimes import Regime, chosen_regime, regimes
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.withheld import Predicted, gap_of, predict_withheld, shrinkage
 from hardware.description.arrays import FloatArray
 from pmm.campaign.campaign import Campaign
@@ -186,12 +186,12 @@ def examine(
     """
     known, more = chosen_effects(options.effects, options.without)
     ready = prepare(folder, known, more, options.sensors, options.hold_out, progress)
-    there, priors = ready.there, ready.case.priors
+    there, tolerances = ready.there, ready.case.tolerances
     try_own(more, there.rig, ready.fitted)
     found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
-    free = free_numbers(there.rig, priors)
-    judgement = _judged(found, ready.fitted, ready.withheld, free, priors)
+    free = free_numbers(there.rig, tolerances)
+    judgement = _judged(found, ready.fitted, ready.withheld, free, tolerances)
     return Examined(ready, free, found, judgement, marginals(found), known)
 
 
@@ -200,14 +200,14 @@ def _judged(
     fitted: Sequence[GapRun],
     withheld: Sequence[GapRun],
     free: Sequence[Free],
-    priors: Priors,
+    tolerances: Tolerances,
 ) -> Judged:
     asked: dict[str, Fit | None] = {NONE: None, **_likeliest(found)}
     if not withheld:
         problem = found.problem
         every = regimes(problem.simulator.stack.runs)
         return _foretold(found, problem, asked, every, polynomial(problem), chosen=False)
-    joint = _joint(found.problem, fitted, withheld, free, priors)
+    joint = _joint(found.problem, fitted, withheld, free, tolerances)
     regime = chosen_regime(joint.simulator.stack.runs, [run.name for run in withheld])
     ones = [Regime("run", joint.simulator.stack.runs[at_].name, (at_,)) for at_ in regime.runs]
     kept = ~np.isin(joint.simulator.stack.run, regime.runs)
@@ -231,13 +231,13 @@ def _joint(
     fitted: Sequence[GapRun],
     withheld: Sequence[GapRun],
     free: Sequence[Free],
-    priors: Priors,
+    tolerances: Tolerances,
 ) -> Problem:
     """Return the problem over fitting and withheld runs, of what repeats with the shaft."""
     runs = [repeating_only(run) for run in pooled([*fitted, *withheld], problem.simulator.rig)]
     old = problem.simulator
     simulator = Simulator(old.rig, Stack.of(runs), old.on, old.reference_channel)
-    return Problem(simulator, Nuisances(columns(simulator, free, priors)), problem.free)
+    return Problem(simulator, Nuisances(columns(simulator, free, tolerances)), problem.free)
 
 
 def _foretold(

@@ -89,7 +89,7 @@ def prepare(
     """
     file = campaign_file(folder)
     _check_sensors(sensors)
-    campaign, case, reporting = campaign_of(file), read_case(file.parent), _reporting(file.parent)
+    campaign, case, reporting = campaign_of(file), read_case(file), _reporting(file.parent)
     held_out = held_out_runs(campaign, hold_out)
     on = campaign.effects_on(more or {})
     progress("reading")
@@ -104,7 +104,7 @@ def prepare(
         )
     settings = Settings(
         known,
-        case.priors,
+        case.tolerances,
         on=tuple(on),
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
@@ -164,7 +164,7 @@ def _sorted(
     fitted = [run for run in loaded.runs if run.name not in held_out]
     withheld = [run for run in loaded.runs if run.name in held_out]
     reference = loaded.reference_channel
-    there, found = judged(loaded.rig, fitted, case.priors, on, reference)
+    there, found = judged(loaded.rig, fitted, case.tolerances, on, reference)
     if withheld:
         names = {run.name for run in withheld}
         every = doubts(there.rig, loaded.runs, on, reference)

@@ -184,4 +184,5 @@ HANDED_ON = (
     "radiation",
     "simulation",
     "surge",
+    "tolerances",
 )

@@ -11,7 +11,7 @@ from analysis.gap.free import columns, free_numbers
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
 from analysis.gap.observe import observe
-from analysis.gap.priors import Priors
+from analysis.gap.tolerances import Tolerances
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.setpoint import Medium, SetPoint
@@ -40,7 +40,7 @@ def record(
     phase: str | None = None,
 ) -> tuple[GapRun, ...]:
     """Simulate and observe a campaign of eight periods a run, its pulses scattered as usual."""
-    every = (TriggerJitter(Priors().pulse_scatter_rad), *effects)
+    every = (TriggerJitter(Tolerances().pulse_scatter_rad), *effects)
     told = ReferenceChoice(channel=phase)
     return tuple(
         one_run(rig, every, seed, number, point, told) for number, point in enumerate(points)
@@ -74,9 +74,9 @@ def problem_of(
     rig: SimulatedRig, runs: Sequence[GapRun], reference_channel: str | None = None
 ) -> Problem:
     """Return the problem that a diagnosis holds its hypotheses against."""
-    priors = Priors()
-    free = free_numbers(rig, priors)
+    tolerances = Tolerances()
+    free = free_numbers(rig, tolerances)
     stack = Stack.of(pooled(runs, rig))
     simulator = Simulator(rig, stack, reference_channel=reference_channel)
-    nuisances = Nuisances(columns(simulator, free, priors))
+    nuisances = Nuisances(columns(simulator, free, tolerances))
     return Problem(simulator, nuisances, tuple(one.name for one in free))

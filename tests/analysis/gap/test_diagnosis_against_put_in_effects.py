@@ -11,8 +11,8 @@ from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.inference.answers import NONE, UNKNOWN
-from analysis.gap.priors import Priors
 from analysis.gap.sensors import as_recorded
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.verdict import coefficient_twins
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.channels import SHAFT_ANGLE
@@ -64,7 +64,7 @@ def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
     found = diagnose(stated, runs, Settings({"dynamic-trim": find("dynamic-trim")}))
     assert found.answers.best == "dynamic-trim"
     assert found.cause is not None
-    twins = coefficient_twins(found.problem, found.cause, free_numbers(stated, Priors()))
+    twins = coefficient_twins(found.problem, found.cause, free_numbers(stated, Tolerances()))
     assert twins["c11"][0] == pytest.approx(-0.25 * c11, rel=0.05)
 
 
@@ -83,7 +83,7 @@ def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
 
 def test_no_coefficient_passes_for_friction(friction: Diagnosis, rig: SimulatedRig) -> None:
     assert friction.cause is not None
-    assert not coefficient_twins(friction.problem, friction.cause, free_numbers(rig, Priors()))
+    assert not coefficient_twins(friction.problem, friction.cause, free_numbers(rig, Tolerances()))
 
 
 def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
@@ -94,9 +94,11 @@ def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
 
 
 def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: SimulatedRig) -> None:
-    priors, problem = Priors(), friction.problem
+    tolerances, problem = Tolerances(), friction.problem
     point = SetPoint(0.75, 0.03, 0.0, 1.0)
-    there = further(problem, [planned(problem, point, 0)], free_numbers(rig, priors), priors)
+    there = further(
+        problem, [planned(problem, point, 0)], free_numbers(rig, tolerances), tolerances
+    )
     assert friction.best is not None
     told = forecast(problem, there, friction.best)
     plain = forecast(problem, there, None)

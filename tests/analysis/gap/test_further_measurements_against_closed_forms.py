@@ -14,8 +14,8 @@ from analysis.gap.fit import Problem, at
 from analysis.gap.forecast import next_place, planned
 from analysis.gap.free import free_numbers
 from analysis.gap.measurements import INJECTED_HZ, measured_besides
-from analysis.gap.priors import Priors
 from analysis.gap.propose import OSCILLATION, Choices, Proposal, proposals, set_points
+from analysis.gap.tolerances import Tolerances
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2
@@ -168,8 +168,8 @@ def test_a_weight_is_proposed_on_the_strut_whose_gauge_it_tells_of(problem: Prob
     units = np.array([axis.unit(getattr(effect, axis.parameter.name)) for axis in part.axes])
     leading = ((at(problem, (part,), units), 0.5), (None, 0.5))
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=())
-    free = free_numbers(problem.simulator.rig, Priors())
-    first, *_ = proposals(problem, leading, choices, free, Priors())
+    free = free_numbers(problem.simulator.rig, Tolerances())
+    first, *_ = proposals(problem, leading, choices, free, Tolerances())
     assert (first.kind, first.strut) == (FurtherMeasurement.CHECK_WEIGHT, "fore")
     assert str(first) == f"a check weight of {first.force_n:g} N on the fore dynamometer"
 
@@ -199,8 +199,8 @@ def pressed(problem: Problem, choices: Choices) -> list[Proposal]:
     """Return what is proposed with a dead weight, where play or no gap may be."""
     play = next(iter(candidates(find("joint-play"), (0.5, 1.0))))
     leading = ((at(problem, (play,), play.start), 0.5), (None, 0.5))
-    free = free_numbers(problem.simulator.rig, Priors())
-    found = proposals(problem, leading, choices, free, Priors())
+    free = free_numbers(problem.simulator.rig, Tolerances())
+    found = proposals(problem, leading, choices, free, Tolerances())
     return [one for one in found if one.set_point is not None and one.force_n]
 
 
@@ -261,7 +261,7 @@ def test_the_strut_that_is_not_recorded_has_its_limit_too(
     for share, can in ((0.999, False), (1.001, True)):
         limited = replace(alone, force_limit_n=share * most_n)
         leading = ((None, 0.5), (None, 0.5))
-        found = proposals(one, leading, limited, free_numbers(rig, Priors()), Priors())
+        found = proposals(one, leading, limited, free_numbers(rig, Tolerances()), Tolerances())
         assert bool(found) is can
 
 
@@ -284,7 +284,9 @@ def test_a_dead_weight_tells_play_from_its_twin_and_no_other_run_does(rig: Simul
     parts = [next(iter(candidates(kind, (0.5, 1.0)))) for kind in (find("joint-play"), Twin)]
     fits = [(at(problem, (one,), one.start), 0.5) for one in parts]
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), force_limit_n=500.0)
-    ask = partial(proposals, problem, fits, free=free_numbers(rig, Priors()), priors=Priors())
+    ask = partial(
+        proposals, problem, fits, free=free_numbers(rig, Tolerances()), tolerances=Tolerances()
+    )
     found = ask(choices)
     for one in found:
         assert (one.gain > 5.0) is (one.kind == OSCILLATION and one.force_n > 0.0), str(one)

@@ -13,10 +13,10 @@ from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.free import free_numbers
 from analysis.gap.hypotheses import COEFFICIENTS
 from analysis.gap.look import Looked
-from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, proposals
 from analysis.gap.screen import worth_a_look
 from analysis.gap.search import Engine, fitted
+from analysis.gap.tolerances import Tolerances
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from sim.effects.catalogue import catalogue, find, load_file
@@ -106,8 +106,8 @@ def test_the_same_measurements_show_it(
     )
     for kind in both(name, tmp_path):
         leading = ((begun(problem, kind, 3.0), 0.6), (None, 0.4))
-        free = free_numbers(problem.simulator.rig, Priors())
-        found = proposals(problem, leading, choices, free, Priors())
+        free = free_numbers(problem.simulator.rig, Tolerances())
+        found = proposals(problem, leading, choices, free, Tolerances())
         assert {one.kind for one in found if one.gain > 1.0} == shown
 
 

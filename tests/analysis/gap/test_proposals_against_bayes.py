@@ -11,8 +11,8 @@ from analysis.gap.candidate import candidates
 from analysis.gap.components import GapRun
 from analysis.gap.fit import at
 from analysis.gap.free import free_numbers
-from analysis.gap.priors import Priors
 from analysis.gap.propose import Choices, proposals, set_points
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.worth import ENOUGH, Worth, by_itself, gained
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Range
@@ -63,7 +63,7 @@ def test_of_runs_that_are_worth_the_same_the_gentlest_comes_first(
     problem = problem_of(rig, clean[:2])
     leading = ((None, 0.5), (None, 0.5))  # nothing tells what is the same apart
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), special=())
-    found = proposals(problem, leading, choices, free_numbers(rig, Priors()), Priors())
+    found = proposals(problem, leading, choices, free_numbers(rig, Tolerances()), Tolerances())
     speeds = [
         one.set_point.eccentricity_m * one.set_point.frequency_hz
         for one in found

@@ -11,7 +11,7 @@ from analysis.gap.gaussian import Nuisances
 from analysis.gap.look import look
 from analysis.gap.noise import pooled
 from analysis.gap.powers import grown
-from analysis.gap.priors import Priors
+from analysis.gap.tolerances import Tolerances
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record
@@ -20,11 +20,11 @@ PARTS = (Component("force_aft", Part.LINE, 2), Component("force_aft", Part.CYCLE
 
 
 def _problem(rig: SimulatedRig, jitter_rad: float, seed: int) -> Problem:
-    priors, free = Priors(), free_numbers(rig, Priors())
+    tolerances, free = Tolerances(), free_numbers(rig, Tolerances())
     runs = record(rig, (TriggerJitter(jitter_rad),) if jitter_rad else (), seed)
-    usual = (TriggerJitter(priors.pulse_scatter_rad),)
+    usual = (TriggerJitter(tolerances.pulse_scatter_rad),)
     simulator = Simulator(rig, Stack.of(pooled(runs, rig)), usual)
-    nuisances = Nuisances(columns(simulator, free, priors))
+    nuisances = Nuisances(columns(simulator, free, tolerances))
     return Problem(simulator, nuisances, tuple(one.name for one in free))
 
 

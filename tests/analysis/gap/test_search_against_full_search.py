@@ -16,11 +16,11 @@ from analysis.gap.gaussian import Nuisances, left_over
 from analysis.gap.look import look, smaller
 from analysis.gap.noise import pooled
 from analysis.gap.prefix import Solved
-from analysis.gap.priors import Priors
 from analysis.gap.refine import refine
 from analysis.gap.regimes import Regime
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.together import together
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.withheld import Predicted, shrinkage
 from hardware.description.errors import ConfigurationError
 from sim.effects.catalogue import build, find
@@ -32,7 +32,7 @@ from sim.solve.period import Period
 from sim.solve.periodic import steady_run
 from tests.analysis.gap.small import POINTS, problem_of, record
 
-USUAL = Priors()
+USUAL = Tolerances()
 
 
 @pytest.mark.parametrize("said", ["coulomb-friction", "amplifier-lag", "speed-ripple", "cable"])
@@ -128,9 +128,9 @@ def test_a_rough_slope_is_near_the_slope(
 
 def test_an_effect_acts_on_the_rig_as_its_coefficients_are(rig: SimulatedRig) -> None:
     """A photocell turned by 0.03 rad turns what 20 % more added mass changes as well."""
-    free = free_numbers(rig, Priors())
+    free = free_numbers(rig, Tolerances())
     off = with_coefficients(rig, free, [1.0 if one.name == "a11" else 0.0 for one in free])
-    flat = Priors(added_mass_per_octave=0.0, damping_per_octave=0.0)
+    flat = Tolerances(added_mass_per_octave=0.0, damping_per_octave=0.0)
     runs = record(off, [build("photocell-angle:late_rad=0.03")], 32)
     problem = _scattering(rig, runs, flat)
     fit = look(problem, find("photocell-angle")).fit
@@ -188,12 +188,14 @@ def test_a_gap_of_nothing_is_nothing_within_its_noise() -> None:
     assert found.low < 1.0 - 0.5 * math.sqrt(math.sqrt(2.0 / 800)) / found.before
 
 
-def _scattering(rig: SimulatedRig, runs: tuple[GapRun, ...], priors: Priors = USUAL) -> Problem:
+def _scattering(
+    rig: SimulatedRig, runs: tuple[GapRun, ...], tolerances: Tolerances = USUAL
+) -> Problem:
     """Return the problem of a rig whose pulses scatter as the campaign's do."""
-    on = (build(f"trigger-jitter:jitter_rad={priors.pulse_scatter_rad}"),)
+    on = (build(f"trigger-jitter:jitter_rad={tolerances.pulse_scatter_rad}"),)
     simulator = Simulator(rig, Stack.of(pooled(runs, rig)), on)
-    free = free_numbers(rig, priors)
-    nuisances = Nuisances(columns(simulator, free, priors))
+    free = free_numbers(rig, tolerances)
+    nuisances = Nuisances(columns(simulator, free, tolerances))
     return Problem(simulator, nuisances, tuple(one.name for one in free))
 
 

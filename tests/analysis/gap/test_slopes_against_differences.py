@@ -9,7 +9,7 @@ from analysis.gap.candidate import candidates
 from analysis.gap.components import STEADY_PARTS, GapRun
 from analysis.gap.fit import at, built
 from analysis.gap.free import Free, free_numbers
-from analysis.gap.priors import Priors
+from analysis.gap.tolerances import Tolerances
 from sim.effects.catalogue import find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
@@ -36,7 +36,7 @@ def test_of_an_effect(name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]) -
 
 def test_of_the_free_numbers(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     problem = problem_of(rig, clean)
-    free: tuple[Free, ...] = free_numbers(rig, Priors())
+    free: tuple[Free, ...] = free_numbers(rig, Tolerances())
     base = problem.simulator.steady(())
     for at_, one in enumerate(free):
         sides = [one.steady(problem.simulator, units) for units in (0.02, -0.02)]
@@ -49,7 +49,9 @@ def test_of_the_free_numbers(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> No
 def test_water_that_a_table_states_has_coefficients_to_be_free(rig: SimulatedRig) -> None:
     """A table leaves to the constants what it lacks: a coupling alone tells no size."""
     lent = replace(rig.water, added_mass=((0.0, 0.3), (0.3, 0.0)))
-    found = {one.name: one.deviation for one in free_numbers(replace(rig, water=lent), Priors())}
-    assert found["a11"] == pytest.approx(Priors().added_mass_relative * rig.body.mass_kg)
-    assert found["a22"] == pytest.approx(Priors().added_mass_relative * rig.body.inertia_kg_m2)
-    assert found["b11"] == pytest.approx(Priors().damping_relative * rig.water.damping[0][0])
+    found = {
+        one.name: one.deviation for one in free_numbers(replace(rig, water=lent), Tolerances())
+    }
+    assert found["a11"] == pytest.approx(Tolerances().added_mass_relative * rig.body.mass_kg)
+    assert found["a22"] == pytest.approx(Tolerances().added_mass_relative * rig.body.inertia_kg_m2)
+    assert found["b11"] == pytest.approx(Tolerances().damping_relative * rig.water.damping[0][0])

@@ -139,7 +139,7 @@ def campaign_text(case: Case, *, foreign: bool) -> str:
 
 
 def case_text(case: Case) -> str:
-    """Return case.toml: priors, withheld set-points and what the rig can do."""
+    """Return case.toml: tolerances, withheld set-points and what the rig can do."""
     rig = case.campaign.rig
     fast = [run.frequency_hz for run in case.campaign.runs]
     wide = [run.eccentricity_m for run in case.campaign.runs]
@@ -154,7 +154,7 @@ def case_text(case: Case) -> str:
     }
     parts = [
         table('schema = "sealed-case-1"', {"sensors": list(rig.sensors)}),
-        table("[priors]", STATED),
+        table("[tolerances]", STATED),
         table("[rig]", can),
     ]
     for run, regime in zip(case.campaign.held_out, REGIMES, strict=True):

@@ -1,8 +1,8 @@
 """What peers look at: the residual of a case with coefficients fitted, in the project's own terms.
 
 Peers get the same start as the diagnosis: recordings resolved into harmonics with uncertainties,
-the nominal simulation taken off, and the coefficients fitted within their priors. What they make of
-the remainder is theirs.
+the nominal simulation taken off, and the coefficients fitted within their tolerances. What
+they make of the remainder is theirs.
 """
 
 from dataclasses import dataclass
@@ -21,6 +21,7 @@ from analysis.gap.free import columns, free_numbers
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.noise import pooled
 from hardware.description.arrays import FloatArray
+from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.gap.answer import harmonics
 from pmm.gap.case import read_case
 from pmm.gap.load import load_campaign
@@ -77,15 +78,15 @@ def _as_stack(one: Remainder) -> Stack:
 @lru_cache(maxsize=1)
 def scene(folder: Path) -> Scene:
     """Return what a peer sees of a case; the last one is kept, as peers answer in turn."""
-    loaded, case = load_campaign(folder), read_case(folder)
+    loaded, case = load_campaign(folder), read_case(folder / CAMPAIGN_FILE)
     stack = Stack.of(pooled(loaded.runs, loaded.rig))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
-    free = free_numbers(loaded.rig, case.priors)
-    nuisances = Nuisances(columns(simulator, free, case.priors))
+    free = free_numbers(loaded.rig, case.tolerances)
+    nuisances = Nuisances(columns(simulator, free, case.tolerances))
     problem = Problem(simulator, nuisances, tuple(one.name for one in free))
     left = problem.residual - nuisances.columns @ nuisances.fitted(problem.residual)
     runs = [planned(problem, one.set_point, at) for at, one in enumerate(case.held_out)]
-    there = further(problem, runs, free, case.priors)
+    there = further(problem, runs, free, case.tolerances)
     values = forecast(problem, there, None).values(there)
     ahead = there.simulator.stack
     return Scene(

@@ -7,7 +7,7 @@ from hardware.description.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
-class Priors:
+class Tolerances:
     """Standard deviations, Gaussian about what the campaign states.
 
     Attributes
@@ -66,7 +66,7 @@ class Priors:
 
     def __post_init__(self) -> None:
         faults = [
-            f"priors.{one.name} = {getattr(self, one.name):g} must not be negative"
+            f"tolerances.{one.name} = {getattr(self, one.name):g} must not be negative"
             for one in fields(self)
             if not getattr(self, one.name) >= 0.0
         ]
