@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Final
 
 from analysis.gap.components import GapRun
 from analysis.gap.observe import Observed, observe
@@ -22,6 +23,8 @@ from pmm.configuration import read_toml
 from pmm.gap.at_rest import check_recorded_alike, damage_of, records_at_rest
 from pmm.gap.cut_short import cut_short
 from sim.rig import SimulatedRig
+
+_ABOVE: Final = 1.2  # of the oscillator's largest frequency and eccentricity
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,15 +134,18 @@ def campaign_of(path: Path) -> Campaign:
 
 
 def unlimited(rig: SimulatedRig) -> SimulatedRig:
-    """Return a rig that refuses nothing: the runs were made, and settings are off by a tolerance.
+    """Return a rig that refuses no run that was made: settings are off by a tolerance.
 
     A run at the oscillator's highest frequency has to be simulated a little above it too.
     """
-    everything = Range(0.0, math.inf)
+    own = rig.oscillator
+    frequency_hz, eccentricity_m = (
+        Range(0.0, _ABOVE * one.high) for one in (own.frequency_hz, own.eccentricity_m)
+    )
     free = replace(
-        rig.oscillator,
-        frequency_hz=everything,
-        eccentricity_m=everything,
+        own,
+        frequency_hz=frequency_hz,
+        eccentricity_m=eccentricity_m,
         force_per_strut_n=math.inf,
     )
     return replace(rig, oscillator=free)

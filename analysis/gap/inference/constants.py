@@ -28,6 +28,10 @@ SHAPED: Final = 0.7
 """Probability that what is unknown looks like a stage's effects; else it shows in one kind of
 observation alone."""
 
+FORMS: Final = (0.0, 0.3, 1.0)
+"""By how much of the way an effect is in another form of its family: in its own, nearer to it, or
+anywhere among them, each as probable."""
+
 WITHIN: Final = 0.5
 """Probability that what a named effect leaves is within ``TOLERATED``."""
 

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from analysis.gap.inference.constants import PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
+from analysis.gap.inference.constants import FORMS, PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.gram import Reduced, Weighted
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis, weighed
 from analysis.gap.inference.kernel import Kernel
@@ -139,8 +139,14 @@ class Background:
         )
 
     def _weighed(self, one: Hypothesis, under: Weighted, scale: FloatArray) -> Evidence:
+        """Return what named effects are worth, in whichever form of their families they are."""
         turned = self.kernel.turned(np.column_stack((one.target, one.columns)))
-        return weighed(one, under.reduced(scale, turned, self.kernel.turned(one.forms)))
+        forms = self.kernel.turned(one.forms)
+        every = FORMS if one.forms.shape[1] else FORMS[:1]
+        found = [weighed(one, under.reduced(scale, turned, share * forms)) for share in every]
+        logs = [each.log_evidence for each in found]
+        best = found[int(np.argmax(logs))]
+        return replace(best, log_evidence=float(_mean(logs)))
 
     @cached_property
     def _columns(self) -> FloatArray:
@@ -217,7 +223,7 @@ class Background:
         )
 
 
-def _mean(each: Iterable[FloatArray]) -> FloatArray:
+def _mean(each: Iterable[FloatArray | float]) -> FloatArray:
     """Return the log of the mean evidence over equally probable deviations."""
     logs = list(each)
     return np.asarray(np.logaddexp.reduce(logs, axis=0) - math.log(len(logs)), np.float64)
