@@ -31,6 +31,7 @@ _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS)
 # frequency, which is known to 1e-4, a hundredth.
 _UNITS: Final = {Part.FREQUENCY: 0.01}
 _FLOORS: Final = dict.fromkeys(DISPLACEMENTS, 1e-3) | dict.fromkeys(FORCES, 1.0)  # m, N
+_FLOOR: Final = 0.01  # rad of a shaft that turns evenly; m/s of a carriage
 # Where something shows that acts at a stage: in its own channels, and in those behind it.
 _BEHIND: Final = {
     StageName.MECHANISM: (*DISPLACEMENTS, *FORCES),
@@ -133,7 +134,7 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
     out = np.ones(len(stack.components))
     for at, one in enumerate(stack.components):
         if one.part in _HARMONIC:
-            size = max(sizes.get(one.channel, 0.0), _FLOORS.get(one.channel, 0.1))
+            size = max(sizes.get(one.channel, 0.0), _FLOORS.get(one.channel, _FLOOR))
             out[at] = size / max(one.order, 1)
             if one.part in TRENDS:
                 out[at] /= max(stack.runs[stack.run[at]].periods, 1)

@@ -14,7 +14,7 @@ from analysis.gap.gaussian import null_evidence
 from analysis.gap.inference.answers import Answers, Considered, answers
 from analysis.gap.look import Looked
 from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.search import LEADERS, Engine, fitted, looked_at, paired
+from analysis.gap.search import LEADERS, Engine, alone_again, fitted, looked_at, paired
 from analysis.gap.together import together
 from sim.effects.effect import Effect
 
@@ -87,8 +87,9 @@ def weigh(
     looked = looked_at(problem, worth, engine)
     none = null_evidence(problem.residual, problem.nuisances)
     seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
-    singles = _completed(problem, free, fitted(problem, seen, none, engine))
+    singles = fitted(problem, seen, none, engine)
     pairs = _completed(problem, free, paired(problem, singles, seen, none, engine))
+    singles = _completed(problem, free, alone_again(problem, singles, pairs))
     progress("weighing")
     sought = np.array([one.is_sought for one in free], dtype=bool)
     considered = Considered(

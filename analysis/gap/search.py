@@ -116,6 +116,25 @@ def paired(
     return sorted(found, key=lambda one: -one.log_evidence)
 
 
+def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) -> list[Fit]:
+    """Return single effects fitted once more from where the most probable pairs have them.
+
+    Alone, an effect may have gone astray where a partner that turns out to be nothing led it right.
+    """
+    best = {one.names[0]: one for one in singles}
+    for pair in pairs[:_LED]:
+        for number, candidate in enumerate(pair.candidates):
+            try:
+                start = at(problem, (candidate,), pair.units[pair.whose == number])
+                found = refine(problem, start)
+            except PmmError:
+                continue
+            other = best.get(candidate.name)
+            if other is None or found.log_evidence > other.log_evidence:
+                best[candidate.name] = found
+    return sorted(best.values(), key=lambda one: -one.log_evidence)
+
+
 @dataclass(frozen=True, eq=False)
 class _Chance:
     """A pair as it is seen at first, and the log evidence that it promises."""

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.inference.constants import ETA, ODDS, SHAPED, TAUS, TOLERATED, WITHIN
+from analysis.gap.inference.constants import ETA, ODDS, SHAPED, TAUS, TOLERATED
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis
 from hardware.description.arrays import BoolArray, FloatArray
@@ -83,11 +83,11 @@ def answers(given: Considered, beside: Background) -> Answers:
     share = given.concealed / count
     none = odds.none + odds.single * share + odds.pair * share**2
     small, large = _even(_SMALL), _even(~_SMALL)
-    any_size = WITHIN * small + (1.0 - WITHIN) * large
-    each_odd = odds.odd_run / max(len(beside.own), 1)
+    any_size = _even(np.ones_like(_SMALL))
+    each_odd = odds.mistake / max(len(beside.own), 1)
     logs = {
         NONE: _log_weight(beside.none(), small, none),
-        COEFFICIENTS: _log_weight(beside.coefficients(), small, odds.coefficients),
+        COEFFICIENTS: _log_weight(beside.coefficients(), small, odds.mistake),
     }
     found: dict[str, list[Evidence]] = {}
     pair = odds.pair / max(count * (count - 1) / 2, 1)

@@ -32,9 +32,6 @@ FORMS: Final = (0.0, 0.3, 1.0)
 """By how much of the way an effect is in another form of its family: in its own, nearer to it, or
 anywhere among them, each as probable."""
 
-WITHIN: Final = 0.5
-"""Probability that what a named effect leaves is within ``TOLERATED``."""
-
 WIDE: Final = 10.0
 """Tolerances by which coefficients are off where they are the answer: a decade."""
 
@@ -52,15 +49,14 @@ class Odds:
 
     Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
     that no catalogue knows it, one in ten is two effects; in one campaign of sixteen coefficients
-    are off by more than anybody thought, and in one of sixteen a single run went wrong.
+    are off by more than anybody thought, and in as many a single run went wrong.
     """
 
     none: float = 0.12
     single: float = 0.61
     pair: float = 0.09
     unknown: float = 0.18
-    coefficients: float = 0.06
-    odd_run: float = 0.06
+    mistake: float = 0.06
 
 
 ODDS: Final = Odds()

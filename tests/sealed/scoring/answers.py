@@ -12,7 +12,8 @@ from tests.sealed.scoring.files import checked, read_json
 from tests.sealed.scoring.keys import Truth, forces
 
 NONE, COEFFICIENTS, UNKNOWN, FAILED = "none", "coefficients", "unknown", "failed"
-VERDICTS = (NONE, COEFFICIENTS, UNKNOWN)
+ODD_RUN = "odd-run"
+VERDICTS = (NONE, COEFFICIENTS, UNKNOWN, ODD_RUN)
 CONTROLS: Final = ("after_rival", "after_polynomial")
 _ALIKE = 1e-6  # that a sum of probabilities may differ from 1 by
 

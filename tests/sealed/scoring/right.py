@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
-from tests.sealed.scoring.answers import COEFFICIENTS, FAILED, NONE, UNKNOWN, Answer
+from tests.sealed.scoring.answers import COEFFICIENTS, FAILED, NONE, UNKNOWN, VERDICTS, Answer
 from tests.sealed.scoring.keys import Truth
 
 
 def named(answer: str) -> tuple[str, ...]:
     """Return the effects of an answer, in alphabetical order; none for a verdict or a failure."""
-    silent = (NONE, COEFFICIENTS, UNKNOWN, FAILED)
+    silent = (*VERDICTS, FAILED)
     return () if answer in silent else tuple(sorted(answer.split("+")))
 
 
