@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from analysis.gap.always_on import always_on
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
+from analysis.gap.gaussian import Nuisances
 from analysis.gap.smooth_changes import smooth_changes
 from analysis.gap.spectrum import spread_about
 from analysis.gap.tolerances import Tolerances
@@ -152,12 +154,13 @@ def with_coefficients(
     return rig
 
 
-def columns(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) -> FloatArray:
-    """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
+def tolerated(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) -> Nuisances:
+    """Return what a tolerance of each changes, in sigma.
 
-    After those of ``free`` there are columns for each displacement sensor, for each run's frequency
-    and phase reference, for what coefficients do with frequency and speed, and for each kind of
-    noise of each channel: a rig that is noisier than believed has no gap for that.
+    After the columns of ``free`` there are named ones for what is always on, and others for each
+    displacement sensor, for each run's frequency and phase reference, for what coefficients do with
+    frequency and speed, and for each kind of noise of each channel: a rig that is noisier than
+    believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
@@ -171,7 +174,10 @@ def columns(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) 
     ]
     levels = {one.name: column for one, column in zip(free, found, strict=True) if one.is_sought}
     smooth = smooth_changes(stack, levels, tolerances)
-    return np.column_stack([*found, *sensors, *own, *smooth, *_noise_levels(stack)])
+    on = dict(always_on(simulator, base, tolerances))
+    names = (*(one.name for one in free), *on)
+    every = [*found, *on.values(), *sensors, *own, *smooth, *_noise_levels(stack)]
+    return Nuisances(np.column_stack(every), names)
 
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:

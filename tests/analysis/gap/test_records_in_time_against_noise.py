@@ -6,8 +6,7 @@ import pytest
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.fit import Problem, most_probable
 from analysis.gap.forward import DRAWS, Simulator
-from analysis.gap.free import columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import free_numbers, tolerated
 from analysis.gap.look import look
 from analysis.gap.noise import pooled
 from analysis.gap.powers import grown
@@ -24,8 +23,8 @@ def _problem(rig: SimulatedRig, jitter_rad: float, seed: int) -> Problem:
     runs = record(rig, (TriggerJitter(jitter_rad),) if jitter_rad else (), seed)
     usual = (TriggerJitter(tolerances.pulse_scatter_rad),)
     simulator = Simulator(rig, Stack.of(pooled(runs, rig)), usual)
-    nuisances = Nuisances(columns(simulator, free, tolerances))
-    return Problem(simulator, nuisances, tuple(one.name for one in free))
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances)
 
 
 @pytest.mark.parametrize("share", [0.1, 1.0, 5.0])

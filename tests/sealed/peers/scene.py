@@ -17,8 +17,7 @@ from analysis.gap.components import Component, GapRun, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.forward import Simulator
-from analysis.gap.free import columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import free_numbers, tolerated
 from analysis.gap.noise import pooled
 from hardware.description.arrays import FloatArray
 from pmm.campaign.file_names import CAMPAIGN_FILE
@@ -82,8 +81,8 @@ def scene(folder: Path) -> Scene:
     stack = Stack.of(pooled(loaded.runs, loaded.rig))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
     free = free_numbers(loaded.rig, case.tolerances)
-    nuisances = Nuisances(columns(simulator, free, case.tolerances))
-    problem = Problem(simulator, nuisances, tuple(one.name for one in free))
+    nuisances = tolerated(simulator, free, case.tolerances)
+    problem = Problem(simulator, nuisances)
     left = problem.residual - nuisances.columns @ nuisances.fitted(problem.residual)
     runs = [planned(problem, one.set_point, at) for at, one in enumerate(case.held_out)]
     there = further(problem, runs, free, case.tolerances)
