@@ -132,7 +132,7 @@ def problem_of(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
     """Return what every hypothesis about a campaign is held against."""
-    stack = Stack.of(pooled(runs, rig))
+    stack = Stack.of(pooled(runs, rig, settings.tolerances))
     on = (*settings.on, *_always(rig, stack, settings.tolerances))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = tolerated(simulator, free, settings.tolerances)

@@ -56,7 +56,7 @@ def recentred(
 ) -> Recentred:
     """Move a rig to the coefficients that fit."""
     free = free_numbers(rig, tolerances)
-    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig)])
+    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig, tolerances)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))

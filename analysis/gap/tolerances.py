@@ -1,5 +1,6 @@
 """What the nominal simulation and the rig's settings may be wrong by without anybody's fault."""
 
+import math
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar
 
@@ -86,10 +87,15 @@ class Tolerances:
     )
     wander_s: float = _usual(100.0, "s", "time over which it wanders", "air conditioning")
     carriage_relative: float = _usual(
-        1e-3, "1", "unevenness of the carriage's speed, each run", "ITTC 7.5-02-06-02: 0.1 %"
+        1e-3, "1", "unevenness of the carriage's speed in a run", "ITTC 7.5-02-06-02: 0.1 %"
     )
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    @property
+    def wander(self) -> tuple[float, float]:
+        """Wander of each zero: in N, and as a random walk in N per root s."""
+        return self.wander_n, self.wander_n * math.sqrt(2.0 / max(self.wander_s, 1e-9))
 
     def __post_init__(self) -> None:
         faults = [

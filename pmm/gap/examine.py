@@ -233,7 +233,10 @@ def _joint(
     tolerances: Tolerances,
 ) -> Problem:
     """Return the problem over fitting and withheld runs, of what repeats with the shaft."""
-    runs = [repeating_only(run) for run in pooled([*fitted, *withheld], problem.simulator.rig)]
+    runs = [
+        repeating_only(run)
+        for run in pooled([*fitted, *withheld], problem.simulator.rig, tolerances)
+    ]
     old = problem.simulator
     simulator = Simulator(old.rig, Stack.of(runs), old.on, old.reference_channel)
     return Problem(simulator, tolerated(simulator, free, tolerances))

@@ -75,7 +75,7 @@ def problem_of(
     """Return the problem that a diagnosis holds its hypotheses against."""
     tolerances = Tolerances()
     free = free_numbers(rig, tolerances)
-    stack = Stack.of(pooled(runs, rig))
+    stack = Stack.of(pooled(runs, rig, tolerances))
     simulator = Simulator(rig, stack, reference_channel=reference_channel)
     nuisances = tolerated(simulator, free, tolerances)
     return Problem(simulator, nuisances)

@@ -22,7 +22,7 @@ def _problem(rig: SimulatedRig, jitter_rad: float, seed: int) -> Problem:
     tolerances, free = Tolerances(), free_numbers(rig, Tolerances())
     runs = record(rig, (TriggerJitter(jitter_rad),) if jitter_rad else (), seed)
     usual = (TriggerJitter(tolerances.pulse_scatter_rad),)
-    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), usual)
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig, tolerances)), usual)
     nuisances = tolerated(simulator, free, tolerances)
     return Problem(simulator, nuisances)
 
@@ -43,7 +43,7 @@ def test_a_trend_grows_with_the_size() -> None:
 def test_trends_of_few_periods_have_no_heavy_tails(rig: SimulatedRig) -> None:
     found = []
     for seed in range(3, 6):
-        for run in pooled(record(rig, (), seed), rig):
+        for run in pooled(record(rig, (), seed), rig, Tolerances()):
             at = [n for n, one in enumerate(run.observed.components) if one.part is Part.TREND]
             found += list(run.observed.values[at] / run.observed.uncertainty[at])
     records = (1.0 + 1.0 / DRAWS) ** 0.5

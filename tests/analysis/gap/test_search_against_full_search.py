@@ -193,7 +193,7 @@ def _scattering(
 ) -> Problem:
     """Return the problem of a rig whose pulses scatter as the campaign's do."""
     on = (build(f"trigger-jitter:jitter_rad={tolerances.pulse_scatter_rad}"),)
-    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), on)
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig, tolerances)), on)
     free = free_numbers(rig, tolerances)
     nuisances = tolerated(simulator, free, tolerances)
     return Problem(simulator, nuisances)

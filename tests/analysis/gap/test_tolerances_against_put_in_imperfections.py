@@ -20,7 +20,7 @@ def test_a_load_ripple_is_that_of_a_simulated_motor(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
     """To first order: a drive that brings the mean back, and higher orders, are a tenth of it."""
-    stack = Stack.of(pooled(clean, rig))
+    stack = Stack.of(pooled(clean, rig, USUAL))
     simulator = Simulator(rig, stack)
     heavy = build("load-ripple:inertia_kg_m2=1e4,hold_hz=0.001")
     change = (simulator.steady((heavy,)) - simulator.steady(())) / stack.uncertainty
@@ -30,7 +30,7 @@ def test_a_load_ripple_is_that_of_a_simulated_motor(
 
 
 def test_drift_is_that_of_simulated_zeros(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
-    stack = Stack.of(pooled(clean, rig))
+    stack = Stack.of(pooled(clean, rig, USUAL))
     simulator = Simulator(rig, stack)
     drifting = build("zero-drift:aft_n_s=0.01,fore_n_s=0")
     change = (simulator.predict((drifting,)) - simulator.nominal) / stack.uncertainty

@@ -78,7 +78,7 @@ def _as_stack(one: Remainder) -> Stack:
 def scene(folder: Path) -> Scene:
     """Return what a peer sees of a case; the last one is kept, as peers answer in turn."""
     loaded, case = load_campaign(folder), read_case(folder / CAMPAIGN_FILE)
-    stack = Stack.of(pooled(loaded.runs, loaded.rig))
+    stack = Stack.of(pooled(loaded.runs, loaded.rig, case.tolerances))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
     free = free_numbers(loaded.rig, case.tolerances)
     nuisances = tolerated(simulator, free, case.tolerances)
