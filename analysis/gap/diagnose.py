@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forward import Simulator
-from analysis.gap.free import Free, columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import Free, free_numbers, tolerated
 from analysis.gap.hypotheses import Weighed, weigh
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, Answers, effects_in
 from analysis.gap.leading import leading
@@ -133,12 +132,11 @@ def problem_of(
     rig: SimulatedRig, runs: Sequence[GapRun], settings: Settings, free: tuple[Free, ...]
 ) -> Problem:
     """Return what every hypothesis about a campaign is held against."""
-    stack = Stack.of(pooled(runs, rig))
+    stack = Stack.of(pooled(runs, rig, settings.tolerances))
     on = (*settings.on, *_always(rig, stack, settings.tolerances))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
-    nuisances = Nuisances(columns(simulator, free, settings.tolerances))
-    names = tuple(one.name for one in free)
-    return Problem(simulator, nuisances, names, moved=settings.moved)
+    nuisances = tolerated(simulator, free, settings.tolerances)
+    return Problem(simulator, nuisances, moved=settings.moved)
 
 
 def _always(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Effect, ...]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from analysis.gap.always_on import is_of_drive
 from analysis.gap.at_rest import steady_at_rest
 from analysis.gap.components import GapRun, Part
 from analysis.gap.fit import Problem
@@ -98,7 +99,11 @@ def fed(problem: Problem, feed: Feed, rows: BoolArray) -> Fed | None:
             found[stack.run == number], wider[stack.run == number] = one
     shrink = stack.uncertainty / np.hypot(stack.uncertainty, wider)
     timed = seen & np.array([one.part is Part.FREQUENCY for one in stack.components])
-    part = Nuisances(problem.nuisances.columns * shrink[:, None])
+    names = problem.nuisances.names
+    turns = np.array([not is_of_drive(name) for name in names])  # the shaft is as it was measured
+    kept = problem.nuisances.columns * shrink[:, None]
+    kept[:, : len(names)] *= turns
+    part = Nuisances(kept, names)
     with_it = problem.whitened(stack.values - found) * shrink
     return Fed(
         compared,

@@ -28,19 +28,22 @@ class Problem:
         The nominal rig and the runs.
     nuisances
         Free coefficients and noise levels.
-    free
-        Names of the nuisances' first columns: coefficients and settings.
     numbers
-        The same to change a rig by, where effects are to act on it as its coefficients are.
+        Coefficients and settings to change a rig by, where effects are to act on it as its
+        coefficients are.
     moved
         By how many tolerances the rig was moved from what is stated, by name.
     """
 
     simulator: Simulator
     nuisances: Nuisances
-    free: tuple[str, ...]
     numbers: tuple[Free, ...] = ()
     moved: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the nuisances' first columns."""
+        return self.nuisances.names
 
     @cached_property
     def residual(self) -> FloatArray:

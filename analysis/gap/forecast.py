@@ -9,8 +9,7 @@ import numpy as np
 
 from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.fit import Fit, Problem, at
-from analysis.gap.free import Free, columns
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import Free, tolerated
 from analysis.gap.together import signature_on
 from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
@@ -93,8 +92,8 @@ def further(
 ) -> Problem:
     """Return the same problem at further runs."""
     simulator = replace(problem.simulator, stack=Stack.of(runs))
-    nuisances = Nuisances(columns(simulator, free, tolerances))
-    return Problem(simulator, nuisances, problem.free, tuple(free))
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances, tuple(free))
 
 
 def forecast(

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from analysis.gap.always_on import always_on
 from analysis.gap.components import Part, Stack
 from analysis.gap.forward import Simulator
+from analysis.gap.gaussian import Nuisances
 from analysis.gap.smooth_changes import smooth_changes
 from analysis.gap.spectrum import spread_about
 from analysis.gap.tolerances import Tolerances
@@ -36,6 +38,8 @@ Change = Callable[[SimulatedRig, float], SimulatedRig]
 _TERMS: Final = {"added_mass": "a", "damping": "b", "restoring": "c"}
 _SOUGHT: Final = tuple(f"{term}{row}{column}" for term in "ab" for row in "12" for column in "12")
 _STEP = 0.1  # of a prior deviation
+_CARRIAGE: Final = "carriage speed"
+_IN_MEAN: Final = 0.3  # of a slow wave's amplitude, left in the mean of a record of a period or two
 
 
 @dataclass(frozen=True)
@@ -138,7 +142,7 @@ def _settings(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
     yield Free("eccentricity fore", arm, effect=lambda x: EccentricityError(0.0, x))
     yield Free("strut phase", tolerances.strut_phase_rad, effect=StrutPhaseError)
     speed = tolerances.carriage_speed_relative
-    yield Free("carriage speed", speed, effect=CarriageSpeedError)
+    yield Free(_CARRIAGE, speed, effect=CarriageSpeedError)
     if rig.photocell is not None:
         yield Free("photocell", tolerances.photocell_angle_rad, effect=PhotocellAngle)
 
@@ -152,12 +156,13 @@ def with_coefficients(
     return rig
 
 
-def columns(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) -> FloatArray:
-    """Return what a prior deviation of each changes, in sigma; shape ``(observations, columns)``.
+def tolerated(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) -> Nuisances:
+    """Return what a tolerance of each changes, in sigma.
 
-    After those of ``free`` there are columns for each displacement sensor, for each run's frequency
-    and phase reference, for what coefficients do with frequency and speed, and for each kind of
-    noise of each channel: a rig that is noisier than believed has no gap for that.
+    After the columns of ``free`` there are named ones for what is always on, and others for each
+    displacement sensor, for each run's frequency, phase reference and carriage, for what
+    coefficients do with frequency and speed, and for each kind of noise of each channel: a rig that
+    is noisier than believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
     found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
@@ -168,10 +173,14 @@ def columns(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances) 
         *_by_run(
             stack, _turned(stack, base, 1.0) * references_rad(stack, tolerances.reference_rad)
         ),
+        *_uneven(stack, free, found, tolerances.carriage_relative),
     ]
     levels = {one.name: column for one, column in zip(free, found, strict=True) if one.is_sought}
     smooth = smooth_changes(stack, levels, tolerances)
-    return np.column_stack([*found, *sensors, *own, *smooth, *_noise_levels(stack)])
+    on = dict(always_on(simulator, base, tolerances))
+    names = (*(one.name for one in free), *on)
+    every = [*found, *on.values(), *sensors, *own, *smooth, *_noise_levels(stack)]
+    return Nuisances(np.column_stack(every), names)
 
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:
@@ -179,6 +188,22 @@ def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatA
     for channel in DISPLACEMENTS:
         own = np.array([one.channel == channel for one in stack.components])
         yield np.where(own, relative * base / stack.uncertainty, 0.0)
+
+
+def _uneven(
+    stack: Stack, free: Sequence[Free], found: Sequence[FloatArray], relative: float
+) -> Iterator[FloatArray]:
+    """Yield what an uneven carriage leaves in each run's mean speed, a column for each that runs.
+
+    Parameters
+    ----------
+    found
+        What a tolerance of each free number changes, in sigma.
+    """
+    for one, column in zip(free, found, strict=True):
+        if one.name == _CARRIAGE:
+            each = _by_run(stack, _IN_MEAN * relative / one.deviation * column)
+            yield from (own for own in each if own.any())
 
 
 def _by_run(stack: Stack, change: FloatArray) -> Iterator[FloatArray]:

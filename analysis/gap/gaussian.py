@@ -32,9 +32,12 @@ class Nuisances:
     ----------
     columns
         Shape ``(observations, nuisances)``, whitened.
+    names
+        Of the first columns: coefficients, settings, what is always on.
     """
 
     columns: FloatArray
+    names: tuple[str, ...] = ()
 
     @cached_property
     def _gain(self) -> FloatArray:
@@ -58,7 +61,7 @@ class Nuisances:
 
     def among(self, rows: BoolArray) -> "Nuisances":
         """Return the nuisances over some of the observations."""
-        return Nuisances(self.columns[rows])
+        return Nuisances(self.columns[rows], self.names)
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,8 @@ A run of six periods knows its own scatter to 30 %; taken at its word it calls s
 large or large ones small. The noise of a channel is much the same in all runs, so each run's own
 variance is drawn towards what the lines between the harmonics of all runs say, at the run's own
 level where runs differ (:mod:`analysis.gap.spectrum`), or, where there are none, the scatter of all
-runs. No mean and no trend is known better than the zero's wander between records at rest allows.
+runs. No mean and no trend is known better than the zero's wander between records at rest allows,
+or its tolerance where there are none.
 """
 
 import math
@@ -18,6 +19,7 @@ import numpy as np
 from analysis.gap.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
 from analysis.gap.forward import DRAWS
 from analysis.gap.spectrum import Loudness, levels, loudness
+from analysis.gap.tolerances import Tolerances
 from analysis.gap.wander import wander, wandered
 from hardware.description.channels import SHAFT_ANGLE
 from sim.acquisition.channels import Digitiser
@@ -35,14 +37,14 @@ _POOLED: Final = frozenset({*STEADY_PARTS, *TRENDS})
 _OF_HARMONICS: Final = frozenset({Part.IN_PHASE, Part.QUADRATURE, *SETTLING})
 
 
-def pooled(runs: Sequence[GapRun], rig: SimulatedRig) -> tuple[GapRun, ...]:
+def pooled(runs: Sequence[GapRun], rig: SimulatedRig, tolerances: Tolerances) -> tuple[GapRun, ...]:
     """Return the runs with uncertainties that borrow strength from each other.
 
     The rig's encoder says what its steps leave in the shaft's harmonics.
     """
     usual = Usual.of(runs)
     encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
-    wandering = wander(rig, runs)
+    wandering = wander(rig, runs, tolerances.wander)
     return tuple(wandered(_with(run, usual, encoder_rad), wandering) for run in runs)
 
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from analysis.gap.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.forward import Simulator
-from analysis.gap.free import Free, columns, free_numbers, with_coefficients
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import Free, free_numbers, tolerated, with_coefficients
 from analysis.gap.noise import pooled
 from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
@@ -57,7 +56,7 @@ def recentred(
 ) -> Recentred:
     """Move a rig to the coefficients that fit."""
     free = free_numbers(rig, tolerances)
-    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig)])
+    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig, tolerances)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))
@@ -96,7 +95,7 @@ def _step(
 ) -> FloatArray:
     """Return how far to go on from where the rig is, the tolerances about what is stated."""
     stack = simulator.stack
-    nuisances = Nuisances(columns(simulator, free, tolerances))
+    nuisances = tolerated(simulator, free, tolerances)
     left = (stack.values - simulator.steady(())) / stack.uncertainty
     stated = left + nuisances.columns[:, : len(free)] @ total
     units = nuisances.fitted(stated)[: len(free)] - total

@@ -1,68 +1,101 @@
 """What the nominal simulation and the rig's settings may be wrong by without anybody's fault."""
 
-from dataclasses import dataclass, fields
-from typing import ClassVar
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar
 
 from hardware.description.errors import ConfigurationError
+
+
+def _usual(default: float, unit: str, meaning: str, source: str) -> Any:
+    return field(default=default, metadata={"unit": unit, "meaning": meaning, "source": source})
 
 
 @dataclass(frozen=True)
 class Tolerances:
     """Standard deviations, Gaussian about what the campaign states.
 
-    Attributes
-    ----------
-    added_mass_relative, damping_relative, restoring_relative
-        Of the water's matrices; a coupling has ``coupling_relative`` times the root of the product
-        of the two diagonal terms.
-    added_mass_per_octave, damping_per_octave
-        By how much of itself each changes, smoothly, over an octave of frequency beyond what is
-        stated: panel tables of ship models.
-    added_mass_per_speed, damping_per_speed
-        The same where the carriage's speed is doubled: tests at several Froude numbers.
-    mass_relative, inertia_relative, cg_m
-        Of the model's mass, inertia and centre of gravity.
-    gain_relative, zero_n
-        Of each dynamometer.
-    eccentricity_m, strut_phase_rad
-        Of each strut's eccentricity and of the phase between them, the same in all runs.
-    photocell_angle_rad
-        Of the photocell's mark.
-    frequency_relative
-        Of each run's frequency, which is measured besides.
-    pulse_scatter_rad
-        By which the photocell's pulses scatter on any rig; not a tolerance but a belief.
-    reference_rad
-        Of each run's phase reference: pulses that scatter, a shaft that does not turn quite evenly.
-    carriage_speed_relative
-        Of the carriage's mean speed.
-    displacement_gain_relative
-        Of each strut's displacement sensor.
+    The defaults are a good rig's: what stays within them is no gap. Of each field the metadata have
+    its unit, what it is of, and where the default comes from.
+
+    Raises
+    ------
+    ConfigurationError
+        If one is negative.
     """
 
-    added_mass_relative: float = 0.2
-    damping_relative: float = 0.3
-    restoring_relative: float = 0.02
-    coupling_relative: float = 0.1
-    added_mass_per_octave: float = 0.05
-    damping_per_octave: float = 0.05
-    added_mass_per_speed: float = 0.03
-    damping_per_speed: float = 0.1
-    mass_relative: float = 0.002
-    inertia_relative: float = 0.01
-    cg_m: float = 0.001
-    gain_relative: float = 0.001
-    zero_n: float = 0.05
-    eccentricity_m: float = 2e-5
-    strut_phase_rad: float = 1e-3
-    photocell_angle_rad: float = 1e-3
-    frequency_relative: float = 1e-4
-    pulse_scatter_rad: float = 2e-4
-    reference_rad: float = 1e-4
-    carriage_speed_relative: float = 1e-3
-    displacement_gain_relative: float = 5e-4
+    added_mass_relative: float = _usual(0.2, "1", "added mass", "strip theory against tests")
+    damping_relative: float = _usual(0.3, "1", "damping", "strip theory against tests")
+    restoring_relative: float = _usual(0.02, "1", "restoring", "hydrostatics of a built model")
+    coupling_relative: float = _usual(
+        0.1, "1", "couplings, of the root of the diagonal terms' product", "strip theory"
+    )
+    added_mass_per_octave: float = _usual(
+        0.05,
+        "1/octave",
+        "smooth change of added mass with frequency",
+        "panel tables of ship models",
+    )
+    damping_per_octave: float = _usual(
+        0.05, "1/octave", "smooth change of damping with frequency", "panel tables of ships"
+    )
+    added_mass_per_speed: float = _usual(
+        0.03, "1", "change of added mass as the speed is doubled", "tests at several Froude numbers"
+    )
+    damping_per_speed: float = _usual(
+        0.1, "1", "change of damping as the speed is doubled", "tests at several Froude numbers"
+    )
+    mass_relative: float = _usual(0.002, "1", "mass of the model", "scales of a workshop")
+    inertia_relative: float = _usual(0.01, "1", "inertia of the model", "swing and bifilar tests")
+    cg_m: float = _usual(0.001, "m", "centre of gravity, either way", "knife edge")
+    gain_relative: float = _usual(0.001, "1", "gain of each dynamometer", "calibration, class 0.1")
+    zero_n: float = _usual(0.05, "N", "zero of each dynamometer", "0.01 % of 500 N")
+    eccentricity_m: float = _usual(2e-5, "m", "eccentricity of each strut", "setting by gauge")
+    strut_phase_rad: float = _usual(1e-3, "rad", "phase between the struts", "index of the crank")
+    photocell_angle_rad: float = _usual(1e-3, "rad", "mark of the photocell", "setting by eye")
+    frequency_relative: float = _usual(1e-4, "1", "frequency of each run", "quartz and encoder")
+    pulse_scatter_rad: float = _usual(
+        2e-4, "rad", "scatter of the pulses of any rig: a belief", "slotted discs"
+    )
+    reference_rad: float = _usual(
+        1e-4, "rad", "phase reference of each run", "pulses that scatter, a shaft that is not even"
+    )
+    carriage_speed_relative: float = _usual(
+        1e-3, "1", "mean speed of the carriage, alike in all runs", "ITTC 7.5-02-06-02: 0.1 %"
+    )
+    displacement_gain_relative: float = _usual(
+        5e-4, "1", "gain of each displacement sensor", "magnetostrictive sensors: 0.05 %"
+    )
+    ripple_1_relative: float = _usual(
+        2.5e-4, "1", "speed ripple once a revolution, each phase", "servo drives: 5e-4 at most"
+    )
+    ripple_2_relative: float = _usual(
+        2.5e-4, "1", "speed ripple twice a revolution, each phase", "servo drives: 5e-4 at most"
+    )
+    load_ripple_1_kg_m2: float = _usual(
+        1e-3, "1/(kg m2)", "give of the shaft under load: one over what turns with it",
+        "geared drives: 500 kg m2 and more at the crank",
+    )  # fmt: skip
+    warming_k_h: float = _usual(
+        0.1, "K/h", "warming of gauges and water over the campaign", "tank halls: 1 K a day"
+    )
+    warming_n_s: float = _usual(
+        1e-4, "N/s", "drift of each zero, alike in each record", "bridges that are warm: 0.4 N/h"
+    )
+    wander_n: float = _usual(
+        0.005, "N", "wander of each zero, where zero runs do not tell it", "0.001 % of 500 N"
+    )
+    wander_s: float = _usual(100.0, "s", "time over which it wanders", "air conditioning")
+    carriage_relative: float = _usual(
+        1e-3, "1", "unevenness of the carriage's speed in a run", "ITTC 7.5-02-06-02: 0.1 %"
+    )
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    @property
+    def wander(self) -> tuple[float, float]:
+        """Wander of each zero: in N, and as a random walk in N per root s."""
+        return self.wander_n, self.wander_n * math.sqrt(2.0 / max(self.wander_s, 1e-9))
 
     def __post_init__(self) -> None:
         faults = [
@@ -70,5 +103,7 @@ class Tolerances:
             for one in fields(self)
             if not getattr(self, one.name) >= 0.0
         ]
+        if self.wander_n > 0.0 and self.wander_s == 0.0:
+            faults.append("tolerances.wander_s = 0 must be above 0 where wander_n is")
         if faults:
             raise ConfigurationError("; ".join(faults))

@@ -20,7 +20,9 @@ _EFFICIENCY = 0.37  # of the median deviation, for a normal distribution
 _FOR_SLOPE = 4  # records: of three the median slope goes through two
 
 
-def wander(rig: SimulatedRig, runs: Sequence[GapRun]) -> dict[str, tuple[float, float]]:
+def wander(
+    rig: SimulatedRig, runs: Sequence[GapRun], usual: tuple[float, float] = (0.0, 0.0)
+) -> dict[str, tuple[float, float]]:
     """Return how far each force's zero wanders, from the campaign's records at rest.
 
     A zero that is off, or drifts evenly over the campaign, is an effect and no wander; so is a
@@ -28,18 +30,23 @@ def wander(rig: SimulatedRig, runs: Sequence[GapRun]) -> dict[str, tuple[float, 
     counts, and from four records in one medium on a median slope over the campaign's time (Theil
     and Sen) is taken out first.
 
+    Parameters
+    ----------
+    usual
+        What is taken where there are fewer than two records, as what is returned.
+
     Returns
     -------
     dict
         By channel, the standard deviation about that line, in N, and what a random walk with it
-        makes of a root of a second, in N per root s. Channels whose zeros say nothing are not in
-        it: there are too few, or they scatter as their own noise does.
+        makes of a root of a second, in N per root s. Channels whose zeros scatter as their own
+        noise does are not in it.
     """
     still = [run for run in runs if not run.turns and run.applied is None]
     found = {}
     for channel in FORCES:
         seen = [run for run in still if math.isfinite(run.observed.value(channel, Part.MEAN))]
-        wandering = _about_line(rig, seen, channel)
+        wandering = _about_line(rig, seen, channel) if len(seen) > 1 else usual
         if wandering:
             found[channel] = wandering
     return found
@@ -48,8 +55,6 @@ def wander(rig: SimulatedRig, runs: Sequence[GapRun]) -> dict[str, tuple[float, 
 def _about_line(
     rig: SimulatedRig, runs: Sequence[GapRun], channel: str
 ) -> tuple[float, float] | None:
-    if len(runs) < 2:
-        return None
     told = [_component(run, steady_at_rest(rig, run.set_point, run), channel) for run in runs]
     zeros = np.array([run.observed.value(channel, Part.MEAN) for run in runs]) - told
     own = np.array([_component(run, run.observed.uncertainty, channel) for run in runs])

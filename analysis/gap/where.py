@@ -7,8 +7,8 @@ the forces, with the measured motion fed to the model, comes from behind.
 """
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.effects.effect import StageName
 
+FAR: Final = 3.0  # tolerances, beyond which a number is said to be off
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
 
 
@@ -41,6 +42,9 @@ class Gap:
         As ``rms``, of the simulation as it is stated, with no number free; NaN where nobody asked.
     tells
         False where u is so wide that the gap would not show with the simulated input either.
+    strained
+        Free numbers that have to be off by more than three tolerances for it to be so small, with
+        by how many.
     """
 
     what: str
@@ -49,6 +53,12 @@ class Gap:
     worst: str
     stated: float = math.nan
     tells: bool = True
+    strained: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def off(self) -> bool:
+        """Whether more differs than noise and the tolerances of what is free let expect."""
+        return self.beyond or bool(self.strained)
 
     @property
     def beyond(self) -> bool:
@@ -76,7 +86,7 @@ class Walk:
     @property
     def stages(self) -> tuple[StageName, ...]:
         """Stages that the walk leaves as the gap's place, from upstream down."""
-        beyond = {one.what for one in self.steps if one.beyond}
+        beyond = {one.what for one in self.steps if one.off}
         if CARRIAGE in beyond:
             return (StageName.CARRIAGE,)
         if self.comes_with_the_shaft:
@@ -95,8 +105,9 @@ class Walk:
         behind, by_shaft = (MOTION, MOTION_FED) if MOTION in steps else (FORCE, FORCE_BY_SHAFT)
         if not {SHAFT, behind, by_shaft} <= steps.keys():
             return False
-        off = steps[SHAFT].beyond and steps[behind].beyond
-        return off and steps[by_shaft].tells and not steps[by_shaft].beyond
+        # What a ripple out of its tolerance explains all along the chain is no gap further down.
+        off = steps[SHAFT].strained or (steps[SHAFT].off and steps[behind].off)
+        return bool(off) and steps[by_shaft].tells and not steps[by_shaft].beyond
 
 
 CARRIAGE: Final = "carriage"
@@ -120,12 +131,12 @@ _FED: Final = (
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
     stack, whole = problem.simulator.stack, problem.stated
-    left = left_by_step(problem, problem.residual)
+    left, off = left_by_step(problem, problem.residual), strained(problem, problem.stated)
     steps = []
     for what in CHAIN:
         rows = _of_step(stack.components, what)
         if rows.any():
-            plain = gap_of(stack, left, what, rows, whole)
+            plain = replace(gap_of(stack, left, what, rows, whole), strained=off[what])
             steps += [plain, *_with_measured(problem, plain, what, rows)]
     return Walk(tuple(steps), tuple(_contrasts(problem, left)))
 
@@ -148,20 +159,43 @@ def remaining(problem: Problem, residual: FloatArray) -> FloatArray:
 
 
 def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
-    """Return what the free numbers leave, each step judged by itself and those upstream of it.
+    """Return what the free numbers leave, each step judged by itself and those upstream of it."""
+    found = np.zeros_like(residual)
+    for _, own, units in _fitted_by_step(problem, residual):
+        found[own] = residual[own] - problem.nuisances.columns[own] @ units
+    return found
+
+
+def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, float]]:
+    """Return which free numbers each step pulls beyond three tolerances, and by how many they are.
+
+    A number counts where it is pulled so far first.
+    """
+    seen, found = set[str](), {}
+    for what, _, units in _fitted_by_step(problem, residual):
+        pulled = zip(problem.free, units.tolist(), strict=False)
+        far = {name: unit for name, unit in pulled if abs(unit) > FAR and name not in seen}
+        seen |= far.keys()
+        found[what] = far
+    return found
+
+
+def _fitted_by_step(
+    problem: Problem, residual: FloatArray
+) -> Iterator[tuple[str, BoolArray, FloatArray]]:
+    """Yield each step with its rows, and what fits it and those upstream of it, in tolerances.
 
     Fitted to everything at once, the settings of the drive would take up what the forces show, and
     the strut's motion would seem to deviate.
     """
     parts = problem.simulator.stack.components
-    found, upstream = np.zeros_like(residual), np.zeros(len(parts), dtype=bool)
+    upstream = np.zeros(len(parts), dtype=bool)
     for what in CHAIN:
         own = _of_step(parts, what)
-        upstream |= own
-        part = problem.nuisances.among(upstream)
-        fitted = part.fitted(residual[upstream])
-        found[own] = residual[own] - problem.nuisances.columns[own] @ fitted
-    return found
+        if own.any():
+            upstream |= own
+            part = problem.nuisances.among(upstream)
+            yield what, own, part.fitted(residual[upstream])
 
 
 CHAIN: Final = (CARRIAGE, SHAFT, TIMING, MOTION, FORCE, BESIDE)

@@ -38,6 +38,7 @@ class GapDiagnoseOptions(Looks):
     plan: str | None
     jobs: int | None
     scheduler: str | None
+    tolerances: bool
     as_json: bool
 
 
@@ -52,6 +53,9 @@ def run(request: GapDiagnoseOptions) -> None:
         If too few runs can be used.
     """
     _check_files(request)
+    if request.tolerances:
+        _print_tolerances(request)
+        return
     found = examined(request)
     report = gap_report(found)
     told = document(report)
@@ -73,6 +77,16 @@ def run(request: GapDiagnoseOptions) -> None:
     tell_unchecked(_read_files(found, campaign_file(Path(request.campaign)).parent))
     if tell_damaged(found.ready.damaged.items()):
         click.get_current_context().exit(1)
+
+
+def _print_tolerances(request: GapDiagnoseOptions) -> None:
+    from pmm.gap.tolerance_document import tolerance_document
+
+    told = tolerance_document(Path(request.campaign), request.options)
+    if request.as_json:
+        click.echo(as_json(told))
+    else:
+        print_document(output(), told)
 
 
 def _read_files(found: Examined, folder: Path) -> Iterator[Path]:

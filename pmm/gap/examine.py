@@ -15,8 +15,7 @@ from analysis.gap.description import Description, describe
 from analysis.gap.diagnose import Diagnosis, diagnose
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
-from analysis.gap.free import Free, columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import Free, free_numbers, tolerated
 from analysis.gap.inference.answers import NONE
 from analysis.gap.marginal import Marginal, marginals
 from analysis.gap.noise import pooled
@@ -128,7 +127,7 @@ class Examined:
     def conclusion(self) -> Conclusion:
         """What all of it comes to: whoever says something of this campaign says it from here."""
         problem, weighing = self.diagnosis.problem, self._weighing()
-        steps, verdict = walk_rows(problem, self.diagnosis.walk), verdict_of(weighing)
+        steps, verdict = walk_rows(self.diagnosis.walk), verdict_of(weighing)
         left = problem.residual - self._explained(verdict)
         return Conclusion(verdict, weighing, steps, tuple(remains(problem, left)))
 
@@ -234,10 +233,13 @@ def _joint(
     tolerances: Tolerances,
 ) -> Problem:
     """Return the problem over fitting and withheld runs, of what repeats with the shaft."""
-    runs = [repeating_only(run) for run in pooled([*fitted, *withheld], problem.simulator.rig)]
+    runs = [
+        repeating_only(run)
+        for run in pooled([*fitted, *withheld], problem.simulator.rig, tolerances)
+    ]
     old = problem.simulator
     simulator = Simulator(old.rig, Stack.of(runs), old.on, old.reference_channel)
-    return Problem(simulator, Nuisances(columns(simulator, free, tolerances)), problem.free)
+    return Problem(simulator, tolerated(simulator, free, tolerances))
 
 
 def _foretold(

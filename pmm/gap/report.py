@@ -11,7 +11,7 @@ from analysis.gap.marginal import Marginal
 from analysis.gap.propose import Proposal
 from analysis.gap.twins import coefficient_error, separating_measurements
 from analysis.gap.verdict import coefficient_shift, coefficient_twins
-from analysis.gap.where import left_by_step
+from analysis.gap.where import FAR, left_by_step
 from analysis.gap.withheld import Predicted, gap_of, shrinkage
 from hardware.description.arrays import FloatArray
 from pmm.gap.answer import effect_rows, next_run
@@ -23,7 +23,7 @@ from pmm.gap.hull_report import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
-from pmm.gap.steps import FAR, StepRow, step_row
+from pmm.gap.steps import StepRow, step_row
 from pmm.gap.words import Remedies, joined, sentences
 
 _SHOWN: Final = 8  # hypotheses of the ranking

@@ -1,17 +1,13 @@
 """The walk along the chain as rows: the difference step by step, and what an answer leaves."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Final
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from analysis.gap.fit import Problem
-from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of
+from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of, strained
 from hardware.description.arrays import FloatArray
-
-FAR: Final = 3.0  # tolerances, beyond which a number is said to be off
 
 
 @dataclass(frozen=True)
@@ -61,17 +57,15 @@ class StepRow:
         return "; ".join([self.worst, *off])
 
 
-def step_row(one: Gap, strained: Mapping[str, float] = MappingProxyType({})) -> StepRow:
+def step_row(one: Gap) -> StepRow:
     """Return a part of the difference as a row."""
-    return StepRow(
-        one.what, one.rms, one.count, one.beyond, one.worst, one.stated, one.tells, dict(strained)
-    )
+    told = dict(one.strained)
+    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated, one.tells, told)
 
 
-def walk_rows(problem: Problem, walk: Walk) -> tuple[StepRow, ...]:
+def walk_rows(walk: Walk) -> tuple[StepRow, ...]:
     """Return the steps of a walk."""
-    out = strained(problem, problem.stated)
-    return tuple(step_row(one, out.get(one.what, {})) for one in walk.steps)
+    return tuple(step_row(one) for one in walk.steps)
 
 
 def remains(problem: Problem, residual: FloatArray) -> Iterator[StepRow]:
@@ -82,24 +76,4 @@ def remains(problem: Problem, residual: FloatArray) -> Iterator[StepRow]:
     for what in CHAIN:
         rows = np.array([step_of(one) == what for one in stack.components])
         if rows.any():
-            yield step_row(gap_of(stack, left, what, rows), out[what])
-
-
-def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, float]]:
-    """Return which free numbers each step pulls beyond three tolerances, and by how many they are.
-
-    Each step is fitted with those upstream of it, as the walk does; a number counts where it is
-    pulled so far first.
-    """
-    steps = np.array([step_of(one) for one in problem.simulator.stack.components])
-    upstream, seen = np.zeros(len(steps), dtype=bool), set[str]()
-    found: dict[str, dict[str, float]] = {}
-    for what in CHAIN:
-        if (steps == what).any():
-            upstream |= steps == what
-            units = problem.nuisances.among(upstream).fitted(residual[upstream])
-            pulled = zip(problem.free, units.tolist(), strict=False)
-            far = {name: unit for name, unit in pulled if abs(unit) > FAR and name not in seen}
-            seen |= far.keys()
-            found[what] = far
-    return found
+            yield step_row(replace(gap_of(stack, left, what, rows), strained=out[what]))

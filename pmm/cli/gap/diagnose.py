@@ -15,12 +15,18 @@ from pmm.cli.gap_options import looks
 @click.option("--plan", metavar="FILE.toml", help="Write the proposed runs as a plan for pmm run.")
 @jobs_option("one for each core")
 @scheduler_option
+@click.option(
+    "--tolerances",
+    is_flag=True,
+    help="Print what may be off without a gap, and by how much it is, in place of a diagnosis.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
 def diagnose(**options: Any) -> None:
     """Say where rig and simulation differ, which effect causes it, and how far the gap shrinks.
 
-    CAMPAIGN is a folder with a campaign.toml and a recording per run; a case.toml beside it may say
-    tolerances and what the rig can do next (docs/gap.md). "No gap" is an answer.
+    CAMPAIGN is a folder with a campaign.toml and a recording per run. Either the file or a
+    case.toml beside it may say tolerances, the latter also what the rig can do next (docs/gap.md).
+    "No gap" is an answer.
 
     \b
     pmm gap my-campaign --hold-out frequency=1.1 --page gap.html

@@ -7,8 +7,7 @@ from dataclasses import replace
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.forward import Simulator
-from analysis.gap.free import columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import free_numbers, tolerated
 from analysis.gap.noise import pooled
 from analysis.gap.observe import observe
 from analysis.gap.tolerances import Tolerances
@@ -76,7 +75,7 @@ def problem_of(
     """Return the problem that a diagnosis holds its hypotheses against."""
     tolerances = Tolerances()
     free = free_numbers(rig, tolerances)
-    stack = Stack.of(pooled(runs, rig))
+    stack = Stack.of(pooled(runs, rig, tolerances))
     simulator = Simulator(rig, stack, reference_channel=reference_channel)
-    nuisances = Nuisances(columns(simulator, free, tolerances))
-    return Problem(simulator, nuisances, tuple(one.name for one in free))
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances)

@@ -6,8 +6,7 @@ import pytest
 from analysis.gap.components import Component, Part, Stack
 from analysis.gap.fit import Problem, most_probable
 from analysis.gap.forward import DRAWS, Simulator
-from analysis.gap.free import columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import free_numbers, tolerated
 from analysis.gap.look import look
 from analysis.gap.noise import pooled
 from analysis.gap.powers import grown
@@ -23,9 +22,9 @@ def _problem(rig: SimulatedRig, jitter_rad: float, seed: int) -> Problem:
     tolerances, free = Tolerances(), free_numbers(rig, Tolerances())
     runs = record(rig, (TriggerJitter(jitter_rad),) if jitter_rad else (), seed)
     usual = (TriggerJitter(tolerances.pulse_scatter_rad),)
-    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), usual)
-    nuisances = Nuisances(columns(simulator, free, tolerances))
-    return Problem(simulator, nuisances, tuple(one.name for one in free))
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig, tolerances)), usual)
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances)
 
 
 @pytest.mark.parametrize("share", [0.1, 1.0, 5.0])
@@ -44,7 +43,7 @@ def test_a_trend_grows_with_the_size() -> None:
 def test_trends_of_few_periods_have_no_heavy_tails(rig: SimulatedRig) -> None:
     found = []
     for seed in range(3, 6):
-        for run in pooled(record(rig, (), seed), rig):
+        for run in pooled(record(rig, (), seed), rig, Tolerances()):
             at = [n for n, one in enumerate(run.observed.components) if one.part is Part.TREND]
             found += list(run.observed.values[at] / run.observed.uncertainty[at])
     records = (1.0 + 1.0 / DRAWS) ** 0.5

@@ -11,8 +11,8 @@ from analysis.gap.candidate import Candidate, candidates
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.fit import Problem, at
 from analysis.gap.forward import Simulator
-from analysis.gap.free import columns, free_numbers, with_coefficients
-from analysis.gap.gaussian import Nuisances, left_over
+from analysis.gap.free import free_numbers, tolerated, with_coefficients
+from analysis.gap.gaussian import left_over
 from analysis.gap.look import look, smaller
 from analysis.gap.noise import pooled
 from analysis.gap.prefix import Solved
@@ -150,7 +150,7 @@ def test_pulses_quieter_than_believed_are_no_gap(
     for change, zero in ((-3.0, True), (3.0, False)):
         values = stack.values + np.where(pulses, change, 0.0)
         simulator = replace(problem.simulator, stack=replace(stack, values=values))
-        residual = Problem(simulator, problem.nuisances, problem.free).residual
+        residual = Problem(simulator, problem.nuisances).residual
         assert (not residual[pulses].any()) is zero
 
 
@@ -193,10 +193,10 @@ def _scattering(
 ) -> Problem:
     """Return the problem of a rig whose pulses scatter as the campaign's do."""
     on = (build(f"trigger-jitter:jitter_rad={tolerances.pulse_scatter_rad}"),)
-    simulator = Simulator(rig, Stack.of(pooled(runs, rig)), on)
+    simulator = Simulator(rig, Stack.of(pooled(runs, rig, tolerances)), on)
     free = free_numbers(rig, tolerances)
-    nuisances = Nuisances(columns(simulator, free, tolerances))
-    return Problem(simulator, nuisances, tuple(one.name for one in free))
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances)
 
 
 def _units(candidate: Candidate, value: float) -> float:

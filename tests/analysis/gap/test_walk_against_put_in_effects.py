@@ -10,7 +10,6 @@ from analysis.gap.components import GapRun, Part
 from analysis.gap.fed import MEASURED_MOTION, MEASURED_SHAFT, Fed, fed
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.where import (
-    FORCE,
     FORCE_BY_SHAFT,
     FORCE_FED,
     MOTION,
@@ -60,12 +59,16 @@ def beyond(found: Walk) -> Mapping[str, bool]:
     return {one.what: one.beyond for one in found.steps}
 
 
+def strained(found: Walk, what: str) -> Mapping[str, float]:
+    (step,) = (one for one in found.steps if one.what == what)
+    return step.strained
+
+
 def test_a_ripple_of_the_shaft_goes_where_the_measured_shaft_is_fed(rig: SimulatedRig) -> None:
     found = walked(rig, RIPPLE)
     seen = beyond(found)
-    assert seen[SHAFT]
-    assert seen[MOTION]
-    assert seen[FORCE]
+    assert "ripple 1 sine" in strained(found, SHAFT)
+    assert not strained(found, MOTION)  # the same ripple: said once, where it comes in
     assert not seen[MOTION_FED]
     assert not seen[FORCE_FED]
     assert FORCE_BY_SHAFT not in seen
@@ -85,7 +88,7 @@ def test_a_rod_in_place_of_a_yoke_stays_where_the_measured_shaft_is_fed(
 
 def test_without_struts_sensors_the_measured_shaft_is_fed_to_the_forces(rig: SimulatedRig) -> None:
     ripple = walked(rig, RIPPLE, DISPLACEMENTS)
-    assert beyond(ripple)[FORCE]
+    assert strained(ripple, SHAFT)
     assert not beyond(ripple)[FORCE_BY_SHAFT]
     assert ripple.stages == (StageName.DRIVE,)
     friction = walked(rig, "coulomb-friction:friction_n=0.3", DISPLACEMENTS)
@@ -118,7 +121,7 @@ def test_the_measured_frequency_takes_the_place_of_the_one_that_was_set(rig: Sim
     """With no number free: inertia goes with the square of the frequency, stiffness does not."""
     runs = record(rig, [build("frequency-error:relative=0.004")], 43)
     whole = problem_of(rig, runs)
-    fixed = replace(whole, nuisances=Nuisances(np.zeros((len(whole.residual), 0))), free=())
+    fixed = replace(whole, nuisances=Nuisances(np.zeros((len(whole.residual), 0))))
     components = whole.simulator.stack.components
     parts = (Part.IN_PHASE, Part.QUADRATURE)
     forces = np.array([one.channel in FORCES and one.part in parts for one in components])
@@ -142,7 +145,7 @@ def test_a_force_as_phase_reference_is_that_of_the_fed_chain(rig: SimulatedRig) 
     points = [one for one in POINTS if not one.strut_phase_rad]
     runs = record(blind, [build(RIPPLE)], 44, points, FORCES[0])
     found = walk(problem_of(blind, runs, FORCES[0]))
-    assert beyond(found)[FORCE]
+    assert strained(found, SHAFT)
     assert not beyond(found)[FORCE_BY_SHAFT]
 
 

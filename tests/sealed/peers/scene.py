@@ -17,8 +17,7 @@ from analysis.gap.components import Component, GapRun, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.forecast import forecast, further, planned
 from analysis.gap.forward import Simulator
-from analysis.gap.free import columns, free_numbers
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.free import free_numbers, tolerated
 from analysis.gap.noise import pooled
 from hardware.description.arrays import FloatArray
 from pmm.campaign.file_names import CAMPAIGN_FILE
@@ -79,11 +78,11 @@ def _as_stack(one: Remainder) -> Stack:
 def scene(folder: Path) -> Scene:
     """Return what a peer sees of a case; the last one is kept, as peers answer in turn."""
     loaded, case = load_campaign(folder), read_case(folder / CAMPAIGN_FILE)
-    stack = Stack.of(pooled(loaded.runs, loaded.rig))
+    stack = Stack.of(pooled(loaded.runs, loaded.rig, case.tolerances))
     simulator = Simulator(loaded.rig, stack, (), loaded.reference_channel)
     free = free_numbers(loaded.rig, case.tolerances)
-    nuisances = Nuisances(columns(simulator, free, case.tolerances))
-    problem = Problem(simulator, nuisances, tuple(one.name for one in free))
+    nuisances = tolerated(simulator, free, case.tolerances)
+    problem = Problem(simulator, nuisances)
     left = problem.residual - nuisances.columns @ nuisances.fitted(problem.residual)
     runs = [planned(problem, one.set_point, at) for at, one in enumerate(case.held_out)]
     there = further(problem, runs, free, case.tolerances)
