@@ -16,26 +16,16 @@ help:
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
-$(VENV)/.user: pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast]"
-	@touch $@
-
-$(VENV)/.dev: $(VENV)/.user
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev]"
-	@touch $@
-
-$(VENV)/.docs: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,docs]"
-	@touch $@
-
-$(VENV)/.bench: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,bench]"
-	@touch $@
-
-$(VENV)/.sealed: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,peers]"
-	@touch $@
+# One run of pip each; it marks the smaller installations that it includes as done.
+$(VENV)/.user: EXTRAS := fast
+$(VENV)/.dev: EXTRAS := fast,dev
+$(VENV)/.docs: EXTRAS := fast,dev,docs
+$(VENV)/.bench: EXTRAS := fast,dev,bench
+$(VENV)/.sealed: EXTRAS := fast,dev,peers
+$(VENV)/.user $(VENV)/.dev $(VENV)/.docs $(VENV)/.bench $(VENV)/.sealed: pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
+	@touch $(VENV)/.user $(if $(findstring dev,$(EXTRAS)),$(VENV)/.dev) $@
 
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo
