@@ -4,13 +4,14 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test coverage lint docs bench sealed clean
+.PHONY: help demo test coverage lint pages docs bench sealed clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
 	@echo "make test   install and run the tests"
 	@echo "make coverage  run the tests, say which lines they run; .coverage says by which test"
 	@echo "make lint   formatting, types, imports"
+	@echo "make pages  write the pages that are made from the code, once it has changed"
 	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
@@ -48,11 +49,13 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# Effects, errors, plan checks and gallery are made from the code; tests hold them to it.
-docs: $(VENV)/.docs
+# Effects, errors and plan checks are made from the code; tests hold them to it.
+pages: $(VENV)/.dev
 	$(BIN)/python docs/effects.py
 	$(BIN)/python docs/errors.py
 	$(BIN)/python docs/plan_checks.py
+
+docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs site
 
 bench: $(VENV)/.bench
