@@ -4,38 +4,29 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test coverage lint docs bench sealed clean
+.PHONY: help demo test coverage lint pages docs bench sealed clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
 	@echo "make test   install and run the tests"
 	@echo "make coverage  run the tests, say which lines they run; .coverage says by which test"
 	@echo "make lint   formatting, types, imports"
+	@echo "make pages  write the pages that are made from the code, once it has changed"
 	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
-$(VENV)/.user: pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast]"
-	@touch $@
-
-$(VENV)/.dev: $(VENV)/.user
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev]"
-	@touch $@
-
-$(VENV)/.docs: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,docs]"
-	@touch $@
-
-$(VENV)/.bench: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,bench]"
-	@touch $@
-
-$(VENV)/.sealed: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[fast,dev,peers]"
-	@touch $@
+# One run of pip each; it marks the smaller installations that it includes as done.
+$(VENV)/.user: EXTRAS := fast
+$(VENV)/.dev: EXTRAS := fast,dev
+$(VENV)/.docs: EXTRAS := fast,dev,docs
+$(VENV)/.bench: EXTRAS := fast,dev,bench
+$(VENV)/.sealed: EXTRAS := fast,dev,peers
+$(VENV)/.user $(VENV)/.dev $(VENV)/.docs $(VENV)/.bench $(VENV)/.sealed: pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
+	@touch $(VENV)/.user $(if $(findstring dev,$(EXTRAS)),$(VENV)/.dev) $@
 
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo
@@ -58,11 +49,13 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# Effects, errors, plan checks and gallery are made from the code; tests hold them to it.
-docs: $(VENV)/.docs
+# Effects, errors and plan checks are made from the code; tests hold them to it.
+pages: $(VENV)/.dev
 	$(BIN)/python docs/effects.py
 	$(BIN)/python docs/errors.py
 	$(BIN)/python docs/plan_checks.py
+
+docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs site
 
 bench: $(VENV)/.bench

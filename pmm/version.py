@@ -12,10 +12,15 @@ _PACKAGES: Final = ("numpy", "scipy", "h5netcdf", "matplotlib")
 _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 
 
+def program() -> str:
+    """Return name and version."""
+    return f"pmm {version_of('pmm')}"
+
+
 def version_line() -> str:
     """Return version, commit where it is known, Python, the system, and the libraries' versions."""
     commit = _commit()
-    built = f"pmm {version_of('pmm')}" + (f" ({commit})" if commit else "")
+    built = program() + (f" ({commit})" if commit else "")
     libraries = ", ".join(f"{name} {version_of(name)}" for name in _BESIDE)
     system = f"{platform.system()} {platform.machine()}"
     return f"{built}, Python {platform.python_version()}, {system}, {libraries}"

@@ -70,7 +70,7 @@ def _analyse(folder: Path) -> None:
     """Read each run's recording and resolve it."""
     from analysis.resolver.analysis import analyse
     from pmm.campaign.campaign import Campaign
-    from pmm.cli.inputs import find_sources, read_source
+    from pmm.harmonics.sources import find_sources, read_source
 
     refused: PmmError | None = None
     for source in find_sources([str(folder)]).sources:

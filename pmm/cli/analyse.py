@@ -1,57 +1,51 @@
 """``pmm analyse``: recordings in, harmonics with their intervals out."""
 
 import math
-from typing import Any
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-DEFAULT_LEVEL = 0.95  # probability of the intervals
+from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
 
-_POSITIVE = click.FloatRange(min=0.0, min_open=True)
+    from analysis.resolver.analysis import Analysis
+    from pmm.harmonics.request import HarmonicsRequest
+    from pmm.harmonics.resolving import Failure, Resolved
+    from pmm.harmonics.sources import Source
+
 _COUNT = click.IntRange(min=1)
 
 
-def _finite(
-    ctx: click.Context,  # noqa: ARG001
-    param: click.Parameter,  # noqa: ARG001
-    value: float | None,
-) -> float | None:
-    if value is not None and not math.isfinite(value):
-        raise click.BadParameter(f"{value} is not a finite number.")
-    return value
+class _Finite(click.FloatRange):
+    """A number that is no infinity and not NaN; positive unless it may be any."""
+
+    def __init__(self, *, positive: bool = True) -> None:
+        super().__init__(min=0.0 if positive else None, min_open=positive)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number."""
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{number} is not a finite number.", param, ctx)
+        return number
 
 
-def _probability(ctx: click.Context, param: click.Parameter, value: float) -> float:
-    _finite(ctx, param, value)
-    if 0.0 < value < 1.0:
-        return value
-    per_cent = f"; for {value:g} % write {value / 100.0:g}" if 1.0 < value < 100.0 else ""
-    raise click.BadParameter(f"{value:g} is no probability between 0 and 1{per_cent}.")
-
-
-def _all_finite(
-    ctx: click.Context, param: click.Parameter, values: tuple[float, ...]
-) -> tuple[float, ...]:
-    for value in values:
-        _finite(ctx, param, value)
-    return values
+_ANY, _POSITIVE = _Finite(positive=False), _Finite()
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--reference", metavar="CHANNEL", help="Take the phase from this channel.")
-@click.option(
-    "--frequency", type=_POSITIVE, callback=_finite, metavar="HZ", help="Take a known frequency."
-)
+@click.option("--frequency", type=_POSITIVE, metavar="HZ", help="Take a known frequency.")
 @click.option("--edges", metavar="FILE", help="Times of the photocell's edges, a column of text.")
-@click.option(
-    "--latency", type=float, callback=_finite, metavar="S", help="Delay of the photocell's pulses."
-)
+@click.option("--latency", type=_ANY, metavar="S", help="Delay of the photocell's pulses.")
 @click.option(
     "--angle-offset",
-    type=float,
-    callback=_finite,
+    type=_ANY,
     metavar="DEG",
     help="Shaft angle at the photocell's mark.",
 )
@@ -68,8 +62,7 @@ def _all_finite(
 )
 @click.option(
     "--opens-at",
-    type=float,
-    callback=_finite,
+    type=_ANY,
     metavar="S",
     help="Open the first gate at this time.  [default: where the run is steady]",
 )
@@ -77,14 +70,12 @@ def _all_finite(
 @click.option(
     "--steady-tolerance",
     type=_POSITIVE,
-    callback=_finite,
     metavar="X",
     help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
 )
 @click.option(
     "--let-through",
     type=_POSITIVE,
-    callback=_all_finite,
     multiple=True,
     metavar="HZ",
     help="Tell how much of a vibration of this frequency gets into each harmonic; repeatable.",
@@ -95,14 +86,12 @@ def _all_finite(
 @click.option(
     "--carrier",
     type=_POSITIVE,
-    callback=_finite,
     metavar="HZ",
     help="Detect the channels given with --channel from a carrier first.",
 )
 @click.option(
     "--bandwidth",
     type=_POSITIVE,
-    callback=_finite,
     metavar="HZ",
     help="Keep signals up to here of those on a carrier.  [default: 50]",
 )
@@ -124,7 +113,6 @@ def _all_finite(
 @click.option(
     "--sample-rate",
     type=_POSITIVE,
-    callback=_finite,
     metavar="HZ",
     help="In place of a time column.",
 )
@@ -137,16 +125,16 @@ def _all_finite(
 @click.option(
     "--level",
     type=float,
-    callback=_probability,
+    callback=probability,
     metavar="P",
     default=DEFAULT_LEVEL,
     show_default=True,
     help="Probability of the intervals.",
 )
-@click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG.")
+@PLOT
 @click.option("--save", metavar="FOLDER", help="Write the recordings there, as NetCDF.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of tables.")
-def analyse(**options: Any) -> None:
+@JSON
+def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: Any) -> None:
     """Resolve recordings into mean and harmonics, with uncertainty.
 
     Each FILE is a recording (.csv, .txt, .dat, plain or .gz, or .nc) or a campaign: a folder with
@@ -160,7 +148,103 @@ def analyse(**options: Any) -> None:
     Exit status: 0 done; 1 the data say no; 2 the request was wrong: an option, or the name of a
     file, folder, column or channel that cannot be. Of several, 1 if any file's data say no.
     """  # noqa: D301
-    from pmm.cli.analyse_options import AnalyseOptions
-    from pmm.cli.analysing import run
+    from pmm.cli.files import tell_damaged, tell_unchecked, tell_writers
+    from pmm.cli.screen import messages, output
+    from pmm.document.data import as_json as as_text
+    from pmm.document.terminal import print_section
+    from pmm.harmonics.request import HarmonicsRequest
+    from pmm.harmonics.resolving import Failure, doubts
+    from pmm.harmonics.sources import find_sources
+    from pmm.report.harmonics_document import analysis_document, doubt_section, run_section
 
-    run(AnalyseOptions(**options))
+    request = HarmonicsRequest(**options)
+    found = find_sources(files)
+    tell_writers(one.campaign_path for one in found.sources if one.campaign_path is not None)
+    _check(found.sources, request, plot)
+    done: list[Resolved] = []
+    failed: list[Failure] = []
+    for one in _each(found.sources, request, plot):
+        if isinstance(one, Failure):
+            failed.append(one)
+            _tell(one)
+            continue
+        done.append(one)
+        if not as_json:
+            print_section(output(), run_section(one.rows, request.level))
+    wrong, rows = tuple(doubts(done)), [one.rows for one in done]
+    if as_json:
+        told = analysis_document(rows, failed, found.not_recorded, wrong, request.level)
+        click.echo(as_text(told))
+    for path, flags in () if as_json else wrong:
+        print_section(output(), doubt_section(path, flags))
+    for path in found.not_recorded:
+        messages().print(f"not recorded yet: {path}")
+    tell_unchecked(one.source.path for one in done)
+    statuses = tell_damaged((one.file, one.flags) for one in rows)
+    if statuses := statuses + [failure.exit_status for failure in failed]:
+        click.get_current_context().exit(min(statuses))
+
+
+def _each(
+    sources: "Sequence[Source]", request: "HarmonicsRequest", plot: str | None
+) -> "Iterator[Resolved | Failure]":
+    """Resolve one run after the other; said on a terminal while it lasts.
+
+    Figures take a hundred times as long as the numbers, so several runs' are drawn by a process
+    for each core.
+    """
+    from analysis.threads import cores
+    from pmm.cli.screen import busy
+    from pmm.harmonics.resolving import resolve, untold
+    from pmm.parallel import open_executor
+
+    doing, jobs, draw = "analysing", 1, None
+    if plot is not None:
+        doing, jobs = "analysing and plotting", min(cores(), len(sources))
+        draw = partial(_draw, Path(plot))
+    with open_executor(max(1, jobs)) as executor:
+        # Of the run at hand; another process has no screen.
+        shown: list[Callable[[float], None]] = [untold]
+        tell = untold if jobs > 1 else lambda part: shown[-1](part)
+        columns = request.chosen_columns()
+        work = partial(resolve, request=request, columns=columns, draw=draw, progress=tell)
+        results = executor.map(work, sources)
+        for number, source in enumerate(sources, 1):
+            with busy(f"{doing} {source.stem}, {number} of {len(sources)}") as told:
+                shown.append(told)
+                one = next(results)
+            yield one
+
+
+def _draw(folder: Path, analysis: "Analysis", name: str) -> None:
+    from pmm.document.style import write_figures
+    from pmm.report.plots import figures
+
+    write_figures(figures(analysis), folder, name)
+
+
+def _check(sources: "Sequence[Source]", request: "HarmonicsRequest", plot: str | None) -> None:
+    """Refuse what is asked before anything is read, and where it would be written."""
+    from hardware.description.errors import ConfigurationError
+    from pmm.cli.files import check_folder
+
+    request.check(sources)
+    stems = [source.stem for source in sources]
+    for option, folder in (("--plot", plot), ("--save", request.save)):
+        if folder is None:
+            continue
+        if twice := next((stem for stem in stems if stems.count(stem) > 1), None):
+            raise ConfigurationError(
+                f"several recordings are called {twice!r}, and what is written of them would be "
+                "too; use a folder for each with --plot and --save"
+            )
+        check_folder(Path(folder), option)
+
+
+def _tell(failure: "Failure") -> None:
+    from pmm.cli.screen import error_line, messages
+    from pmm.document.terminal import print_content
+    from pmm.report.harmonics_tables import noticed
+
+    print_content(noticed(failure.flags), messages())
+    error_line(failure.said)

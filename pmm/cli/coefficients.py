@@ -1,87 +1,85 @@
 """``pmm coefficients``: a campaign's recordings in, added mass, damping and derivatives out."""
 
-import math
-from collections.abc import Callable
-from typing import Any, TypeVar
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.engine_options import DEFAULT_TRIALS, jobs_option, scheduler_option
+from pmm.cli.options import (
+    DEFAULT_TRIALS,
+    JSON,
+    PLOT,
+    SCHEDULER,
+    jobs_option,
+    probability,
+    with_options,
+)
 
+if TYPE_CHECKING:
+    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.solving import Progress
+    from pmm.coefficients.workflow import CampaignOutcome
+
+FEW_RUNS = 24  # below it starting processes costs more than they save
 SYSTEMS = ("dimensional", "prime", "mmg", "seakeeping")
 FORMS = ("manoeuvring", "seakeeping")
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def _probability(
-    ctx: click.Context,  # noqa: ARG001
-    param: click.Parameter,  # noqa: ARG001
-    value: float | None,
-) -> float | None:
-    if value is None or (math.isfinite(value) and 0.0 < value < 1.0):
-        return value
-    raise click.BadParameter(f"{value:g} is no probability between 0 and 1.")
-
-
-def shared_options(function: F) -> F:
-    """Add what ``pmm coefficients`` and ``pmm report`` have in common."""
-    options = (
-        click.argument("campaigns", nargs=-1, required=True, metavar="CAMPAIGN..."),
-        click.option(
-            "--settings",
-            metavar="TOML",
-            help="Settings file.  [default: coefficients.toml in the first campaign, if there]",
-        ),
-        click.option("--form", type=click.Choice(FORMS), help="Names and signs.  [manoeuvring]"),
-        click.option("--system", type=click.Choice(SYSTEMS), help="Units.  [dimensional]"),
-        click.option(
-            "--inertia",
-            metavar="model|dry|TOML",
-            help="What is taken off: [model] of the campaign, its dry runs, or a file of "
-            "`pmm inertia`.",
-        ),
-        click.option(
-            "--want", "wanted", multiple=True, metavar="NAME",
-            help="A coefficient that has to be there; repeatable.",
-        ),
-        click.option(
-            "--leave-out", multiple=True, metavar="RUN", help="A run not to use; repeatable."
-        ),
-        click.option(
-            "--reference", "references", multiple=True, metavar="FILE",
-            help="A table to hold the values against (CSV, NetCDF of Capytaine); repeatable.",
-        ),
-        click.option(
-            "--uncertainty",
-            type=click.Choice(("linear", "monte-carlo")),
-            help="Draw a Monte Carlo beside the linear budget.  [linear]",
-        ),
-        click.option(
-            "--trials", type=click.IntRange(min=1000), metavar="N",
-            help=f"Of the Monte Carlo.  [{DEFAULT_TRIALS}]",
-        ),
-        click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the trials.  [0]"),
-        click.option(
-            "--level", type=float, callback=_probability, metavar="P",
-            help="Probability of the intervals.  [0.95]",
-        ),
-        jobs_option("one for each core; 1 where there is little to do"),
-        scheduler_option,
-    )  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
+# What `pmm coefficients` and `pmm report` have in common.
+SHARED = with_options(
+    click.argument("campaigns", nargs=-1, required=True, metavar="CAMPAIGN..."),
+    click.option(
+        "--settings",
+        metavar="TOML",
+        help="Settings file.  [default: coefficients.toml in the first campaign, if there]",
+    ),
+    click.option("--form", type=click.Choice(FORMS), help="Names and signs.  [manoeuvring]"),
+    click.option("--system", type=click.Choice(SYSTEMS), help="Units.  [dimensional]"),
+    click.option(
+        "--inertia",
+        metavar="model|dry|TOML",
+        help="What is taken off: [model] of the campaign, its dry runs, or a file of "
+        "`pmm inertia`.",
+    ),
+    click.option(
+        "--want", "wanted", multiple=True, metavar="NAME",
+        help="A coefficient that has to be there; repeatable.",
+    ),
+    click.option(
+        "--leave-out", multiple=True, metavar="RUN", help="A run not to use; repeatable."
+    ),
+    click.option(
+        "--reference", "references", multiple=True, metavar="FILE",
+        help="A table to hold the values against (CSV, NetCDF of Capytaine); repeatable.",
+    ),
+    click.option(
+        "--uncertainty",
+        type=click.Choice(("linear", "monte-carlo")),
+        help="Draw a Monte Carlo beside the linear budget.  [linear]",
+    ),
+    click.option(
+        "--trials", type=click.IntRange(min=1000), metavar="N",
+        help=f"Of the Monte Carlo.  [{DEFAULT_TRIALS}]",
+    ),
+    click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the trials.  [0]"),
+    click.option(
+        "--level", type=float, callback=probability, metavar="P",
+        help="Probability of the intervals.  [0.95]",
+    ),
+    jobs_option("one for each core; 1 where there is little to do"),
+    SCHEDULER,
+)  # fmt: skip
 
 
 @click.command()
-@shared_options
-@click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG.")
+@SHARED
+@PLOT
 @click.option("--csv", "csv_file", metavar="FILE", help="Write the table there.")
 @click.option("--netcdf", metavar="FILE", help="Write everything there, budgets included.")
 @click.option("--simman", metavar="FOLDER", help="Write each run's SIMMAN deliverables there.")
 @click.option("--overwrite", is_flag=True, help="Replace files that are there.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of tables.")
-def coefficients(**options: Any) -> None:
+@JSON
+def coefficients(as_json: bool, **options: Any) -> None:
     """Find a campaign's coefficients, each with its interval and budget.
 
     Each CAMPAIGN is a folder with a campaign.toml and a recording per run, as `pmm run` and `pmm
@@ -96,6 +94,126 @@ def coefficients(**options: Any) -> None:
     the runs do not determine); 2 the request was wrong (missing inertia, two runs of one name,
     another geometry, an unknown name).
     """  # noqa: D301
-    from pmm.cli.coefficients_running import run
+    from pmm.cli.screen import messages, show
+    from pmm.report.coefficients_document import coefficients_document
 
-    run(options)
+    _check_outputs(options)
+    outcome, _ = analysed(options)
+    show(coefficients_document(outcome), as_json=as_json)
+    for path in _written(outcome, options):
+        messages().print(f"written: {path}")
+    finish(outcome)
+
+
+def analysed(
+    options: Mapping[str, Any], *, hashed: bool = False
+) -> "tuple[CampaignOutcome, tuple[Path, ...]]":
+    """Analyse the campaigns of a command; return the files that were read beside recordings."""
+    from pmm.campaign.file_names import CAMPAIGN_FILE
+    from pmm.cli.files import tell_writers
+    from pmm.coefficients.request import campaign_folder, finished, merged
+    from pmm.coefficients.settings import check_trials, settings_of
+    from pmm.coefficients.systems import check_dimensions
+    from pmm.coefficients.workflow import coefficients_of
+    from pmm.parallel import open_executor
+
+    folders = [campaign_folder(text) for text in options["campaigns"]]
+    tell_writers(folders)
+    base, path = settings_of(folders[0], options["settings"])
+    settings = merged(base, options, DEFAULT_TRIALS)
+    check_trials(settings.trials)
+    check_dimensions(settings.system, settings.ship)
+    jobs = options["jobs"]
+    if jobs is None and options["scheduler"] is None and _few(folders, settings):
+        jobs = 1
+    with open_executor(jobs, options["scheduler"]) as executor, _show_steps() as progress:
+        outcome = coefficients_of(folders, settings, executor, progress, hashed=hashed)
+    files = [folder / CAMPAIGN_FILE for folder in folders] + ([path] if path else [])
+    return finished(outcome, settings), tuple(files)
+
+
+def finish(outcome: "CampaignOutcome") -> None:
+    """Name the runs that could not be used or are damaged; end with the status they ask for."""
+    from pmm.cli.files import tell_damaged, tell_unchecked
+    from pmm.cli.screen import error_line, messages
+
+    for name in outcome.not_recorded:
+        messages().print(f"not recorded yet: {name}")
+    for one in outcome.failed:
+        shown = one.message if one.name in one.message else f"{one.name}: {one.message}"
+        error_line(shown)
+    tell_unchecked(one.file for one in outcome.runs)
+    statuses = tell_damaged((one.file, one.flags) for one in outcome.runs)
+    if statuses := statuses + [one.exit_status for one in outcome.failed]:
+        click.get_current_context().exit(min(statuses))
+
+
+def _few(folders: Sequence[Path], settings: "Settings") -> bool:
+    """Whether there is too little to do for starting processes."""
+    from pmm.campaign.campaign_file import read_campaign
+    from pmm.campaign.file_names import CAMPAIGN_FILE
+
+    count = sum(len(read_campaign(folder / CAMPAIGN_FILE).runs) for folder in folders)
+    return count < FEW_RUNS and settings.trials <= DEFAULT_TRIALS
+
+
+@contextmanager
+def _show_steps() -> "Iterator[Progress]":
+    """Show how far each step is, on a terminal."""
+    from rich.progress import Progress as Bars
+    from rich.progress import TaskID
+
+    from pmm.cli.screen import messages
+
+    console = messages()
+    with Bars(console=console, transient=True, disable=not console.is_terminal) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def progress(done: int, total: int, what: str) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what, total=total)
+            bars.update(tasks[what], completed=done, total=total)
+
+        yield progress
+
+
+def _check_outputs(options: Mapping[str, Any]) -> None:
+    from pmm.cli.files import check_files, check_folder
+
+    for name, option in (("plot", "--plot"), ("simman", "--simman")):
+        if options[name] is not None:
+            check_folder(Path(options[name]), option)
+    files = {"--csv": options["csv_file"], "--netcdf": options["netcdf"]}
+    check_files(files, overwrite=options["overwrite"])
+
+
+def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator[str]:
+    from pmm.whole_file import write_whole
+
+    if options["csv_file"] is not None:
+        from pmm.coefficients.files import csv_text
+
+        path = Path(options["csv_file"])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, csv_text(outcome.result))
+        yield str(path)
+    if options["netcdf"] is not None:
+        from pmm.coefficients.files import write_netcdf
+        from pmm.version import provenance
+
+        path = Path(options["netcdf"])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_netcdf(outcome, path, dict(provenance()))
+        yield str(path)
+    if options["plot"] is not None:
+        from pmm.document.style import write_figures
+        from pmm.report.coefficient_plots import figures
+
+        written = write_figures(figures(outcome.result), Path(options["plot"]), "coefficients")
+        yield f"{len(written)} figures in {options['plot']}"
+    if options["simman"] is not None:
+        from pmm.coefficients.deliverables import write_deliverables
+
+        folder, overwrite = Path(options["simman"]), bool(options["overwrite"])
+        count = write_deliverables(outcome, folder, overwrite=overwrite)
+        yield f"deliverables of {count} runs in {folder}"

@@ -46,6 +46,34 @@ def console(**options: Any) -> None:
 
     Exit status: 0 left by Ctrl-C at rest; 1 the rig says no; 2 the request was wrong.
     """  # noqa: D301
-    from pmm.cli.console_work import ConsoleOptions, work
+    from contextlib import ExitStack
+    from pathlib import Path
 
-    work(ConsoleOptions(**options))
+    from pmm.cli.files import check_folder
+    from pmm.cli.screen import messages
+    from pmm.cli.terminal import Terminal
+    from pmm.coefficients.references import read_references
+    from pmm.coefficients.settings import ReferenceFile, Settings
+    from pmm.console.request import ConsoleRequest
+    from pmm.console.session import run_loop, station_of
+    from pmm.run.operator import Interrupts
+
+    request = ConsoleRequest(**options)
+    rig_file = request.rig_file()
+    if request.output is not None:
+        check_folder(Path(request.output), "--output")
+    if request.reference is not None:  # shown only when runs have ended: read now
+        read_references(
+            (ReferenceFile(request.reference),), rig_file.oscillator.plane, Settings().form
+        )
+    interrupts = Interrupts()
+    # The terminal is waited for last: the rig is left by then.
+    with (
+        ExitStack() as shown,
+        interrupts.counted(),
+        station_of(request, rig_file, lambda line: messages().print(line)) as station,
+    ):
+        terminal = shown.enter_context(Terminal())
+        run_loop(station, interrupts, terminal.say)
+        if station.control.fault is not None:
+            terminal.say(f"fault: {station.control.fault}")

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pmm.cli.folders import check_folder
+from pmm.cli.files import check_folder
 from pmm.cli.hints import pasted
+from pmm.cli.options import DEFAULT_LEVEL
 from pmm.cli.screen import busy, output, show_progress
 
 if TYPE_CHECKING:
@@ -66,14 +67,14 @@ def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":
     from analysis.resolver.analysis import analyse
     from pmm.campaign.campaign_file import read_campaign
     from pmm.campaign.file_names import CAMPAIGN_FILE
-    from pmm.cli.run_work import RunOptions, work
+    from pmm.cli.run import run
 
     if (folder / CAMPAIGN_FILE).exists():
         shutil.rmtree(folder)
     rig = folder.with_name(f"{name}-rig")
     with as_file(files("pmm.cli") / "demo_rigs" / name) as shipped:
         shutil.copytree(shipped, rig, dirs_exist_ok=True)
-    work(RunOptions(str(rig / "plan.toml"), output=str(folder)))
+    click.get_current_context().invoke(run, plan=str(rig / "plan.toml"), output=str(folder))
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     paths = [one.recording_path(folder) for one in campaign.runs]
     return {
@@ -84,12 +85,12 @@ def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":
 
 def _print(found: "Sequence[tuple[Path, Analysis]]") -> None:
     from hardware.description.channels import FORCE_AFT, FORCE_FORE
-    from pmm.cli.analyse import DEFAULT_LEVEL
-    from pmm.cli.printing import print_compact
-    from pmm.document.run_rows import run_rows
+    from pmm.document.terminal import print_content
+    from pmm.harmonics.rows import run_rows
+    from pmm.report.harmonics_tables import first_harmonics_table
 
     rows = [run_rows(one, file=str(path), level=DEFAULT_LEVEL) for path, one in found]
-    print_compact(output(), rows, (FORCE_AFT.name, FORCE_FORE.name))
+    print_content(first_harmonics_table(rows, (FORCE_AFT.name, FORCE_FORE.name)), output())
 
 
 def _write_plots(found: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None:

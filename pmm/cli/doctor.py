@@ -1,21 +1,12 @@
 """``pmm doctor``: whether this machine can do what is wanted of it."""
 
-import json
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
-from pmm.cli.screen import busy, output
+from pmm.cli.options import JSON
 from pmm.doctor.findings import MachineFinding, MachineStatus
-
-_STYLES = {
-    MachineStatus.OK: "green",
-    MachineStatus.NOTE: "cyan",
-    MachineStatus.WARNING: "yellow",
-    MachineStatus.FAULT: "bold red",
-}
 
 
 @click.command()
@@ -24,24 +15,21 @@ _STYLES = {
               help="Where runs would be recorded.")  # fmt: skip
 @click.option("--listen", "listen_s", metavar="S", type=click.FloatRange(min=0.0), default=1.1,
               show_default=True, help="How long to listen to the rig's devices.")  # fmt: skip
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
+@JSON
 def doctor(rig: str | None, folder: str, listen_s: float, as_json: bool) -> None:
     """Check installation, buses, ports, devices, permissions, clock and disk.
 
     Each fault is named with its cure. With a rig's file, its devices are asked too; nothing moves
     and nothing is changed. Exit status: 0 no fault, 1 faults, 2 the rig's file is wrong.
     """
+    from pmm.cli.screen import busy, show
+    from pmm.report.doctor_document import doctor_document
+
     with busy("looking"):
         found = list(_check(rig, Path(folder), listen_s))
-    faults = sum(one.status is MachineStatus.FAULT for one in found)
-    if as_json:
-        findings = [asdict(one) for one in found]
-        document = {"schema": "pmm-doctor-1", "faults": faults, "findings": findings}
-        click.echo(json.dumps(document, indent=1))
-    else:
-        _print(found, faults)
-    if faults:
-        raise click.exceptions.Exit(1)
+    show(doctor_document(found), as_json=as_json)
+    if any(one.status is MachineStatus.FAULT for one in found):
+        click.get_current_context().exit(1)
 
 
 def _check(rig: str | None, folder: Path, listen_s: float) -> Iterator[MachineFinding]:
@@ -76,23 +64,3 @@ def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
     names = [name for node, name in found.names.items() if node in answering]
     ports = [name for name, one in found.heard.items() if one.what != "silent"]
     yield from check_rig(path, [*names, *ports], found.wrong)
-
-
-def _print(found: Sequence[MachineFinding], faults: int) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    console = output()
-    table = Table(box=None, padding=(0, 1), pad_edge=False)
-    for heading in ("area", "what", "", "found"):
-        table.add_column(heading, overflow="fold")
-    area = ""
-    for one in found:
-        shown = "" if one.area == area else one.area
-        status = Text(one.status.value, style=_STYLES[one.status])
-        table.add_row(shown, one.what, status, one.found)
-        if one.cure:
-            table.add_row("", "", "", Text(f"-> {one.cure}", style="bold"))
-        area = one.area
-    console.print(table)
-    console.print(f"{faults} fault{'' if faults == 1 else 's'}" if faults else "no fault")

@@ -1,8 +1,18 @@
 """``pmm effects``: the catalogue of what separates a real rig from an ideal one."""
 
-from typing import Any
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
+
+from pmm.cli.options import JSON
+
+if TYPE_CHECKING:
+    from hardware.description.setpoint import SetPoint
+    from pmm.report.effects_document import EffectAtSetPoint
+    from sim.effects.effect import Effect
+    from sim.rig import SimulatedRig
 
 
 @click.command()
@@ -27,12 +37,87 @@ import click
 @click.option(
     "--plot", metavar="FOLDER", help="Draw the signature over frequency and amplitude there."
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
-def effects(**options: Any) -> None:
+@JSON
+def effects(
+    effect: str | None,
+    campaign: str | None,
+    plane: str,
+    frequency_hz: float,
+    amplitude_mm: float,
+    phase_deg: float,
+    speed_m_s: float,
+    drift_deg: float,
+    air: bool,
+    effects_file: str | None,
+    plot: str | None,
+    as_json: bool,
+) -> None:
     """List the effects, or show one with the signature that theory predicts at a set-point.
 
     "pmm simulate CAMPAIGN --effect NAME:PARAM=VALUE" switches them on.
     """
-    from pmm.cli.effects_work import EffectsOptions, run
+    from hardware.description.errors import ConfigurationError
+    from hardware.description.setpoint import Medium, SetPoint
+    from pmm.cli.screen import output, show
+    from pmm.report.effects_document import catalogue_document, effect_document
+    from sim.effects.catalogue import build, catalogue, user_effects
 
-    run(EffectsOptions(**options))
+    more = user_effects(effects_file)
+    if effect is None:
+        if plot is not None:
+            raise ConfigurationError("--plot draws the signature of one effect; name it")
+        show(catalogue_document({**catalogue(), **more}), as_json=as_json)
+        return
+    built, rig = build(effect, more), _rig(campaign, plane)
+    at = SetPoint(
+        frequency_hz,
+        1e-3 * amplitude_mm,
+        math.radians(phase_deg),
+        speed_m_s,
+        Medium.AIR if air else Medium.WATER,
+        math.radians(drift_deg),
+    )
+    told = effect_document(_at_set_point(built, rig, at))
+    figures = [] if plot is None else _draw(built, rig, at, Path(plot))
+    show(told, as_json=as_json)
+    for path in () if as_json else figures:
+        output().print(str(path), soft_wrap=True)
+
+
+def _rig(campaign: str | None, plane: str) -> "SimulatedRig":
+    from pmm.campaign.campaign_file import read_campaign
+    from sim.rig import horizontal_rig, vertical_rig
+
+    if campaign is not None:
+        return read_campaign(campaign).rig().ideal()
+    return (vertical_rig() if plane == "vertical" else horizontal_rig()).ideal()
+
+
+def _at_set_point(
+    effect: "Effect", rig: "SimulatedRig", set_point: "SetPoint"
+) -> "EffectAtSetPoint":
+    from pmm.report.effects_document import EffectAtSetPoint
+    from pmm.report.signature_figure import channels_of
+    from sim.effects.agreement import simulated_signature
+    from sim.effects.situation import Situation
+
+    situation = Situation.of(rig, set_point)
+    theory = effect.signature(situation)
+    channels = channels_of(effect, rig, set_point)
+    keys = theory or [(name, order) for name in channels for order in range(4)]
+    found = simulated_signature(effect, rig, set_point, keys)
+    return EffectAtSetPoint(effect, set_point, theory, found, effect.lines(situation))
+
+
+def _draw(effect: "Effect", rig: "SimulatedRig", set_point: "SetPoint", folder: Path) -> list[Path]:
+    from pmm.cli.screen import busy, messages
+    from pmm.report.signature_figure import save_signature_figure
+
+    with busy("solving"):
+        written = save_signature_figure(effect, rig, set_point, folder)
+    if not written:
+        messages().print(
+            f"{effect.name}: no figure; what it does does not repeat with the shaft, so that it "
+            "has no harmonic signature: see pmm simulate --plot"
+        )
+    return written

@@ -1,8 +1,10 @@
 """``pmm evaluate``: what a campaign's own tests say of its rig."""
 
-from typing import Any
+from pathlib import Path
 
 import click
+
+from pmm.cli.options import JSON
 
 
 @click.command()
@@ -19,8 +21,8 @@ import click
     metavar="FOLDER",
     help="Draw restoring, drift, tows and control chart there, as SVG and PNG.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead of tables.")
-def evaluate(**options: Any) -> None:
+@JSON
+def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> None:
     """Evaluate the tests of a recorded campaign.
 
     Zeros: how far they moved. Check weights: calibration.toml, which a rig's file names as
@@ -31,6 +33,33 @@ def evaluate(**options: Any) -> None:
     Exit status: 0 done; 1 the data say no, also if a test shows nothing or the control condition
     is out of its limits; 2 the request was wrong.
     """
-    from pmm.cli.run_evaluating import EvaluateOptions, evaluate_campaign
+    from dataclasses import replace
 
-    evaluate_campaign(EvaluateOptions(**options))
+    from hardware.description.errors import ConfigurationError
+    from pmm.cli.files import check_folder, tell_writers
+    from pmm.cli.screen import error_line, messages, show
+    from pmm.document.style import drawing, write_figure
+    from pmm.evaluation.evaluation import evaluate as evaluated
+    from pmm.evaluation.evaluation import keep
+    from pmm.report.evaluation_document import evaluation_document, evaluation_figures
+
+    place = Path(folder)
+    if not place.is_dir():
+        raise ConfigurationError(f"{place}: no such folder")
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    tell_writers([place])
+    found = evaluated(place, valid_days)
+    files = keep(found, place)
+    for one in () if plot is None else evaluation_figures(found):
+        with drawing():
+            figure = one.draw()
+        files += write_figure(figure, Path(str(plot)), one.name)
+    show(evaluation_document(replace(found, files=tuple(files))), as_json=as_json)
+    if not as_json:
+        for note in found.notes:
+            messages().print(note, soft_wrap=True)
+        for text in found.failed:
+            error_line(text)
+    if not found.in_control or found.failed:
+        click.get_current_context().exit(1)

@@ -1,25 +1,8 @@
-"""What the command line adds to what the analysis says: option names, and lines to paste."""
+"""Commands of this program as lines to paste."""
 
 import shlex
 import sys
 from pathlib import Path
-
-# Code of a flag -> the options that act on it.
-FLAG_OPTIONS = {
-    "few_reference_periods": "--reference, --frequency",
-    "frequency_differs": "--frequency, --reference",
-    "no_interval": "--periods, --gate",
-    "not_steady": "--channel, --steady-tolerance, --opens-at",
-    "reference_gap": "--reference, --frequency",
-    "stretch_limited": "--channel, --steady-tolerance",
-    "time_unit_assumed": "--column or --map",
-    "transient": "--opens-at, --periods, --gate",
-}
-NO_REFERENCE = "--frequency HZ, --reference CHANNEL"
-COLUMN_LEFT_OUT = (
-    "; a column of the file that is not in the column map is not read: add it there or with "
-    "--column, or say keep_others = true in the map"
-)
 
 
 def program() -> str:

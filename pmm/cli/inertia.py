@@ -1,11 +1,13 @@
 """``pmm inertia``: from the record of any pendulum to a model's mass properties."""
 
 from collections.abc import Callable
-from typing import Any
+from pathlib import Path
+from typing import Final
 
 import click
 
 from pmm.cli.group import CommandGroup
+from pmm.cli.options import JSON, PLOT, with_options
 
 
 @click.group(cls=CommandGroup, kind="job")
@@ -21,77 +23,74 @@ def inertia() -> None:
     """  # noqa: D301
 
 
-def _job(name: str) -> Callable[[Callable[..., None]], click.Command]:
-    """Make a job's command, with the options that all of them have."""
-
-    def make(function: Callable[..., None]) -> click.Command:
-        options = (
-            click.argument("file", metavar="FILE"),
-            click.option("--json", "as_json", is_flag=True, help="Print one JSON document."),
-            click.option("--output", metavar="TOML", help="Write the section [model] there."),
-            click.option("--overwrite", is_flag=True, help="Replace that file if it is there."),
-            click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG."),
-        )
-        for option in reversed(options):
-            function = option(function)
-        return inertia.command(name)(function)
-
-    return make
-
-
-_fits = click.option(
+_EVERY: Final = with_options(
+    click.argument("file", metavar="FILE"),
+    JSON,
+    click.option("--output", metavar="TOML", help="Write the section [model] there."),
+    click.option("--overwrite", is_flag=True, help="Replace that file if it is there."),
+    PLOT,
+)
+_FITS: Final = click.option(
     "--fits",
+    "with_fits",
     is_flag=True,
     help="Fit each record by the forms F1 to F4 too, and show their periods.",
 )
+# Job -> module, function and options of its own.
+_JOBS: Final = {
+    "swing": ("swing", "run", (_FITS,), "Swing: alone, with the model, and its checks."),
+    "bifilar": ("bifilar", "run", (_FITS,),
+                "Bifilar suspension: yaw, pitch or roll, depth, principal axes."),
+    "pendulum": ("pendulum", "run", (_FITS,),
+                 "Compound pendulum: about one axis, or two (Lamboley)."),
+    "incline": ("incline", "run", (), "Inclining test: depth of the centre of gravity."),
+    "combine": ("parts", "run_combine", (), "Put parts together and take others off."),
+    "ballast": ("parts", "run_ballast", (), "Find where given weights go."),
+    "plan": ("plan", "run", (), "Forecast a test: uncertainty, best line length, resonance."),
+}  # fmt: skip
 
 
-def _run(name: str, options: dict[str, Any]) -> None:
-    from pmm.cli.inertia_running import InertiaOptions, run
+def _command(job: str, module: str, function: str) -> Callable[..., None]:
+    """Return what does a job; what it found is printed even where it then may not be written."""
 
-    run(InertiaOptions(name, **options))
+    def command(
+        file: str,
+        as_json: bool,
+        output: str | None,
+        overwrite: bool,
+        plot: str | None,
+        with_fits: bool = False,
+    ) -> None:
+        from importlib import import_module
 
+        from pmm.cli.screen import busy, messages, show
+        from pmm.document.style import write_figures
+        from pmm.inertia.fits import form_fits
+        from pmm.inertia.model_file import check_output, model_section
+        from pmm.report.inertia_document import document
+        from pmm.whole_file import write_whole
 
-@_job("swing")
-@_fits
-def swing(**options: Any) -> None:
-    """Swing: alone, with the model, and its checks."""
-    _run("swing", options)
+        if output is not None:
+            check_output(Path(output), overwrite=overwrite)
+        run = getattr(import_module(f"pmm.inertia.{module}"), function)
+        with busy(f"{job}: {file}"):
+            outcome = run(file)
+            fits = form_fits(outcome) if with_fits else None
+        told = document(outcome, fits)
+        show(told, as_json=as_json)
+        if plot is not None:
+            written = write_figures(told.figures, Path(plot), Path(file).stem)
+            messages().print(f"written: {len(written)} figures in {plot}")
+        if output is not None:
+            write_whole(Path(output), model_section(outcome))
+            messages().print(f"written: {output}")
+        if outcome.said_no:
+            click.get_current_context().exit(1)
 
-
-@_job("bifilar")
-@_fits
-def bifilar(**options: Any) -> None:
-    """Bifilar suspension: yaw, pitch or roll, depth, principal axes."""
-    _run("bifilar", options)
-
-
-@_job("pendulum")
-@_fits
-def pendulum(**options: Any) -> None:
-    """Compound pendulum: about one axis, or two (Lamboley)."""
-    _run("pendulum", options)
-
-
-@_job("incline")
-def incline(**options: Any) -> None:
-    """Inclining test: depth of the centre of gravity."""
-    _run("incline", options)
-
-
-@_job("combine")
-def combine(**options: Any) -> None:
-    """Put parts together and take others off."""
-    _run("combine", options)
-
-
-@_job("ballast")
-def ballast(**options: Any) -> None:
-    """Find where given weights go."""
-    _run("ballast", options)
+    return command
 
 
-@_job("plan")
-def plan(**options: Any) -> None:
-    """Forecast a test: uncertainty, best line length, resonance."""
-    _run("plan", options)
+for _job, (_module, _function, _own, _help) in _JOBS.items():
+    inertia.command(_job, help=_help)(
+        with_options(_EVERY, *_own)(_command(_job, _module, _function))
+    )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.folders import check_folder
+from pmm.cli.files import check_folder
 from pmm.cli.group import CommandGroup
 from pmm.cli.hints import pasted
 from pmm.cli.screen import messages, output

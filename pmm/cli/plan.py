@@ -1,8 +1,11 @@
 """``pmm plan``: look at a plan before it is run."""
 
+from pathlib import Path
+
 import click
 
 from pmm.cli.group import CommandGroup
+from pmm.cli.options import JSON
 
 
 @click.group(cls=CommandGroup, kind="action")
@@ -20,20 +23,45 @@ def plan() -> None:
 @plan.command()
 @click.argument("file", metavar="PLAN.toml")
 @click.option("--all", "every", is_flag=True, help="Each run of a finding, not the worst alone.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
+@JSON
 def check(file: str, every: bool, as_json: bool) -> None:
     """Say what the rig cannot do, and what the field advises against."""
-    from pmm.cli.plan_work import check as run
+    from datetime import UTC, datetime
 
-    run(file, every=every, as_json=as_json)
+    from pmm.cli.screen import show as tell
+    from pmm.plan.checks import check_plan
+    from pmm.plan.findings import PlanVerdict
+    from pmm.plan.plan import read_plan_and_rig
+    from pmm.report.plan_document import check_document
+
+    read, rig = read_plan_and_rig(file)
+    found = check_plan(read, rig, datetime.now(UTC).date())
+    tell(check_document(read, rig, found, every=every), as_json=as_json)
+    if any(one.verdict is PlanVerdict.REFUSE for one in found):
+        click.get_current_context().exit(1)
 
 
 @plan.command()
 @click.argument("file", metavar="PLAN.toml")
 @click.option("--plot", metavar="FOLDER", help="Draw the matrix there, as SVG and PNG.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a table.")
+@JSON
 def show(file: str, plot: str | None, as_json: bool) -> None:
     """Print the runs in their order, and how long they take."""
-    from pmm.cli.plan_work import show as run
+    from pmm.cli.files import check_folder
+    from pmm.cli.hints import pasted
+    from pmm.cli.screen import messages, output
+    from pmm.cli.screen import show as tell
+    from pmm.document.style import write_figure
+    from pmm.plan.plan import read_plan_and_rig
+    from pmm.report.matrix_figure import matrix_figure
+    from pmm.report.plan_document import show_document
 
-    run(file, plot=plot, as_json=as_json)
+    read, rig = read_plan_and_rig(file)
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    tell(show_document(read, rig), as_json=as_json)
+    if plot is not None:
+        for path in write_figure(matrix_figure(read, rig), Path(plot), f"{read.name}-matrix"):
+            messages().print(str(path), soft_wrap=True)
+    if not as_json:
+        output().print(pasted("plan", "check", file), soft_wrap=True)

@@ -9,13 +9,13 @@ from typing import Any
 import click
 
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.cli.coefficients import shared_options
+from pmm.cli.coefficients import SHARED, analysed, finish
 
 REPORT_FILE = "report.html"
 
 
 @click.command()
-@shared_options
+@SHARED
 @click.option(
     "--output", metavar="FILE", help="The page.  [default: report.html in the first campaign]"
 )
@@ -33,8 +33,7 @@ def report(**options: Any) -> None:
 
     Exit status: as `pmm coefficients`.
     """  # noqa: D301
-    from pmm.cli.coefficients_running import analysed, finish
-    from pmm.cli.folders import check_file
+    from pmm.cli.files import check_file
     from pmm.cli.hints import program
     from pmm.cli.screen import busy, output
     from pmm.document.page import write_page

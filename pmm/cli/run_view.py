@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from hardware.description.channels import SHAFT_ANGLE
 from pmm.cli.terminal import Terminal
-from pmm.document.notation import counted
+from pmm.document.labels import display
+from pmm.report.run_document import outcome_line
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
 from pmm.run.status import ChannelReading, RunOutcome, RunStatus
@@ -21,8 +22,6 @@ _EVERY_S: Final = 0.25
 _GIGA: Final = 1e9
 _LABEL, _BAR = 28, 40  # columns
 _MOST_PLACES: Final = 6
-# How people read a unit: factor and unit shown.
-_SHOWN: Final = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
 _COLOURS: Final = {State.FAULT: "bold red", State.STOPPED: "yellow", State.GATE_OPEN: "bold green"}
 
 
@@ -130,17 +129,6 @@ class LiveView:
         return Group(*parts)
 
 
-def outcome_line(one: RunOutcome) -> str:
-    """Return a finished run in a line."""
-    reason = f": {one.reason}" if one.reason else ""
-    where = f", {one.file}" if one.file else ""
-    voids = sum(flag.code == "gate_void" for flag in one.flags)
-    void = f", {voids} void gates" if voids else ""
-    far = [flag.channel or "" for flag in one.flags if flag.code == "force_far"]
-    off = f", {' and '.join(far)} far from the plan's estimate" if far else ""
-    return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{off}{where}{reason}"
-
-
 def harmonics_table(rows: tuple[ChannelReading, ...]) -> "Table":
     """Return mean and first harmonic of each channel; what is not final yet is dim.
 
@@ -156,12 +144,12 @@ def harmonics_table(rows: tuple[ChannelReading, ...]) -> "Table":
     for heading in [*headings, "plan"] if planned else headings:
         table.add_column(heading, justify="right", no_wrap=True)
     for one in rows:
-        factor, unit = _SHOWN.get(one.unit, (1.0, one.unit))
+        factor = display(one.unit).factor
         half_width = factor * one.half_width
         values = (one.mean, one.in_phase, one.quadrature, one.amplitude)
         cells = [_places(factor * value, half_width) for value in values]
         width = "" if math.isnan(half_width) else f"± {half_width:.2g}"
-        name = f"{one.channel} [{unit}]" if unit else one.channel
+        name = f"{one.channel} [{display(one.unit).label}]" if one.unit else one.channel
         plan = [f"{one.expected:.1f}"] if math.isfinite(one.expected) else [""]
         style = "bold red" if one.far else "" if one.final else "dim"
         table.add_row(name, *cells, width, *(plan if planned else ()), style=style)

@@ -1,13 +1,15 @@
 """What goes to the screen: results on the output, messages and progress on the error stream."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import IO, TYPE_CHECKING, TypeVar
+
+import click
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hardware.description.flags import Flag
+    from pmm.document.content import Document
 
 T = TypeVar("T")
 
@@ -65,17 +67,12 @@ def busy(what: str) -> Iterator[Callable[[float], None]]:
         yield lambda part: status.update(f"{what}: {100.0 * part:.0f} % read")
 
 
-def print_flags(console: "Console", flags: "Iterable[Flag]", *, hints: bool = True) -> None:
-    """Print flags, equal ones in one line: severity, where, message, options for it, and code.
+def show(document: "Document", *, as_json: bool) -> None:
+    """Print what a command found: for programs, or for people."""
+    from pmm.document.data import as_json as written
+    from pmm.document.terminal import print_document
 
-    Parameters
-    ----------
-    hints
-        Whether the options of ``pmm analyse`` are the reader's to use.
-    """
-    from pmm.cli.hints import FLAG_OPTIONS
-    from pmm.document.content import Notes
-    from pmm.document.flag_lines import flag_notes
-    from pmm.document.terminal import print_content
-
-    print_content(Notes(flag_notes(flags, FLAG_OPTIONS if hints else {})), console)
+    if as_json:
+        click.echo(written(document))
+    else:
+        print_document(output(), document)

@@ -1,10 +1,8 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
 import hashlib
-import math
 from collections.abc import Callable
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 
 from analysis.coefficients.body_cycle import BodyCycle
@@ -12,11 +10,8 @@ from analysis.coefficients.corrections import (
     AmplifierFilter,
     Delay,
     Response,
-    ZeroReading,
-    zero_at,
     zero_reading,
 )
-from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
@@ -31,15 +26,14 @@ from hardware.description.channels import (
 )
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
-from hardware.description.oscillator import Plane
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
+from pmm.coefficients.zeros import utc_s, zeroed
 
 _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
-_SAME_TRIM_RAD = 1e-4
 _BLOCK = 1 << 20
 
 
@@ -123,7 +117,7 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 def _at_rest(task: Task, recording: Recording) -> Done:
     reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
     drift_rad = task.set_point.drift_rad
-    zero = Zero(task.name, _utc_s(recording), task.number, reading, drift_rad)
+    zero = Zero(task.name, utc_s(recording), task.number, reading, drift_rad)
     return _done(task, recording, None, zero)
 
 
@@ -134,7 +128,7 @@ def _turning(task: Task, recording: Recording) -> Done:
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
     analysis = analyse(recording, task.choice, replace(task.settings, channels=channels))
     struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
-    struts, flags = _zeroed(struts, task, recording)
+    struts, flags = zeroed(struts, task, recording)
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     flags = (*found, *flags, *_speed_flags(task, recording))
     periods = analysis.readings[0].periods
@@ -145,7 +139,7 @@ def _turning(task: Task, recording: Recording) -> Done:
 def _towed(task: Task, recording: Recording) -> Done:
     reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
-    struts, flags = _zeroed(struts, task, recording)
+    struts, flags = zeroed(struts, task, recording)
     if not struts.mean_known:
         raise DataError(
             f"{task.name}: its mean force is all that it tells, and no zero run is named; make one "
@@ -177,81 +171,6 @@ def response_of(one: AmplifierTable) -> Response:
     return lambda s: late(s) * filtered(s)
 
 
-def _zeroed(
-    struts: StrutCycle, task: Task, recording: Recording
-) -> tuple[StrutCycle, tuple[Flag, ...]]:
-    """Take the zero runs off the means, with their drift between them."""
-    before, after = task.zeros
-    elsewhere = _elsewhere(task)
-    if before is None and after is None:
-        return replace(struts, mean_known=task.tared), ()
-    if before is None or after is None or before.name == after.name:
-        only = before or after
-        assert only is not None  # noqa: S101 - one of them is there
-        text = f"only one zero run, {only.name}: what drifted since is not known"
-        one_sided = _note("zero_one_sided", text, task.name)
-        return _taken(struts, only.reading.offsets), (one_sided, *elsewhere)
-    places = _places(before, after, task, recording)
-    first, last = (
-        ZeroReading(at, zero.reading.offsets)
-        for at, zero in ((places[0], before), (places[2], after))
-    )
-    return _taken(struts, zero_at(first, last, places[1])), elsewhere
-
-
-def _elsewhere(task: Task) -> tuple[Flag, ...]:
-    """Warn of zero runs at another trim, where weight and restoring ask something else at rest."""
-    if task.oscillator.plane is Plane.HORIZONTAL:
-        return ()
-    own = task.set_point.drift_rad
-    apart = {
-        zero.name: zero.drift_rad
-        for zero in task.zeros
-        if zero is not None and abs(zero.drift_rad - own) > _SAME_TRIM_RAD
-    }
-    return tuple(
-        Flag(
-            "zero_elsewhere",
-            Severity.WARNING,
-            f"zero run {name} stood at a trim of {math.degrees(there):.3g} deg, the run at "
-            f"{math.degrees(own):.3g} deg: what weight and restoring ask at rest differs; make a "
-            "zero run at the run's trim, or state its drift_deg in [[at_rest]]",
-            None,
-            (task.name,),
-        )
-        for name, there in apart.items()
-    )
-
-
-def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
-    known = {name.rpartition(" ")[0] for name in struts.phasors.names}
-    return struts.without_zero(offsets.select([one for one in offsets.names if one in known]))
-
-
-def _places(
-    before: Zero, after: Zero, task: Task, recording: Recording
-) -> tuple[float, float, float]:
-    """Places of zero, run and zero on one clock: UTC, else the order of the runs.
-
-    A rig that is simulated faster than time has UTC that its records' lengths do not fit into.
-    """
-    utc = (before.utc_s, _utc_s(recording), after.utc_s)
-    numbers = (before.number, task.number, after.number)
-    for clock in (utc, numbers):
-        known = [float(at) for at in clock if at is not None]
-        if len(known) == 3 and known[0] < known[1] < known[2]:
-            return known[0], known[1], known[2]
-    return 0.0, 0.5, 1.0
-
-
-def _utc_s(recording: Recording) -> float | None:
-    started = recording.provenance.get("started_utc")
-    if started is None:
-        return None
-    half_s = (recording.end_s - recording.start_s) / 2.0
-    return datetime.fromisoformat(started).timestamp() + half_s
-
-
 def _surge(recording: Recording) -> tuple[str, ...]:
     """The surge gauge, where there is one."""
     return (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
@@ -270,10 +189,6 @@ def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
         f"{100.0 * _SPEED_OFF:g} %); correct carriage_speed_m_s in the campaign file"
     )
     return (Flag("speed_differs", Severity.WARNING, text, CARRIAGE_SPEED.name),)
-
-
-def _note(code: str, text: str, name: str) -> Flag:
-    return Flag(code, Severity.NOTE, text, None, (name,))
 
 
 def _done(

@@ -34,6 +34,8 @@ class Column(Generic[Row]):
         Stands in brackets behind the heading.
     number
         Whether it is set to the right.
+    once
+        Whether it stands only where it, or a column before it, is not as in the row above.
     """
 
     heading: str | None
@@ -42,6 +44,7 @@ class Column(Generic[Row]):
     written: Callable[[Any], str] = str
     unit: str = ""
     number: bool = False
+    once: bool = False
 
     def text(self, row: Row) -> str:
         """Return what people read of a row."""
@@ -88,8 +91,8 @@ class Table(Generic[Row]):
         Whether a page shows it only when it is asked for.
     filled
         Whether columns in which nothing stands are left out for people.
-    faint
-        Which rows stand back.
+    grade
+        Of a row: ``"faint"`` where it stands back, a note's grade, or empty.
     by
         The row's name, where programs get the rows by name and not in a list.
     """
@@ -103,7 +106,7 @@ class Table(Generic[Row]):
     most: int = 0
     folded: bool = False
     filled: bool = False
-    faint: Callable[[Row], bool] = lambda _: False
+    grade: Callable[[Row], str] = lambda _: ""
     by: Callable[[Row], str] | None = None
 
     @cached_property
@@ -115,10 +118,19 @@ class Table(Generic[Row]):
         return [one for one in seen if any(map(one.text, self.rows))]
 
     @property
-    def lines(self) -> Iterator[tuple[list[str], bool]]:
-        """The rows as people read them, under :attr:`shown`, and whether each stands back."""
+    def lines(self) -> Iterator[tuple[list[str], str]]:
+        """The rows as people read them, under :attr:`shown`, and the grade of each."""
+        above: list[str] = []
         for row in self.rows[: self.most or None]:
-            yield [one.text(row) for one in self.shown], self.faint(row)
+            cells = [one.text(row) for one in self.shown]
+            yield (
+                [
+                    "" if one.once and above[: k + 1] == cells[: k + 1] else cells[k]
+                    for k, one in enumerate(self.shown)
+                ],
+                self.grade(row),
+            )
+            above = cells
 
     @property
     def empty(self) -> bool:
@@ -158,11 +170,9 @@ class Text:
 
 
 _GRADES: Final = {
-    "pass": "good",
-    "note": "note",
-    "next step": "note",
-    "void": "void",
-    "fail": "void",
+    **dict.fromkeys(("pass", "ok"), "good"),
+    **dict.fromkeys(("note", "next step"), "note"),
+    **dict.fromkeys(("void", "fail", "fault", "refuse", "error"), "void"),
 }
 
 
@@ -256,11 +266,11 @@ class Document:
     Attributes
     ----------
     name
-        What it is of: a campaign, a record.
+        What it is of: a campaign, a record; empty where its first line says so.
     about
         What of that is told.
     schema
-        Names the keys that programs get.
+        Names the keys that programs get; empty where they get none of it.
     """
 
     name: str

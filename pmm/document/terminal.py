@@ -1,21 +1,30 @@
 """A document on a terminal: texts, notes and tables; figures are for pages and files."""
 
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pmm.document.content import Content, Document, Figure, Notes, Section, Table, Text
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table as Grid
 
-_STYLES: Final = {"good": "green", "note": "cyan", "warning": "yellow", "void": "bold red"}
+_STYLES: Final = {
+    "": "",
+    "faint": "dim",
+    "good": "green",
+    "note": "cyan",
+    "warning": "yellow",
+    "void": "bold red",
+}
 
 
 def print_document(console: "Console", document: Document) -> None:
     """Print a document; its name runs into its first line, or has its own above a table."""
-    first = next(one for one in document.contents if not one.empty)
-    end = ": " if isinstance(first, Text) else "\n"
-    console.print(document.name, style="bold", end=end, soft_wrap=True)
+    if document.name:
+        first = next(one for one in document.contents if not one.empty)
+        end = ": " if isinstance(first, Text) else "\n"
+        console.print(document.name, style="bold", end=end, soft_wrap=True)
     for section in document.sections:
         print_section(console, section)
 
@@ -63,15 +72,21 @@ def _(notes: Notes, console: "Console") -> None:
 
 @print_content.register(Table)
 def _(table: Table[Any], console: "Console") -> None:
+    console.print(grid(table))
+    for line in table.notes:
+        console.print(line, soft_wrap=True)
+
+
+def grid(table: Table[Any]) -> "Grid":
+    """Return a table as a terminal draws it, for what is drawn again and again."""
     from rich.table import Table as Grid
 
     title = f"\n{table.name}" if table.titled else None
-    grid = Grid(title=title, title_justify="left", box=None, padding=(0, 1), pad_edge=False)
-    grid.show_header = any(one.title for one in table.shown)
+    found = Grid(title=title, title_justify="left", box=None, padding=(0, 1), pad_edge=False)
+    found.show_header = any(one.title for one in table.shown)
     for column in table.shown:
-        grid.add_column(column.title, justify="right" if column.number else "left", overflow="fold")
-    for cells, faint in table.lines:
-        grid.add_row(*cells, style="dim" if faint else None)
-    console.print(grid)
-    for line in table.notes:
-        console.print(line, soft_wrap=True)
+        justify: Literal["left", "right"] = "right" if column.number else "left"
+        found.add_column(column.title, justify=justify, overflow="fold")
+    for cells, grade in table.lines:
+        found.add_row(*cells, style=_STYLES[grade])
+    return found

@@ -1,12 +1,32 @@
 """What the tests of a campaign say of rig and model."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
+from typing import Final, TypeVar
 
-from pmm.campaign.calibration import Calibration
-from pmm.evaluation.control_chart import Chart
-from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
-from pmm.evaluation.water_tests import InWater
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.campaign.calibration import CALIBRATION_FILE, Calibration, write_calibration
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.evaluation.check_weights import calibrate, modes_text
+from pmm.evaluation.control_chart import LEAST, Chart, control_charts
+from pmm.evaluation.rig_tests import (
+    GaugeResponse,
+    GaugeZeros,
+    RungMode,
+    known_mass_responses,
+    rung_modes,
+    zero_drifts,
+)
+from pmm.evaluation.run_results import RunResult, of_kind, read_results
+from pmm.evaluation.water_tests import InWater, in_water
+from pmm.recorder.campaign_owner import own_campaign
+from pmm.whole_file import write_whole
+
+MODES_FILE: Final = "modes.toml"
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True)
@@ -37,3 +57,104 @@ class Evaluation:
     def in_control(self) -> bool:
         """Whether no chart shows a change."""
         return all(one.in_control for one in self.charts)
+
+
+def evaluate(folder: Path, valid_days: int) -> Evaluation:
+    """Return what a campaign's tests say; a test that shows nothing stops no other.
+
+    Parameters
+    ----------
+    valid_days
+        How long a calibration may be relied on.
+
+    Raises
+    ------
+    DataError
+        If the folder holds no complete run.
+    ConfigurationError
+        If known masses were moved and no campaign file says where the struts are.
+    """
+    results, failed = read_results(folder), list[str]()
+
+    def tried(what: Callable[[], _Found], otherwise: _Found) -> _Found:
+        try:
+            return what()
+        except DataError as error:
+            failed.append(str(error))
+            return otherwise
+
+    weights, controls = of_kind(results, "check-weight"), of_kind(results, "control")
+
+    def mode(run: RunResult) -> tuple[RungMode, ...]:
+        return tried(lambda: rung_modes([run]), ())
+
+    modes = [each for run in of_kind(results, "pluck") for each in mode(run)]
+    water = _in_water(folder)
+    failed += [one.message for one in water.failed]
+    notes = []
+    if 0 < len(controls) < LEAST:
+        notes.append(
+            f"control condition: {len(controls)} of the {LEAST} repeats that a chart needs; "
+            "plan more with [control] every"
+        )
+    return Evaluation(
+        zero_drifts(of_kind(results, "zero")),
+        tried(lambda: _calibration(weights, valid_days), None),
+        tuple(modes),
+        _responses(folder, of_kind(results, "known-mass"), of_kind(results, "dry")),
+        control_charts(controls) if len(controls) >= LEAST else (),
+        water,
+        tuple(notes),
+        tuple(failed),
+    )
+
+
+def _calibration(weights: Sequence[RunResult], valid_days: int) -> Calibration | None:
+    if not weights:
+        return None
+    made = datetime.fromisoformat(weights[-1].header.started_utc).date()
+    return calibrate(weights, made, valid_days)
+
+
+def _in_water(folder: Path) -> InWater:
+    if not (folder / CAMPAIGN_FILE).exists():
+        return InWater()
+    return in_water(read_campaign(folder / CAMPAIGN_FILE), folder)
+
+
+def _responses(
+    folder: Path, known: Sequence[RunResult], dry: Sequence[RunResult]
+) -> tuple[GaugeResponse, ...]:
+    return known_mass_responses(known, dry, _half_spacing(folder)) if known else ()
+
+
+def _half_spacing(folder: Path) -> float:
+    oscillator = read_campaign(folder / CAMPAIGN_FILE).oscillator
+    if oscillator is None:
+        raise ConfigurationError(f"{folder / CAMPAIGN_FILE}: no [oscillator]; known masses need it")
+    return oscillator.half_spacing_m
+
+
+def keep(found: Evaluation, folder: Path) -> list[Path]:
+    """Write what later runs use; a campaign that is being recorded may be looked at meanwhile.
+
+    Raises
+    ------
+    DataError
+        If there is something to be written and another process is writing into the folder.
+    """
+    if found.calibration is None and not found.modes:
+        return []
+    with own_campaign(folder):
+        return _write(found, folder)
+
+
+def _write(found: Evaluation, folder: Path) -> list[Path]:
+    written = []
+    if found.calibration is not None:
+        written.append(write_calibration(found.calibration, folder / CALIBRATION_FILE))
+    if found.modes:
+        path = folder / MODES_FILE
+        write_whole(path, modes_text([one.as_table() for one in found.modes]))
+        written.append(path)
+    return written

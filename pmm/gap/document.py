@@ -1,38 +1,19 @@
 """What ``pmm gap`` shows of a campaign: said once, for the terminal, the page and programs."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from analysis.gap.description import Description
-from analysis.gap.marginal import Marginal
-from pmm.document.content import (
-    Column,
-    Data,
-    Document,
-    Figure,
-    Note,
-    Notes,
-    Section,
-    Table,
-    Text,
-    data_only,
-    number,
-    word,
-)
-from pmm.document.notation import NOT_KNOWN, percent, written
+from pmm.document.content import Data, Document, Figure, Note, Notes, Section, Table, Text
 from pmm.gap import figures
-from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.conclusion import EFFECT, Conclusion
 from pmm.gap.report import GapReport
-from pmm.gap.rows import ControlRow, Ranked
-from pmm.gap.steps import StepRow
+from pmm.gap.tables import CONTROLS, EFFECTS, NEXT, RANKING, REGIMES, coefficient_columns, steps
 from pmm.gap.words import joined
 
 SCHEMA: Final = "pmm-gap-1"
-_TWO: Final = written(".2f")
-_FOUR: Final = written(".4f")
 
 _E: Final = (
     "E is measured minus simulated, u its standard uncertainty; E/u is their ratio, root mean "
@@ -65,53 +46,6 @@ _ODDS: Final = (
     "Runs of this rig, by how well they are expected to tell apart: {}. Log odds are the natural "
     "logarithm of the factor by which the right answer gains on the others: 3 is a factor of 20."
 )
-
-STEPS: Final[tuple[Column[StepRow], ...]] = (
-    Column("verdict", lambda one: one.verdict),
-    Column("largest", lambda one: one.largest),
-    number("E/u as stated", "stated_u", lambda stated: "" if math.isnan(stated) else _TWO(stated)),
-    number("E/u", "gap_u", _TWO),
-    number("numbers", "count"),
-    *data_only("beyond", "worst", "tells", "strained"),
-)
-RANKING: Final[tuple[Column[Ranked], ...]] = (
-    word("answer", "answer", joined),
-    word("stage", "stage"),
-    Column("parameters (95 %)", lambda one: "; ".join(parameters(one.effects))),
-    number("probability", "probability", _FOUR),
-    number("withheld", "withheld_u", _TWO, "u"),
-    *data_only("effects", "alike", "measure"),
-)
-EFFECTS: Final[tuple[Column[Marginal], ...]] = (
-    word("effect in any answer", "name"),
-    word("stage", "stage"),
-    Column("cannot be told from", lambda one: _alike(one)),
-    number("probability", "probability", _FOUR),
-    number("of its class", "class_probability", _FOUR),
-    *data_only("size_sigma", "alike"),
-)
-CONTROLS: Final[tuple[Column[ControlRow], ...]] = (
-    word("answer", "what"),
-    number("gap before", "before_u", _TWO, "u"),
-    number("after", "after_u", _TWO, "u"),
-    Column("shrinks", lambda one: shrinks(one), number=True),
-    Column("95 %", lambda one: interval(one), number=True),
-    *data_only("share", "low", "high"),
-)
-REGIMES: Final = (
-    word("withheld", "regime"),
-    number("before", "before", _TWO, "u"),
-    number("after", "after", _TWO, "u"),
-    number("second best", "second_best", _TWO, "u"),
-    number("polynomial", "polynomial", _TWO, "u"),
-)
-NEXT: Final[tuple[Column[dict[str, Any]], ...]] = (
-    Column("run", lambda one: one["said"], "said"),
-    Column("expected log odds", lambda one: one["gain_log_odds"], "gain_log_odds", written(".1f"),
-           number=True),
-    Column(None, lambda one: one["run"], "run"),
-    Column(None, lambda one: one["between"], "between"),
-)  # fmt: skip
 
 
 def document(report: GapReport) -> Document:
@@ -155,11 +89,6 @@ def _answer(report: GapReport) -> Section:
     )
 
 
-def steps(name: str, heading: str, rows: Sequence[StepRow], key: str) -> Table[StepRow]:
-    """Return a table of steps of the walk, or of contrasts."""
-    return Table(name, (word(heading, "what"), *STEPS), rows, key, filled=True)
-
-
 def _where(report: GapReport) -> Section:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     stage = f"Stage, by the answers' probabilities: {', '.join(shares)}."
@@ -196,39 +125,6 @@ def _which(report: GapReport) -> Section:
     )
 
 
-def parameters(effects: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return each parameter of an answer's effects with its interval, as people read it."""
-    return [
-        f"{name} = {_with_interval(value)}"
-        for effect in effects
-        for name, value in effect["parameters"].items()
-    ]
-
-
-def _with_interval(one: Mapping[str, float]) -> str:
-    if one["low"] == one["high"]:  # not fitted
-        return f"{one['value']:.4g}"
-    return f"{one['value']:.4g} ({one['low']:.4g} to {one['high']:.4g})"
-
-
-def _alike(one: Marginal) -> str:
-    if math.isnan(one.class_probability):
-        return "its absence"
-    return ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
-
-
-def shrinks(one: ControlRow) -> str:
-    """Return by how much a gap shrinks; a dash where there was none."""
-    return percent("z.0f")(one.share if one.before_u > 0.0 else math.nan)
-
-
-def interval(one: ControlRow) -> str:
-    """Return the interval of that; a dash where nobody knows it."""
-    if one.before_u <= 0.0 or math.isnan(one.low):
-        return NOT_KNOWN
-    return f"{100.0 * one.low:z.0f} to {percent('z.0f')(one.high)}"
-
-
 def _how_far(report: GapReport) -> Section:
     said = (
         "The withheld runs, which nobody looked at before"
@@ -255,31 +151,6 @@ def _coefficients(report: GapReport) -> Section:
     columns = coefficient_columns(compared=any(one.compared for one in report.coefficients))
     table = Table("Coefficients", columns, report.coefficients, "coefficients")
     return Section("Coefficients", (Text(lines), table))
-
-
-def coefficient_columns(*, compared: bool) -> tuple[Column[CoefficientRow], ...]:
-    """Return the columns of the coefficients; ``compared`` if they were fitted with an effect."""
-    fitted: tuple[Column[CoefficientRow], ...] = (
-        Column(
-            "fitted without effect" if compared else "fitted",
-            lambda one: f"{one.without:.6g} ± {2.0 * one.u_without:.2g}",
-            number=True,
-        ),
-    )
-    with_it: tuple[Column[CoefficientRow], ...] = (
-        Column("with it", lambda one: f"{one.with_effect:.6g} ± {2.0 * one.u_with:.2g}",
-               number=True),
-        number("bias", "bias_u", written("+z.1f"), "u"),
-    )  # fmt: skip
-    return (
-        Column("coefficient", lambda one: one.where),
-        word("unit", "unit"),
-        number("stated", "stated", written(".6g")),
-        *fitted,
-        *(with_it if compared else data_only("bias_u")),
-        *data_only("name", "without", "u_without", "with_effect", "u_with", "speed_m_s",
-                   "frequency_hz"),
-    )  # fmt: skip
 
 
 def unexplained(found: Conclusion) -> Iterator[str]:

@@ -38,8 +38,8 @@ def catalogue_document(effects: Mapping[str, type[Effect]]) -> Document:
     """Return the list of effects, and of those of pendulum tests, which a bench is given."""
     pendulums = len(PENDULUM_CATALOGUE)
     return Document(
-        "effects",
-        "the catalogue",
+        "",
+        "the catalogue of effects",
         (
             Section(
                 "",
@@ -65,7 +65,7 @@ def effect_document(shown: EffectAtSetPoint) -> Document:
     )
     told = _changed(shown)
     return Document(
-        effect.name,
+        "",
         effect.title,
         (
             Section(

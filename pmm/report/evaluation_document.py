@@ -13,6 +13,7 @@ from pmm.document.content import (
     Content,
     Data,
     Document,
+    Figure,
     Section,
     Table,
     Text,
@@ -25,6 +26,8 @@ from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
 from pmm.report.coefficients_document import conclusion
+from pmm.report.control_chart import chart_figure
+from pmm.report.slow_tests import drift_figure, resistance_figure, restoring_figure
 
 SCHEMA: Final = "pmm-evaluation-1"
 _ZEROS: Final[tuple[Column[GaugeZeros], ...]] = (
@@ -50,6 +53,25 @@ _KNOWN_MASS: Final[tuple[Column[GaugeResponse], ...]] = (
 )
 
 
+def evaluation_figures(found: Evaluation) -> Iterator[Figure]:
+    """Yield the figures of what was tested."""
+    water, charts = found.water, found.charts
+    if charts:
+        yield Figure("control-chart", "The control condition.", lambda: chart_figure(charts))
+    if water.restoring:
+        yield Figure(
+            "restoring",
+            "Load of the struts for a displacement.",
+            lambda: restoring_figure(water.restoring, water.tracks),
+        )
+    if (drift := water.derivatives) is not None:
+        yield Figure("static-drift", "Loads over drift.", lambda: drift_figure(water.tows, drift))
+    if water.straight:
+        yield Figure(
+            "straight-tow", "Resistance over speed.", lambda: resistance_figure(water.straight)
+        )
+
+
 def evaluation_document(found: Evaluation) -> Document:
     """Return what is shown of the tests; ``docs/run-control.md`` describes the keys."""
     water = found.water
@@ -72,7 +94,7 @@ def evaluation_document(found: Evaluation) -> Document:
         Data("failed", found.failed),
         Text([str(one) for one in found.files], "files"),
     )
-    return Document("evaluation", "tests of rig and model", (Section("", told),), SCHEMA)
+    return Document("", "tests of rig and model", (Section("", told),), SCHEMA)
 
 
 def _calibration(one: Calibration | None) -> Iterator[Content]:

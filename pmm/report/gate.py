@@ -9,8 +9,8 @@ from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, axis_label, display, loads_first, shown_name
-from pmm.document.run_rows import window_kind
 from pmm.document.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
+from pmm.harmonics.rows import window_kind
 from pmm.report.envelope import Trace, overview, zigzag
 from pmm.report.gate_fit import WINDOWS, caption, fitted, gate_sums, reading_of
 

@@ -1,32 +1,23 @@
-"""What a page says about analyses: per recording what was noticed, a table per gate, figures."""
+"""What is said of resolved recordings, on a terminal, on a page and to programs."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from pathlib import Path
 from typing import Final
 
-import numpy as np
-
 from analysis.resolver.analysis import Analysis
-from analysis.resolver.harmonics import Harmonics
-from pmm.document.content import (
-    Column,
-    Content,
-    Document,
-    Notes,
-    Section,
-    Table,
-    Text,
-    number,
-    pairs,
-    word,
-)
-from pmm.document.flag_lines import flag_notes
-from pmm.document.labels import display, loads_first, plain
-from pmm.document.notation import rounded, rounded_phase
-from pmm.document.run_rows import floored, window_kind
-from pmm.report.gate_fit import WINDOWS, caption
+from hardware.description.flags import Flag
+from pmm.document.content import Data, Document, Section, Text, pairs
+from pmm.document.labels import plain
+from pmm.document.notation import counted
+from pmm.harmonics.resolving import Failure
+from pmm.harmonics.rows import RunRows, run_rows, window_kind
+from pmm.report.gate_fit import WINDOWS
+from pmm.report.harmonics_tables import classic_tables, gate_tables, noticed
 from pmm.report.plots import figures
 
+SCHEMA: Final = "pmm-analysis-1"
+PAGE_LEVEL: Final = 0.95
 _INTRODUCTION: Final = (
     "Each recording is resolved into its mean and harmonics over whole periods of the motion, each "
     "value with its 95 % interval. For every run there are what was noticed, a table per gate, the "
@@ -42,101 +33,99 @@ _READING: Final = (
 )
 
 
-@dataclass(frozen=True)
-class _Row:
-    """One harmonic of one channel, or its mean, which has no phasor."""
+def analysis_document(
+    runs: Sequence[RunRows],
+    failed: Sequence[Failure],
+    not_recorded: Sequence[Path],
+    doubts: Sequence[tuple[Path, tuple[Flag, ...]]],
+    level: float,
+) -> Document:
+    """Return what ``pmm analyse`` shows; ``docs/campaigns.md`` describes the keys.
 
-    channel: str
-    unit: str
-    harmonic: str
-    in_phase: str
-    quadrature: str = ""
-    amplitude: str = ""
-    phase: str = ""
+    Parameters
+    ----------
+    not_recorded
+        Where the recordings of a campaign's other runs would lie.
+    doubts
+        Of campaigns: what looks wrong in all their runs.
+    level
+        Probability of the intervals.
+    """
+    data = (
+        Data("level", level),
+        Data("runs", runs),
+        Data("campaigns", [{"file": path, "flags": flags} for path, flags in doubts]),
+        Data("not_recorded", not_recorded),
+        Data("failed", [
+            {"file": one.file, "message": one.message, "flags": one.flags} for one in failed
+        ]),
+    )  # fmt: skip
+    sections = (
+        *(run_section(one, level) for one in runs),
+        *(doubt_section(path, flags) for path, flags in doubts),
+        Section("", data),
+    )
+    return Document("", "harmonics", sections, SCHEMA)
 
 
-_COLUMNS: Final[tuple[Column[_Row], ...]] = (
-    word("channel", "channel"),
-    word("unit", "unit"),
-    word("harmonic", "harmonic"),
-    number("in phase", "in_phase"),
-    number("quadrature", "quadrature"),
-    number("amplitude", "amplitude"),
-    number("phase", "phase", unit="deg"),
-)
+def doubt_section(path: Path, flags: Sequence[Flag]) -> Section:
+    """Return what looks wrong in all runs of a campaign."""
+    return Section(f"all runs of {path}", (noticed(flags),))
+
+
+def run_section(rows: RunRows, level: float) -> Section:
+    """Return what was found in a recording, its intervals of some probability."""
+    channel = f" {rows.reference_channel}" if rows.reference_channel else ""
+    steady = (
+        ", where each part of a first harmonic keeps within "
+        f"{100.0 * rows.steady_tolerance:g} % of the usual amplitude about its middle"
+    )
+    about = {
+        "recording": f"{rows.samples} samples, {rows.sample_rate_hz:.6g} Hz, "
+        f"{rows.duration_s:.6g} s",
+        "reference": f"{rows.reference}{channel}, {rows.reference_frequency_hz:.6g} Hz",
+        "window": f"{rows.window}, {counted(rows.window_periods, 'period')} from "
+        f"{rows.window_opened_s:.3f} s to {rows.window_closed_s:.3f} s"
+        + (steady if rows.window == "found steady" else ""),
+    }
+    vibrations = [
+        f"lets through of a vibration at {one.frequency_hz:g} Hz: "
+        + ", ".join(f"{100.0 * part:.2g} % into n = {n}" for n, part in enumerate(one.parts, 1))
+        for one in rows.let_through
+    ]
+    return Section(
+        rows.file,
+        (
+            pairs("Recording", about),
+            *gate_tables(rows, level),
+            Text(vibrations),
+            *classic_tables(rows.classic),
+            noticed(rows.flags),
+        ),
+    )
 
 
 def harmonics_document(analyses: Sequence[Analysis], name: str) -> Document:
-    """Return what is said about analyses: figures of each first gate, tables of all gates."""
-    sections = [_section(one, f"run{k}") for k, one in enumerate(analyses, start=1)]
+    """Return what a page says of analyses: tables of all gates, figures of each first one."""
+    sections = [_page_section(one, f"run{k}") for k, one in enumerate(analyses, start=1)]
     first = Section("", (Text((_INTRODUCTION,)),))
     last = Section("How to read the numbers", (Text((_READING,), faint=True),))
     return Document(name, "harmonics", (first, *sections, last), "")
 
 
-def _section(analysis: Analysis, anchor: str) -> Section:
-    count = len(analysis.readings)
+def _page_section(analysis: Analysis, anchor: str) -> Section:
+    rows = run_rows(analysis, file=analysis.recording.name, level=PAGE_LEVEL)
     drawn = (replace(one, name=f"{anchor}-{one.name}") for one in figures(analysis))
     return Section(
         plain(analysis.recording.name),
         (
-            Notes(flag_notes(analysis.flags)),
-            *(one for k in range(count) for one in _gate(analysis, k)),
-            Text(("The figures show gate 1.",) if count > 1 else (), faint=True),
+            noticed(analysis.flags),
+            *gate_tables(rows, PAGE_LEVEL),
+            Text(("The figures show gate 1.",) if len(rows.gates) > 1 else (), faint=True),
             *drawn,
             pairs("Where it comes from", dict(_provenance(analysis)), titled=True),
         ),
     )
-
-
-def _gate(analysis: Analysis, place: int) -> Iterator[Content]:
-    """Yield the table of one reading, loads first, and what was noticed of it."""
-    reading, count = analysis.readings[place], len(analysis.readings)
-    said, source = caption(reading), str(reading.interval_source)
-    notes = (
-        f"No intervals{source.removeprefix('none')}."
-        if source.startswith("none")
-        else f"95 % intervals from the {source}.",
-        f"Drift from: {reading.drift_source}.",
-        f"Estimator: {reading.estimator}.",
-    )
-    order = loads_first(analysis.recording)
-    rows = [row for channel in order for row in _channel_rows(reading, channel)]
-    title = f"Gate {place + 1} of {count}: {said}" if count > 1 else said[0].upper() + said[1:]
-    yield Table(title, _COLUMNS, rows, titled=True, notes=(" ".join(notes),))
-    yield Notes(flag_notes(reading.flags))
-
-
-def _channel_rows(reading: Harmonics, channel: int) -> Iterator[_Row]:
-    shown = display(reading.units[channel])
-    values = reading.coefficients[channel] * shown.factor
-    half = reading.half_width()[channel] * shown.factor
-    factors = reading.coverage_factor()[1::2]
-    along, sideways = (part[channel] * factors for part in reading.polar_uncertainty())
-    amplitude = reading.amplitude[channel] * shown.factor
-    size = float(max(abs(values[0]), amplitude.max()))
-
-    def told(value: float, half_width: float) -> str:
-        return rounded(*floored(float(value), float(half_width), size))
-
-    name = plain(reading.channel_names[channel])
-    yield _Row(name, shown.label, "mean", told(values[0], half[0]))
-    for n in range(reading.order):
-        s, c = 2 * n + 1, 2 * n + 2
-        phase = rounded_phase(
-            float(np.degrees(reading.phase_rad[channel, n])),
-            float(np.degrees(sideways[n])),
-            floored(float(amplitude[n]), 0.0, size)[0],
-        )
-        yield _Row(
-            "",
-            shown.label,
-            str(n + 1),
-            told(values[s], half[s]),
-            told(values[c], half[c]),
-            told(amplitude[n], along[n] * shown.factor),
-            phase,
-        )
 
 
 def _provenance(analysis: Analysis) -> list[tuple[str, str]]:

@@ -122,6 +122,22 @@ def rows_command(
     others(board, workers, limit_s, only, scheduler)
 
 
+@main.command("oracle")
+@BOARD
+@LIMIT
+@WORKERS
+@SCHEDULER
+def oracle_command(board: Path, limit_s: float, workers: int, scheduler: str | None) -> None:
+    """Answer BOARD by the diagnosis told the tolerances that its keys have."""
+    from tests.sealed.oracle import answered_as, told
+    from tests.sealed.steps import answered
+
+    _refuse_beside(scheduler, "workers", "limit_s")
+    output = told(board)
+    answered(output, workers, limit_s, scheduler)
+    click.echo(f"{answered_as(board, output)} answers of the oracle")
+
+
 @main.command("leave-out")
 @BOARD
 @MOST
@@ -196,6 +212,29 @@ def invariance_command(board: Path, variations: Path) -> None:
     for one in agreements(board, variations):
         click.echo(f"{one.name}: {one.count} cases, the same class in {one.same_class:.2f}, "
                    f"its probability within 0.1 in {one.near:.2f}")  # fmt: skip
+
+
+@main.command("recorded")
+@click.option("--output", required=True, type=click.Path(path_type=Path))
+@click.option("--shared", default="../shared/data", show_default=True,
+              type=click.Path(file_okay=False, path_type=Path),
+              help="Folder of measured records; left out where it is not.")  # fmt: skip
+def recorded_command(output: Path, shared: Path) -> None:
+    """Make world E: campaigns that were recorded or came from others, and measured records."""
+    from tests.sealed.recorded import recorded
+
+    click.echo(f"{sum(1 for _ in recorded(output, shared.absolute()))} made in {output}")
+
+
+@main.command("sources")
+@click.argument("output", type=click.Path(exists=True, file_okay=False, path_type=Path))
+def sources_command(output: Path) -> None:
+    """Count by source what is said right of world E: campaigns answered, pendulums asked here."""
+    from tests.sealed.recorded import counted
+
+    for one in counted(output):
+        said = "".join(f"; {name}: {what}" for name, what in sorted(one.wrong.items()))
+        click.echo(f"{one.source}: {one.right} of {one.count} right{said}")
 
 
 @main.command("whole")

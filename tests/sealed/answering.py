@@ -176,7 +176,7 @@ def _seconds_of_preparing(case: Path) -> float:
 
 def _answer(row: str, asked: Asked) -> Mapping[str, Any]:
     if row in (DIAGNOSIS, LEFT_OUT):
-        from pmm.cli.gap_answering import diagnosed
+        from pmm.cli.gap.answer import diagnosed
 
         return diagnosed(asked.folder, asked.left_out)
     return answered_by(row)(asked.folder)

@@ -146,7 +146,7 @@ class Background:
         found = [weighed(one, under.reduced(scale, turned, share * forms)) for share in every]
         logs = [each.log_evidence for each in found]
         best = found[int(np.argmax(logs))]
-        return replace(best, log_evidence=float(_mean(logs)))
+        return replace(best, log_evidence=float(_mean(np.array(logs))))
 
     @cached_property
     def _columns(self) -> FloatArray:
@@ -223,7 +223,7 @@ class Background:
         )
 
 
-def _mean(each: Iterable[FloatArray | float]) -> FloatArray:
+def _mean(each: Iterable[FloatArray]) -> FloatArray:
     """Return the log of the mean evidence over equally probable deviations."""
     logs = list(each)
     return np.asarray(np.logaddexp.reduce(logs, axis=0) - math.log(len(logs)), np.float64)

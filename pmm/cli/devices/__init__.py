@@ -1,30 +1,26 @@
 """``pmm devices``: look at the devices of a rig one by one, before anything runs by itself."""
 
-import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from hardware.description.errors import ConfigurationError
 from pmm.cli.group import CommandGroup
-from pmm.cli.screen import messages, output
+from pmm.cli.options import JSON, with_options
+from pmm.cli.screen import messages
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from hardware.bus import BusConfiguration
     from hardware.rig import Rig
     from hardware.rig_configuration import RigConfiguration
     from hardware.serial_port import PortSettings
     from pmm.devices.device_source import DeviceTables
-
-JSON_SCHEMA = "pmm-devices-1"
 
 
 @click.group(
@@ -46,22 +42,12 @@ def devices() -> None:
     """  # noqa: D301
 
 
-def _with(*options: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    def add(function: Any) -> Any:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return add
-
-
-JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
 YES = click.option("--yes", is_flag=True, help="Do not ask before anything moves.")
 FREE = click.option(
     "--free-running", is_flag=True, help="A simulated rig only: as fast as it goes, nobody asked."
 )
-RIG = _with(click.argument("rig", metavar="RIG.toml"), FREE, JSON)
-ANY = _with(
+RIG = with_options(click.argument("rig", metavar="RIG.toml"), FREE, JSON)
+ANY = with_options(
     click.argument("rig", metavar="[RIG.toml]", required=False),
     click.option("--interface", metavar="NAME", help="A CAN interface of python-can."),
     click.option("--channel", metavar="NAME", default="", help="Its channel: can0, a device ..."),
@@ -188,30 +174,3 @@ def confirm(question: str, *, yes: bool) -> None:
     """
     if not yes:
         click.confirm(question, err=True, abort=True)
-
-
-def print_json(job: str, content: dict[str, Any]) -> None:
-    """Print a job's document; numbers that are not known are ``null``."""
-    from pmm.document.data import plain
-
-    click.echo(json.dumps({"schema": JSON_SCHEMA, "job": job, **plain(content)}, indent=2))
-
-
-def print_table(headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = "") -> None:
-    """Print a table; headings among ``numbers`` (separated by commas) are aligned to the right."""
-    output().print(plain_table(headings, rows, numbers))
-
-
-def plain_table(
-    headings: Sequence[str], rows: Sequence[Sequence[str]], numbers: str = ""
-) -> "Table":
-    """Return such a table."""
-    from rich.table import Table
-
-    table = Table(box=None, padding=(0, 1), pad_edge=False)
-    right = numbers.split(",")
-    for one in headings:
-        table.add_column(one, justify="right" if one in right else "left", overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    return table

@@ -2,15 +2,14 @@
 
 import sys
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.cli.devices import RIG, opened, print_json
-from pmm.cli.screen import output
+from pmm.cli.devices import RIG, opened
+from pmm.cli.screen import output, show
 from pmm.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -34,6 +33,7 @@ def gauges(
     """
     from pmm.devices.device_source import DeviceTables
     from pmm.devices.push_session import GaugeReadings, push_each
+    from pmm.report.devices_document import gauges_document, push_line
 
     tables = DeviceTables(Path(rig))
     with (
@@ -54,27 +54,15 @@ def gauges(
         for pushed in push_each(all_gauges, channels or names, tables.plane, within_s):
             found.append(pushed)
             if not as_json:
-                _show_push(terminal, console, pushed)
+                _show_push(terminal, console, pushed, push_line(pushed))
     if as_json:
-        print_json("gauges", {"gauges": [_push_document(one) for one in found]})
+        show(gauges_document(found), as_json=True)
     if any(one.wrong for one in found):
         raise click.exceptions.Exit(1)
 
 
-def _show_push(terminal: Terminal, console: "Console", pushed: "Pushed") -> None:
-    push = pushed.push
-    if push is not None:
-        sign = "+" if push.sign > 0 else "-"
-        right = "right" if not pushed.wrong else "WRONG"
-        line = (
-            f"{pushed.asked}: came in on {push.channel}, sign {sign}, {push.change:+.3g} "
-            f"{push.unit} (a push is more than {push.threshold:.2g} {push.unit}): {right}"
-        )
+def _show_push(terminal: Terminal, console: "Console", pushed: "Pushed", line: str) -> None:
+    if line:
         terminal.do(lambda: console.print(line))
     for one in pushed.wrong:
         terminal.say(f"error: {pushed.asked}: {one}")
-
-
-def _push_document(pushed: "Pushed") -> dict[str, object]:
-    push = None if pushed.push is None else {**asdict(pushed.push)}
-    return {"asked": pushed.asked, "push": push, "wrong": list(pushed.wrong)}

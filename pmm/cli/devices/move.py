@@ -3,14 +3,13 @@
 import math
 import re
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.cli.devices import RIG, YES, confirm, opened, print_json
-from pmm.cli.screen import output
+from pmm.cli.devices import RIG, YES, confirm, opened
+from pmm.cli.screen import show
 from pmm.cli.terminal import Terminal
 
 _UNITS = {"m": ("m", 1.0), "mm": ("m", 1e-3), "rad": ("rad", 1.0),
@@ -36,6 +35,7 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
     from pmm.devices.axis_move import NOTHING_MOVED, axis_of, look
     from pmm.devices.axis_move import move as move_axis
     from pmm.devices.device_source import DeviceTables
+    from pmm.report.devices_document import move_document
 
     tables = DeviceTables(Path(rig))
     with (
@@ -52,13 +52,7 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
         look(opened_rig)
         reading = move_axis(opened_rig, one, goal)
         unit = one.unit
-    if as_json:
-        print_json("move", {"axis": axis, "wanted": goal, "unit": unit, "reading": asdict(reading)})
-    else:
-        output().print(
-            f"{axis} stands at {reading.value:.6g} ± {reading.standard_uncertainty:.2g} {unit} "
-            f"({reading.source}); wanted {goal:.6g} {unit}"
-        )
+    show(move_document(axis, goal, unit, reading), as_json=as_json)
 
 
 def _position(text: str, unit: str) -> float:

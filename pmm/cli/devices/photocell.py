@@ -1,8 +1,6 @@
 """``pmm devices photocell``: its pulses, one by one."""
 
-import math
 from contextlib import ExitStack
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from hardware.description.errors import ConfigurationError
-from pmm.cli.devices import RIG, YES, confirm, opened, print_json, print_table
-from pmm.cli.screen import error_line
+from pmm.cli.devices import RIG, YES, confirm, opened
+from pmm.cli.screen import error_line, show
 from pmm.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -42,6 +40,7 @@ def photocell(
     from pmm.devices.axis_move import NOTHING_MOVED, look, turn
     from pmm.devices.device_source import DeviceTables
     from pmm.devices.photocell_test import watch
+    from pmm.report.devices_document import photocell_document
 
     tables = DeviceTables(Path(rig))
     with (
@@ -63,7 +62,9 @@ def photocell(
             terminal.say(f"turn the shaft by hand, evenly, until {pulses} pulses have come")
         tell = (lambda _: None) if as_json else partial(_tell, terminal)
         watched = watch(opened_rig, pulses, within_s, tell)
-    _print_pulses(watched, as_json=as_json)
+    show(photocell_document(watched), as_json=as_json)
+    if not as_json:
+        _complain(watched)
     if not watched.good:
         raise click.exceptions.Exit(1)
 
@@ -72,32 +73,7 @@ def _tell(terminal: Terminal, pulse: "Pulse") -> None:
     terminal.say(f"pulse {pulse.number} at {pulse.time_s:.4f} s")
 
 
-def _print_pulses(watched: "PhotocellRecord", *, as_json: bool) -> None:
-    if as_json:
-        print_json(
-            "photocell",
-            {
-                "pulses": [asdict(one) for one in watched.pulses],
-                "intervals": [{**asdict(one), "verdict": one.verdict} for one in watched.intervals],
-                "said": list(watched.said),
-                "good": watched.good,
-            },
-        )
-        return
-    print_table(
-        ("pulse", "time [s]", "interval [s]", "turns", "verdict"),
-        [
-            (
-                str(one.number),
-                f"{one.time_s:.4f}",
-                f"{one.seconds:.4f}",
-                "-" if math.isnan(one.turns) else f"{one.turns:.4f}",
-                one.verdict or "ok",
-            )
-            for one in watched.intervals
-        ],
-        "pulse,time [s],interval [s],turns",
-    )
+def _complain(watched: "PhotocellRecord") -> None:
     for one in watched.said:
         error_line(one)
     if not watched.enough:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.devices import ANY, Target, opened, plain_table, print_json
-from pmm.cli.screen import error_line, output
+from pmm.cli.devices import ANY, Target, opened
+from pmm.cli.screen import error_line, output, show
 from pmm.cli.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from rich.console import Console
     from rich.live import Live as Screen
-    from rich.table import Table
 
     from pmm.devices.device_readings import DeviceRow
     from pmm.devices.device_source import DeviceTables
@@ -36,6 +35,7 @@ def read(once: bool, seconds: float | None, as_json: bool, **options: Any) -> No
     A bus alone is read by SDO: what the nodes have mapped to their process data.
     """
     from pmm.devices.readings import ONCE_S
+    from pmm.report.devices_document import values_document
 
     target = Target(**options)
     tables = target.tables()
@@ -43,14 +43,9 @@ def read(once: bool, seconds: float | None, as_json: bool, **options: Any) -> No
     # The terminal is waited for last: the rig is left by then.
     with Terminal() as terminal, _source(target, tables) as look:
         shown = look(ONCE_S) if once else _live(look, seconds, terminal, screen)
-    if as_json:
-        rows = [{"device": one.device, "what": one.what, "value": one.value, "unit": one.unit}
-                for one in shown.rows]  # fmt: skip
-        print_json("read", {"values": rows, "said": list(shown.said)})
-        return
-    if once:
-        output().print(_table(shown.rows))
-    for one in shown.said[-_LATEST:]:
+    if as_json or once:
+        show(values_document(shown), as_json=as_json)
+    for one in () if as_json else shown.said[-_LATEST:]:
         error_line(one)
 
 
@@ -95,19 +90,8 @@ def _screen(console: "Console") -> "Screen":
 
 
 def _draw(screen: "Screen", rows: "Sequence[DeviceRow]") -> None:
+    from pmm.document.terminal import grid
+    from pmm.report.devices_document import values_table
+
     screen.start()
-    screen.update(_table(rows), refresh=True)
-
-
-def _table(rows: "Sequence[DeviceRow]") -> "Table":
-    lines = []
-    before = ""
-    for one in rows:
-        value = one.value if isinstance(one.value, str) else _number(one.value)
-        lines.append((one.device if one.device != before else "", one.what, value, one.unit))
-        before = one.device
-    return plain_table(("device", "what", "value", "unit"), lines, "value")
-
-
-def _number(value: float) -> str:
-    return "-" if value != value else f"{value:.6g}"
+    screen.update(grid(values_table(rows)), refresh=True)

@@ -1,19 +1,31 @@
 """``pmm gap add-pendulum``: put the causes that were found into a pendulum's simulation."""
 
-from typing import Any
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from pmm.cli.gap_options import catalogue_options, most_option
+from pmm.cli.gap.add import add_and_say, check_appendable
+from pmm.cli.gap.options import CATALOGUE, MOST, Chosen, progress
+from pmm.cli.options import JSON
+
+if TYPE_CHECKING:
+    from analysis.gap.pendulum.settle import Settled
+    from pmm.gap.pendulum_examine import PendulumOptions
+
+_SCHEMA: Final = "pmm-gap-add-pendulum-1"
 
 
 @click.command("add-pendulum")
 @click.argument("file", metavar="FILE.toml")
 @click.argument("causes", nargs=-1, metavar="[EFFECT]...")
-@most_option
-@catalogue_options
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not a text.")
-def add_pendulum(**options: Any) -> None:
+@MOST
+@CATALOGUE
+@JSON
+def add_pendulum(
+    file: str, causes: tuple[str, ...], most: int, as_json: bool, **chosen: Any
+) -> None:
     """Write effects with their fitted parameters into the file of a pendulum or a free decay.
 
     The next "pmm gap pendulum FILE.toml" starts from them. With EFFECT, that one or those are
@@ -23,6 +35,43 @@ def add_pendulum(**options: Any) -> None:
 
     Exit status: 0 added; 1 no cause is found; 2 the request was wrong.
     """
-    from pmm.cli.gap_add_pendulum_work import GapAddPendulumOptions, run
+    from pmm.cli.hints import pasted
+    from pmm.gap.appending import Added, refuse_twice
+    from pmm.gap.pendulum_examine import PendulumOptions
+    from pmm.gap.pendulum_file import read_case
 
-    run(GapAddPendulumOptions(**options))
+    given, path = Chosen(**chosen), Path(file)
+    there = [one.name for one in read_case(path).effects]
+    check_appendable(path)
+    refuse_twice(path, there, causes)
+    after = _settled(path, causes, PendulumOptions(given.effects, given.without, most))
+    refuse_twice(path, there, after.best.names)
+    effects = after.best.effects(after.problem.trials[0])
+    added = [Added(one.name, _told(one)) for one in effects]
+    again = pasted(
+        "gap", "pendulum", file, *(word for one in given.files for word in ("--effects", one))
+    )
+    add_and_say(path, added, read_case, again=again, schema=_SCHEMA, as_json=as_json)
+
+
+def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") -> "Settled":
+    """Return the causes to add, fitted."""
+    from hardware.description.errors import DataError
+    from pmm.gap.pendulum_conclusion import conclusion_of
+    from pmm.gap.pendulum_examine import examine_pendulum, fitted_causes
+    from pmm.gap.pendulum_words import what_is_wrong
+
+    if causes:
+        return fitted_causes(path, causes, options)
+    with progress() as shown:
+        found = examine_pendulum(path, options, shown).diagnosis
+    concluded = conclusion_of(found)
+    if not concluded.adds:
+        said = what_is_wrong(found, concluded)
+        raise DataError(f"{path.stem}: {said} So there is nothing to add")
+    return found.settled
+
+
+def _told(effect: object) -> dict[str, float | str]:
+    """Return an effect's parameters; what is left to the record is left out."""
+    return {key: value for key, value in asdict(cast("Any", effect)).items() if value != ""}

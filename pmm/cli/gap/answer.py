@@ -1,10 +1,34 @@
 """``pmm gap answer``: the diagnosis of every case of a board, without its keys."""
 
-from typing import Any
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.engine_options import jobs_option, scheduler_option
+from pmm.cli.options import SCHEDULER, jobs_option
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+@dataclass(frozen=True)
+class CaseTask:
+    """A case's folder, absolute, and the effects that are taken out of the catalogue."""
+
+    case: Path
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What came of a case: the text of its answer, or why it could not be diagnosed."""
+
+    case: str
+    text: str = ""
+    failed: str = ""
 
 
 @click.command()
@@ -16,9 +40,16 @@ from pmm.cli.engine_options import jobs_option, scheduler_option
     help="Effects to take out of the catalogue, by case; only these cases are answered.",
 )
 @jobs_option("one for each core")
-@scheduler_option
+@SCHEDULER
 @click.option("--overwrite", is_flag=True, help="Answer again what has an answer already.")
-def answer(**options: Any) -> None:
+def answer(
+    folder: str,
+    output: str | None,
+    leave_out: str | None,
+    jobs: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+) -> None:
     """Diagnose every case in BOARD/cases and write one answer each (docs/sealed.md).
 
     It looks at nothing but BOARD/cases. What is answered already is kept, so that a board that was
@@ -27,6 +58,114 @@ def answer(**options: Any) -> None:
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.gap_answering import GapAnswerOptions, run
+    from hardware.description.errors import DataError
+    from pmm.cli.files import check_folder
+    from pmm.cli.screen import error_line, messages
 
-    run(GapAnswerOptions(**options))
+    board = Path(folder)
+    target = board / "answers" if output is None else Path(output)
+    check_folder(target, "--output")
+    left_out = None if leave_out is None else _left_out(Path(leave_out))
+    cases = [one for one in _cases(board) if left_out is None or one.name in left_out]
+    tasks = [
+        CaseTask(case.absolute(), tuple((left_out or {}).get(case.name, ())))
+        for case in cases
+        if overwrite or not (target / f"{case.name}.json").exists()
+    ]
+    target.mkdir(parents=True, exist_ok=True)
+    started = time.monotonic()
+    failed = _answered(tasks, target, jobs, scheduler)
+    took = time.monotonic() - started
+    kept = len(cases) - len(tasks)
+    messages().print(
+        f"{len(tasks) - len(failed)} cases answered in {took:.0f} s"
+        + (f", {kept} had answers already" if kept else "")
+        + f": {target}"
+    )
+    for line in failed:
+        error_line(line)
+    if failed:
+        click.get_current_context().exit(DataError.exit_status)
+
+
+def _cases(board: Path) -> list[Path]:
+    from hardware.description.errors import ConfigurationError
+
+    found = sorted(one for one in (board / "cases").glob("*") if one.is_dir())
+    if not found:
+        raise ConfigurationError(f"{board}: no cases in {board / 'cases'}")
+    return found
+
+
+def _left_out(path: Path) -> "Mapping[str, Sequence[str]]":
+    from hardware.description.errors import ConfigurationError
+    from sim.effects.catalogue import catalogue
+
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ConfigurationError(f"--leave-out {path}: cannot be read: {error}") from None
+    names = {name for names in table.values() for name in names}
+    unknown = sorted(names - set(catalogue()))
+    if unknown:
+        raise ConfigurationError(f"--leave-out {path}: no effects: {', '.join(unknown)}")
+    return dict(table)
+
+
+def _answered(
+    tasks: "Sequence[CaseTask]", target: Path, jobs: int | None, scheduler: str | None
+) -> list[str]:
+    """Write each answer as it comes; return why cases have none, in their order."""
+    from rich.progress import Progress
+
+    from pmm.cli.screen import messages
+    from pmm.parallel import as_done, open_executor
+    from pmm.whole_file import write_whole
+
+    console, failed = messages(), list[str]()
+    with (
+        Progress(console=console, transient=True, disable=not console.is_terminal) as progress,
+        open_executor(jobs, scheduler) as executor,
+    ):
+        bar = progress.add_task("cases", total=len(tasks))
+        for one in as_done(executor, answer_one, tasks):
+            progress.advance(bar)
+            if one.failed:
+                failed.append(one.failed)
+            else:
+                write_whole(target / f"{one.case}.json", one.text)
+    return sorted(failed)
+
+
+def answer_one(task: CaseTask) -> Answered:
+    """Diagnose one case.
+
+    Raises
+    ------
+    DataError
+        If its folder is not there for this process.
+    """
+    from hardware.description.errors import PmmError
+    from pmm.parallel import check_seen
+
+    check_seen(task.case)
+    try:
+        found = diagnosed(task.case, task.left_out)
+    except (PmmError, OSError) as error:
+        return Answered(task.case.name, failed=f"{task.case.name}: {error}")
+    return Answered(task.case.name, json.dumps(found, indent=1, allow_nan=False) + "\n")
+
+
+def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return the answer to a case's folder, with some effects taken out of the catalogue."""
+    from analysis.gap.diagnose import diagnose
+    from pmm.gap.answer import answer as answer_of
+    from pmm.gap.prepare import prepare
+    from sim.effects.catalogue import catalogue
+
+    known = {name: kind for name, kind in catalogue().items() if name not in left_out}
+    ready = prepare(folder, known)
+    found = diagnose(ready.there.rig, ready.fitted, ready.settings)
+    return answer_of(
+        folder.name, found, ready.there.rig, ready.case.held_out, ready.case.tolerances
+    )

@@ -1,27 +1,43 @@
 """``pmm gap CAMPAIGN``: where rig and simulation differ, why, and how far the gap shrinks."""
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.engine_options import jobs_option, scheduler_option
-from pmm.cli.gap_options import looks
+from pmm.cli.gap.options import LOOKS, Looks, engine, progress
+from pmm.cli.options import JSON, SCHEDULER, jobs_option
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from pmm.campaign.runs import AtRest, Run
+    from pmm.gap.examine import Examined
 
 
 @click.command()
 @click.argument("campaign", metavar="CAMPAIGN")
-@looks
+@LOOKS
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plan", metavar="FILE.toml", help="Write the proposed runs as a plan for pmm run.")
 @jobs_option("one for each core")
-@scheduler_option
+@SCHEDULER
 @click.option(
     "--tolerances",
     is_flag=True,
     help="Print what may be off without a gap, and by how much it is, in place of a diagnosis.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
-def diagnose(**options: Any) -> None:
+@JSON
+def diagnose(
+    campaign: str,
+    page: str | None,
+    plan: str | None,
+    jobs: int | None,
+    scheduler: str | None,
+    tolerances: bool,
+    as_json: bool,
+    **chosen: Any,
+) -> None:
     """Say where rig and simulation differ, which effect causes it, and how far the gap shrinks.
 
     CAMPAIGN is a folder with a campaign.toml and a recording per run. Either the file or a
@@ -38,6 +54,58 @@ def diagnose(**options: Any) -> None:
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.gap_diagnose_work import GapDiagnoseOptions, run
+    from pmm.cli.files import check_files, tell_damaged, tell_unchecked, tell_writers
+    from pmm.cli.hints import pasted
+    from pmm.cli.screen import messages, output, show
+    from pmm.document.page import write_page
+    from pmm.gap.case import CASE_FILE
+    from pmm.gap.document import document
+    from pmm.gap.examine import examine
+    from pmm.gap.prepare import campaign_file
+    from pmm.gap.report import gap_report
+    from pmm.gap.tolerance_document import tolerance_document
 
-    run(GapDiagnoseOptions(**options))
+    looks, path = Looks(**chosen), Path(campaign)
+    file = campaign_file(path)
+    read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
+    check_files({"--page": page, "--plan": plan}, read)
+    tell_writers([path])
+    if tolerances:
+        show(tolerance_document(path, looks.options), as_json=as_json)
+        return
+    with progress() as told, engine(looks, jobs, scheduler) as executor:
+        found = examine(path, looks.options, executor, told)
+    report = gap_report(found)
+    content = document(report)
+    if page is not None:
+        command = pasted("gap", campaign, *looks.words(), "--page", page)
+        write_page(content, Path(page), command=command)
+        messages().print(f"page: {page}")
+    if plan is not None:
+        _write_plan(found, Path(plan))
+    show(content, as_json=as_json)
+    if report.conclusion.adds and not as_json:
+        output().print(pasted("gap", "add", campaign, *looks.words()), soft_wrap=True)
+    tell_unchecked(_read_files(found, file.parent))
+    if tell_damaged(found.ready.damaged.items()):
+        click.get_current_context().exit(1)
+
+
+def _read_files(found: "Examined", folder: Path) -> "Iterator[Path]":
+    every: tuple[Run | AtRest, ...] = (*found.campaign.runs, *found.campaign.at_rest)
+    for one in every:
+        path = one.recording_path(folder)
+        if one.name not in found.left_out and path.exists():
+            yield path
+
+
+def _write_plan(found: "Examined", path: Path) -> None:
+    from pmm.cli.screen import messages
+    from pmm.gap.next_plan import RIG_FILE, plan_text
+    from pmm.gap.report import PROPOSED
+    from pmm.whole_file import write_whole
+
+    proposed = found.diagnosis.proposals[:PROPOSED]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, plan_text(f"{found.campaign.name}-next", proposed))
+    messages().print(f"plan: {path}; put the rig's {RIG_FILE} beside it, then: pmm plan check")

@@ -1,20 +1,32 @@
 """``pmm gap pendulum``: why a pendulum test or a free decay and its simulation differ."""
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap_options import catalogue_options, most_option
+from pmm.cli.gap.options import CATALOGUE, MOST, Chosen, progress
+from pmm.cli.options import JSON
+
+if TYPE_CHECKING:
+    from pmm.document.content import Document
 
 
 @click.command()
 @click.argument("file", metavar="FILE.toml")
-@most_option
-@catalogue_options
+@MOST
+@CATALOGUE
 @click.option("--page", metavar="FILE.html", help="Write a page with figures.")
 @click.option("--plot", metavar="FOLDER", help="Draw measured and simulated swings there.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document, not tables.")
-def pendulum(**options: Any) -> None:
+@JSON
+def pendulum(
+    file: str,
+    most: int,
+    page: str | None,
+    plot: str | None,
+    as_json: bool,
+    **chosen: Any,
+) -> None:
     """Find what separates a free decay, a swing or a bifilar test from its simulation.
 
     FILE names the records and what is known of the set-up (docs/gap-pendulums.md). "No gap beyond
@@ -27,6 +39,40 @@ def pendulum(**options: Any) -> None:
 
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
     """  # noqa: D301
-    from pmm.cli.gap_pendulum_work import GapPendulumOptions, run
+    from pmm.cli.files import check_files, check_folder
+    from pmm.cli.hints import pasted
+    from pmm.cli.screen import messages, output, show
+    from pmm.document.page import write_page
+    from pmm.gap.pendulum_conclusion import conclusion_of
+    from pmm.gap.pendulum_document import document
+    from pmm.gap.pendulum_examine import PendulumOptions, examine_pendulum
 
-    run(GapPendulumOptions(**options))
+    given, path = Chosen(**chosen), Path(file)
+    check_files({"--page": page}, [("FILE.toml", path), *given.read])
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    options = PendulumOptions(given.effects, given.without, most)
+    with progress() as shown:
+        examined = examine_pendulum(path, options, shown)
+    told = document(path.stem, examined)
+    words = ("--most", str(most), *given.words())
+    show(told, as_json=as_json)
+    if conclusion_of(examined.diagnosis).adds and not as_json:
+        output().print(f"\n{pasted('gap', 'add-pendulum', file, *words)}", soft_wrap=True)
+    if plot is not None:
+        _draw(told, Path(plot))
+    if page is not None:
+        command = pasted("gap", "pendulum", file, *words, "--page", page)
+        write_page(told, Path(page), command=command)
+        messages().print(f"page: {page}")
+
+
+def _draw(told: "Document", folder: Path) -> None:
+    from pmm.cli.screen import messages
+    from pmm.document.style import write_figure
+    from pmm.gap.pendulum_document import RECORD
+
+    records = (one for one in told.figures if one.name.startswith(RECORD))
+    for at, one in enumerate(records, 1):
+        for path in write_figure(one.draw(), folder, f"gap-{at}", ("svg",)):
+            messages().print(str(path), soft_wrap=True)

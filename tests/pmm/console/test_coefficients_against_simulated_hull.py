@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from pmm.campaign.campaign_file import read_campaign
-from pmm.cli.simulating import copy_campaign, simulate_runs
+from pmm.campaign.simulation import copy_campaign, simulate_runs
 from pmm.console.figures import figures_of
 
 CAMPAIGN = Path(__file__).parents[3] / "examples" / "vertical" / "campaign.toml"
@@ -16,7 +16,7 @@ def _campaign(folder: Path) -> Path:
     campaign = read_campaign(CAMPAIGN)
     runs = [one for one in campaign.runs if one.name == "heave-0.83"]
     list(simulate_runs(campaign, runs, folder, campaign.simulation.seed, overwrite=False))
-    copy_campaign(CAMPAIGN, folder)
+    copy_campaign(CAMPAIGN, campaign, folder)
     return folder
 
 

@@ -6,9 +6,10 @@ from pathlib import Path
 from click.testing import CliRunner
 
 from pmm.cli import cli
-from pmm.cli.devices import JSON_SCHEMA, devices
+from pmm.cli.devices import devices
 from pmm.devices.pulses import EXTRA, MISSED
 from pmm.devices.push_test import ALONE_SHARE, LEAST_SHARE, NOISE_TIMES
+from pmm.report.devices_document import SCHEMA
 
 PAGE = (Path(__file__).parents[3] / "docs" / "devices.md").read_text(encoding="utf-8")
 
@@ -33,4 +34,4 @@ def test_the_limits_are_those_of_the_code() -> None:
     assert "more than half as much" in PAGE
     assert f"more than {MISSED} turns" in PAGE
     assert f"less than {EXTRA} turns" in PAGE
-    assert JSON_SCHEMA in PAGE
+    assert SCHEMA in PAGE

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from pmm.cli import gap_add_work, gap_diagnose_work
 from pmm.gap.examine import Examined, Options, examine
 
 
@@ -26,8 +25,7 @@ class Folder:
 def _one_diagnosis_of_one_campaign() -> Iterator[None]:
     """Let commands in this process share what is found of the same campaign, asked the same."""
     with pytest.MonkeyPatch.context() as patch:
-        for work in (gap_diagnose_work, gap_add_work):
-            patch.setattr(work, "examine", _shared)
+        patch.setattr("pmm.gap.examine.examine", _shared)
         yield
     _once.cache_clear()  # another file may have another catalogue
 

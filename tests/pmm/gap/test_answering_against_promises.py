@@ -10,7 +10,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from hardware.description.errors import DataError
-from pmm.cli import cli, gap_answering
+from pmm.cli import cli
+from pmm.cli.gap import answer as answering
 from tests.sealed.scoring import handmade
 
 Asked = list[tuple[str, tuple[str, ...]]]
@@ -33,7 +34,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
             raise DataError("2 runs: a diagnosis needs 3 or more")
         return {"case": folder.name}
 
-    monkeypatch.setattr(gap_answering, "diagnosed", diagnosed)
+    monkeypatch.setattr(answering, "diagnosed", diagnosed)
     return found
 
 
@@ -78,7 +79,7 @@ def test_a_case_that_its_worker_does_not_see_ends_the_board_by_name(
     (board / "answers" / "case-0002.json").unlink()
     monkeypatch.chdir(board.parent)
     unseen = Path(board.name) / "cases" / "case-0002"
-    monkeypatch.setattr(gap_answering, "_cases", lambda _: [unseen])
+    monkeypatch.setattr(answering, "_cases", lambda _: [unseen])
     shutil.rmtree(unseen)  # as if the cases were not mounted where it works
     done = _run(Path(board.name))
     assert done.exit_code == 1

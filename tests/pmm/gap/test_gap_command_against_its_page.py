@@ -84,7 +84,7 @@ def test_a_reader_who_stops_reading_has_page_and_plan_all_the_same(
     assert (
         run("simulate", str(HOUSE / "examples/gap/campaign.toml"), "--output", "rig").exit_code == 0
     )
-    monkeypatch.setattr("pmm.cli.gap_diagnose_work.print_document", closed)
+    monkeypatch.setattr("pmm.document.terminal.print_document", closed)
     assert run("gap", "rig", "--page", "gap.html", "--plan", "next.toml").exit_code != 0
     assert "</html>" in Path("gap.html").read_text()
     assert tomllib.loads(Path("next.toml").read_text())

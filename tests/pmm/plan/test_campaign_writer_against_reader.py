@@ -20,7 +20,7 @@ from hardware.roles import Reading
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
-from pmm.cli.inputs import find_sources
+from pmm.harmonics.sources import find_sources
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile

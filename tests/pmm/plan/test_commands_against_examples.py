@@ -125,7 +125,7 @@ def test_a_plan_beyond_the_rig_ends_with_status_1(tmp_path: Path) -> None:
     path = write_plan(tmp_path, HEAVE.replace("20.0", "[70.0, 80.0]"))
     found = _pmm("plan", "check", path)
     assert found.exit_code == 1
-    assert "refuse heave-f0.8-a80: stroke [m] = 0.16 is above 0.12" in found.output
+    assert "REFUSE  heave-f0.8-a80: stroke [m] = 0.16 is above 0.12" in found.output
     assert "(and 1 other run so)" in found.output
     every = _pmm("plan", "check", path, "--all").output
     assert "heave-f0.8-a70: stroke [m] = 0.14 is above 0.12" in every

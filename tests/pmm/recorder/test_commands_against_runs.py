@@ -81,7 +81,7 @@ def test_replay_prints_both_and_their_difference(tmp_path: Path) -> None:
             recorder.close(RunEnd.COMPLETE)
     said = pmm("replay", tmp_path / "run")
     assert said.exit_code == 0, said.output
-    assert "samples    400, 0 values differ" in said.stdout
+    assert said.stdout.split()[:5] == ["samples", "400,", "0", "values", "differ"]
     assert "force_fore" in said.stdout
     document = json.loads(pmm("replay", tmp_path / "run", "--json").stdout)
     assert document["same"] is True

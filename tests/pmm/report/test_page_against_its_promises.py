@@ -11,7 +11,7 @@ import pytest
 from analysis.resolver.analysis import Analysis
 from pmm.document.notation import rounded, rounded_phase
 from pmm.document.page import write_page
-from pmm.document.run_rows import floored
+from pmm.harmonics.rows import floored
 from pmm.report.harmonics_document import harmonics_document
 from tests.pmm.report.runs import analysed, run
 

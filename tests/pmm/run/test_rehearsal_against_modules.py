@@ -28,13 +28,14 @@ WATCHED = """
 import json, sys
 import can
 can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
-from pmm.cli import main, run_work
-loop = run_work._loop
+from pmm.cli import main
+from pmm.run import session
+loop = session._loop
 def watched(*words):
     before = set(sys.modules)
     loop(*words)
     print(json.dumps(sorted(set(sys.modules) - before)), file=sys.__stdout__)
-run_work._loop = watched
+session._loop = watched
 main()
 """
 

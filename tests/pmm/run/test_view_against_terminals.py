@@ -7,9 +7,10 @@ import pytest
 from rich.console import Console
 
 from hardware.description.flags import Flag, Severity
-from pmm.cli.run_view import LiveView, PlainView, harmonics_table, outcome_line
+from pmm.cli.run_view import LiveView, PlainView, harmonics_table
 from pmm.cli.terminal import Terminal
 from pmm.recorder.lateness import CycleStatistics
+from pmm.report.run_document import outcome_line
 from pmm.run.gate import GateState
 from pmm.run.states import State
 from pmm.run.status import Alarms, ChannelReading, RunOutcome, RunStatus

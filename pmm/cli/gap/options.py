@@ -1,18 +1,21 @@
 """What of records and of the catalogue a diagnosis looks at: options that commands share."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from hardware.description.errors import ConfigurationError
+from pmm.cli.options import with_options
 
 if TYPE_CHECKING:
-    from pmm.gap.examine import Options
+    from collections.abc import Callable
+    from concurrent.futures import Executor
 
-F = TypeVar("F", bound=Callable[..., Any])
+    from pmm.gap.examine import Options
 
 
 @dataclass(frozen=True)
@@ -80,29 +83,13 @@ class Looks(Chosen):
             yield from ("--hold-out", value)
 
 
-def looks(command: F) -> F:
-    """Give a command the options of :class:`Looks`."""
-    return catalogue_options(_with(command, _RUNS))
-
-
-def catalogue_options(command: F) -> F:
-    """Give a command the options that choose from the catalogue."""
-    return _with(command, _CATALOGUE)
-
-
-def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
-    for option in reversed(options):
-        command = option(command)
-    return command
-
-
 def _listed(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
     """Take names apart that stand between commas."""
     names = [one for text in given for one in text.split(",")]
     return tuple(one.strip() for one in names if one.strip())
 
 
-_CATALOGUE: tuple[Callable[[Any], Any], ...] = (
+CATALOGUE: Final = with_options(
     click.option(
         "--effects",
         multiple=True,
@@ -118,7 +105,8 @@ _CATALOGUE: tuple[Callable[[Any], Any], ...] = (
         help="Take an effect out of the catalogue; repeatable.",
     ),
 )
-_RUNS: tuple[Callable[[Any], Any], ...] = (
+LOOKS: Final = with_options(
+    CATALOGUE,
     click.option(
         "--sensors",
         metavar="NAME,NAME",
@@ -134,10 +122,42 @@ _RUNS: tuple[Callable[[Any], Any], ...] = (
     ),
 )
 
-most_option = click.option(
+MOST: Final = click.option(
     "--most",
     type=click.IntRange(1, 3),
     default=3,
     show_default=True,
     help="Causes that may act together.",
 )
+
+
+@contextmanager
+def engine(
+    looks: Looks, jobs: int | None, scheduler: str | None = None
+) -> "Iterator[Executor | None]":
+    """Open what effects are looked at by: as asked for, or a process for each core.
+
+    ``None``, for this process, with effects of the user's own: no other one knows them.
+    """
+    from analysis.threads import cores
+    from pmm.parallel import open_executor
+
+    looks.check_alone(jobs, scheduler)
+    if scheduler is None and (jobs == 1 or looks.files or cores() == 1):
+        yield None
+        return
+    with open_executor(jobs, scheduler) as executor:
+        yield executor
+
+
+@contextmanager
+def progress() -> "Iterator[Callable[[str], None]]":
+    """Say what is being done, on a terminal, for as long as the context lasts."""
+    from pmm.cli.screen import messages
+
+    console = messages()
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("reading") as status:
+        yield lambda said: status.update(said)

@@ -1,18 +1,15 @@
-"""From the files named on the command line to recordings."""
+"""From files that are named to recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from analysis.readers.columns_options import parse_options
-from analysis.readers.columns_toml import read_column_map
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RAW, RecordingSource, open_recording
-from pmm.cli.file_notices import tell_writers
 from pmm.recorder.files import RECORDING
 
 if TYPE_CHECKING:
@@ -98,7 +95,6 @@ def _find(path: Path) -> Found:
 
 
 def _find_in_campaign(path: Path) -> Found:
-    tell_writers([path])
     campaign = read_campaign(path)
     if not campaign.runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
@@ -116,21 +112,6 @@ def _find_in_campaign(path: Path) -> Found:
             f"{not_recorded[0]}"
         )
     return Found(tuple(sources), tuple(not_recorded))
-
-
-def chosen_columns(column_map: str | None, columns: Sequence[str]) -> "ColumnMap | None":
-    """Return the column map that the options give, if any.
-
-    Raises
-    ------
-    ConfigurationError
-        If both kinds are given, or one is wrong.
-    """
-    if column_map and columns:
-        raise ConfigurationError("give --map or --column, not both")
-    if column_map:
-        return read_column_map(column_map)
-    return parse_options(columns) if columns else None
 
 
 def read_source(

@@ -1,4 +1,4 @@
-"""An analysis as rows of numbers: one set of them for the printed table and for ``--json``."""
+"""An analysis as rows of numbers: one set of them for tables, pages and programs."""
 
 import math
 from collections.abc import Sequence
@@ -9,8 +9,8 @@ import numpy as np
 
 from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
-from pmm.document.classic_rows import ClassicRow, classic_rows
 from pmm.document.labels import units_loads_first
+from pmm.harmonics.classic_rows import ClassicRow, classic_rows
 
 if TYPE_CHECKING:
     from analysis.resolver.analysis import Analysis
@@ -28,10 +28,6 @@ class Value:
 
     value: float
     half_width: float
-
-    def __str__(self) -> str:
-        """Return value and half-width with as many digits as they bear."""
-        return format_value(self.value, self.half_width)
 
 
 def floored(value: float, half_width: float, size: float) -> tuple[float, float]:
@@ -247,29 +243,3 @@ def gate_rows(reading: "Harmonics", level: float) -> GateRows:
         ),
         flags=reading.flags,
     )
-
-
-def format_value(value: float, half_width: float, size: float = 0.0) -> str:
-    """Return ``value ± half_width``: two significant digits of the latter, as many of the former.
-
-    Without an interval the value is given six digits and the half-width as ``?``.
-
-    Parameters
-    ----------
-    size
-        See :func:`floored`.
-    """
-    value, half_width = floored(value, half_width, size)
-    if not (math.isfinite(value) and math.isfinite(half_width)):
-        return f"{value:.6g} ± ?"
-    if half_width <= _ROUNDING * max(abs(value), size):
-        return f"{value:.12g} ± {half_width:.2g}"
-    last = math.floor(math.log10(float(f"{half_width:.1e}"))) - 1
-    top = math.floor(math.log10(max(abs(value), half_width)))
-    if -5 <= top <= 5 and last <= 1:
-        places = max(-last, 0)
-        return f"{value:.{places}f} ± {half_width:.{places}f}"
-    exponent = 3 * (top // 3)
-    digits = max(exponent - last, 0)
-    scale = 10.0**exponent
-    return f"({value / scale:.{digits}f} ± {half_width / scale:.{digits}f})e{exponent}"

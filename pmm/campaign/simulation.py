@@ -1,0 +1,195 @@
+"""A campaign simulated: a recording for each of its runs, as its file says and with effects."""
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analysis.coefficients.corrections import ZERO_BLOCKS
+from analysis.readers import from_dataset, write_recording
+from hardware.description.errors import ConfigurationError
+from hardware.description.flags import Flag
+from hardware.description.kinds import RunKind
+from hardware.description.setpoint import SetPoint
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.order import made_in_order, place_in
+from pmm.campaign.runs import AtRest, Run
+from pmm.whole_file import write_whole
+from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
+from sim.rest import rig_at_rest
+from sim.rig import SimulatedRig
+from sim.run import simulate
+
+if TYPE_CHECKING:
+    from analysis.recording import Recording
+
+
+@dataclass(frozen=True)
+class SimulatedRun:
+    """A run that was simulated, and its recording."""
+
+    run: Run
+    file: str
+    seed: int
+    sample_rate_hz: float
+    samples: int
+    flags: tuple[Flag, ...]
+
+
+def zero_runs(campaign: Campaign) -> tuple[AtRest, ...]:
+    """Return the zero runs whose place in the campaign is known, in the order they are made."""
+    made = made_in_order(campaign)
+    return tuple(one for one in made if isinstance(one, AtRest) and one.kind is RunKind.ZERO)
+
+
+def check_target(
+    path: Path, campaign: Campaign, runs: Sequence[Run | AtRest], folder: Path, *, overwrite: bool
+) -> None:
+    """Refuse a folder in which something would be lost or confused, before any work is done.
+
+    Raises
+    ------
+    ConfigurationError
+        If the campaign has no runs, or is one of measured recordings and lies in that very folder;
+        or if a recording, or another campaign file, is there and may not be overwritten.
+    """
+    if not campaign.runs:
+        raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
+    target = folder / CAMPAIGN_FILE
+    own = target.exists() and target.samefile(path)
+    if own and any(run.file for run in campaign.runs):
+        raise ConfigurationError(
+            f"{path}: its runs name recordings of another system; simulate into another folder "
+            "with --output, so that measured and simulated runs are not taken for each other"
+        )
+    if overwrite:
+        return
+    there = [one for one in (folder / f"{run.name}.nc" for run in runs) if one.exists()]
+    if target.exists() and not own and target.read_bytes() != path.read_bytes():
+        there.append(target)
+    if there:
+        names = ", ".join(str(one) for one in there)
+        raise ConfigurationError(f"{names}: there already; choose another --output, or --overwrite")
+
+
+def simulate_runs(
+    campaign: Campaign,
+    runs: Iterable[Run],
+    folder: Path,
+    seed: int,
+    *,
+    overwrite: bool,
+    effects: Sequence[Effect] = (),
+) -> Iterator[SimulatedRun]:
+    """Simulate runs one by one and write their recordings.
+
+    Each run has noise of its own, which depends on the seed and the run's name alone. Effects act
+    on a run as its place in the whole campaign asks, whichever runs are simulated.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`sim.run.simulate` does; the message begins with the run's name.
+    """
+    rig = campaign.rig()
+    for one in runs:
+        run_seed = seed_of(seed, one.name)
+        own = rig if one.recorded_with is None else campaign.as_recorded(one.name).rig()
+        recording = _simulated(own, campaign, one, one.set_point, one.periods, run_seed, effects)
+        switched_on = {"effects": json.dumps(effect_rows(effects))} if effects else {}
+        told = {**recording.provenance, **switched_on}
+        recording = replace(recording, set_point=one.set_point, provenance=told)
+        file = _written(recording, folder, one.name, overwrite=overwrite)
+        rate, count = recording.sample_rate_hz, recording.sample_count
+        yield SimulatedRun(one, file, run_seed, rate, count, recording.flags)
+
+
+def simulate_zeros(
+    campaign: Campaign,
+    zeros: Sequence[AtRest],
+    folder: Path,
+    seed: int,
+    *,
+    overwrite: bool,
+    effects: Sequence[Effect] = (),
+) -> Iterator[str]:
+    """Simulate zero runs, the shaft standing and the struts at their middle, and yield the files.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`simulate_runs`.
+    """
+    rig = campaign.rig()
+    for one in zeros:
+        # The gauges' mean is taken with the scatter between blocks: a block stands for a period.
+        point = replace(one.set_point, frequency_hz=ZERO_BLOCKS / one.duration_s)
+        periods = ZERO_BLOCKS - 1  # a simulated record is one longer
+        own = seed_of(seed, one.name)
+        recording = _simulated(rig, campaign, one, point, periods, own, effects)
+        recording = replace(recording, set_point=None)
+        yield _written(recording, folder, one.name, overwrite=overwrite)
+
+
+def _simulated(
+    rig: SimulatedRig,
+    campaign: Campaign,
+    run: Run | AtRest,
+    point: SetPoint,
+    periods: int,
+    seed: int,
+    effects: Sequence[Effect],
+) -> "Recording":
+    still, settings = isinstance(run, AtRest), campaign.simulation
+    try:
+        changed, set_point = switch_on(effects, rig, point, place_in(campaign, run))
+        dataset = simulate(
+            rig_at_rest(changed) if still else changed,
+            set_point,
+            periods=periods,
+            settling_periods=0 if still else settings.settling_periods,
+            sample_rate_hz=settings.sample_rate_hz,
+            seed=seed,
+            name=run.name,
+        )
+    except ConfigurationError as error:
+        what = "record at rest" if still else "run"
+        raise ConfigurationError(f"{what} {run.name!r}: {error}") from None
+    return from_dataset(dataset)
+
+
+def _written(recording: "Recording", folder: Path, name: str, *, overwrite: bool) -> str:
+    folder.mkdir(parents=True, exist_ok=True)  # not before a run is known to be possible
+    return str(write_recording(recording, folder / f"{name}.nc", overwrite=overwrite))
+
+
+def effect_rows(effects: Sequence[Effect]) -> list[dict[str, Any]]:
+    """Return effects with their parameters, as recordings and programs get them."""
+    return [{"name": one.name, "parameters": asdict(one)} for one in effects]
+
+
+def seed_of(seed: int, name: str) -> int:
+    """Return a run's own seed, whatever other runs there are."""
+    sequence = np.random.SeedSequence([seed, *name.encode()])
+    return int(sequence.generate_state(1)[0])
+
+
+def copy_campaign(path: Path, campaign: Campaign, folder: Path) -> None:
+    """Put a campaign file beside its recordings, and its table of added mass where it looks."""
+    _copied(path, folder / CAMPAIGN_FILE)
+    if campaign.radiation is not None:
+        source, own = Path(campaign.radiation.file).resolve(), path.parent.resolve()
+        if source.is_relative_to(own):
+            _copied(source, folder / source.relative_to(own))
+
+
+def _copied(source: Path, target: Path) -> None:
+    """Copy a file, unless it is there itself."""
+    if not (target.exists() and target.samefile(source)):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(target, source.read_bytes())

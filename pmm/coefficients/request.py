@@ -1,0 +1,78 @@
+"""What is asked of campaigns: their settings, with a command's options in their place."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final
+
+from analysis.coefficients.names import Form
+from hardware.description.errors import ConfigurationError
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.coefficients.references import beside, check_systems, read_references
+from pmm.coefficients.settings import DRY, MODEL, ReferenceFile, Settings, System
+from pmm.coefficients.systems import in_system
+from pmm.coefficients.workflow import CampaignOutcome
+
+_PLAIN: Final = ("form", "level", "seed", "system", "inertia", "wanted", "leave_out")
+
+
+def merged(base: Settings, options: Mapping[str, Any], default_trials: int) -> Settings:
+    """Return the settings with what the command line says in their place."""
+    given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
+    if "form" in given:
+        given["form"] = Form(given["form"])
+    if "system" in given:
+        given["system"] = System(given["system"])
+    inertia = given.get("inertia", MODEL)
+    if inertia not in (MODEL, DRY) and not Path(inertia).is_file():
+        raise ConfigurationError(
+            f"--inertia {inertia}: no such file; name one that `pmm inertia --output` wrote, or "
+            f"say {MODEL} or {DRY}"
+        )
+    if options["references"]:
+        more = tuple(ReferenceFile(one) for one in options["references"])
+        given["references"] = (*base.references, *more)
+    return replace(base, **given, trials=_trials(base, options, default_trials))
+
+
+def _trials(base: Settings, options: Mapping[str, Any], default: int) -> int:
+    wanted, trials = options["uncertainty"], options["trials"]
+    if wanted == "linear" and trials is not None:
+        raise ConfigurationError("--trials belongs to --uncertainty monte-carlo")
+    if wanted == "linear":
+        return 0
+    if wanted is None and trials is None:
+        return base.trials
+    return int(trials or base.trials or default)
+
+
+def campaign_folder(text: str) -> Path:
+    """Return the folder of a campaign that is named, or whose file is.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is none, or no campaign file in it.
+    """
+    path = Path(text)
+    if path.name == CAMPAIGN_FILE and path.is_file():
+        return path.parent
+    if not path.is_dir():
+        raise ConfigurationError(f"{path}: no such folder; name one that holds a {CAMPAIGN_FILE}")
+    if not (path / CAMPAIGN_FILE).exists():
+        raise ConfigurationError(
+            f"{path}: a folder without a {CAMPAIGN_FILE}; write one (docs/campaigns.md)"
+        )
+    return path
+
+
+def finished(outcome: CampaignOutcome, settings: Settings) -> CampaignOutcome:
+    """Put reference tables beside the values, and bring both to the system asked for."""
+    found = outcome.result
+    references = read_references(settings.references, found.plane, found.form)
+    check_systems(references, settings.system)
+    found = beside(found, references, System.DIMENSIONAL)
+    found, flags = in_system(found, settings.system, settings.ship, outcome.body, outcome.stated)
+    if settings.system is not System.DIMENSIONAL:
+        found = beside(found, references, settings.system)
+    return replace(outcome, result=found, left_out=(*outcome.left_out, *flags))

@@ -1,0 +1,92 @@
+"""Zero runs of a recording: what the gauges showed at rest before and after is taken off."""
+
+import math
+from dataclasses import replace
+from datetime import datetime
+from typing import Final
+
+from analysis.coefficients.corrections import ZeroReading, zero_at
+from analysis.coefficients.phasors import Phasors
+from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.recording import Recording
+from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
+from pmm.coefficients.tasks import Task, Zero
+
+_SAME_TRIM_RAD: Final = 1e-4
+
+
+def zeroed(
+    struts: StrutCycle, task: Task, recording: Recording
+) -> tuple[StrutCycle, tuple[Flag, ...]]:
+    """Return a cycle with the zero runs taken off its means, with their drift between them."""
+    before, after = task.zeros
+    elsewhere = _elsewhere(task)
+    if before is None and after is None:
+        return replace(struts, mean_known=task.tared), ()
+    if before is None or after is None or before.name == after.name:
+        only = before or after
+        assert only is not None  # noqa: S101 - one of them is there
+        text = f"only one zero run, {only.name}: what drifted since is not known"
+        one_sided = Flag("zero_one_sided", Severity.NOTE, text, None, (task.name,))
+        return _taken(struts, only.reading.offsets), (one_sided, *elsewhere)
+    places = _places(before, after, task, recording)
+    first, last = (
+        ZeroReading(at, zero.reading.offsets)
+        for at, zero in ((places[0], before), (places[2], after))
+    )
+    return _taken(struts, zero_at(first, last, places[1])), elsewhere
+
+
+def _elsewhere(task: Task) -> tuple[Flag, ...]:
+    """Warn of zero runs at another trim, where weight and restoring ask something else at rest."""
+    if task.oscillator.plane is Plane.HORIZONTAL:
+        return ()
+    own = task.set_point.drift_rad
+    apart = {
+        zero.name: zero.drift_rad
+        for zero in task.zeros
+        if zero is not None and abs(zero.drift_rad - own) > _SAME_TRIM_RAD
+    }
+    return tuple(
+        Flag(
+            "zero_elsewhere",
+            Severity.WARNING,
+            f"zero run {name} stood at a trim of {math.degrees(there):.3g} deg, the run at "
+            f"{math.degrees(own):.3g} deg: what weight and restoring ask at rest differs; make a "
+            "zero run at the run's trim, or state its drift_deg in [[at_rest]]",
+            None,
+            (task.name,),
+        )
+        for name, there in apart.items()
+    )
+
+
+def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
+    known = {name.rpartition(" ")[0] for name in struts.phasors.names}
+    return struts.without_zero(offsets.select([one for one in offsets.names if one in known]))
+
+
+def _places(
+    before: Zero, after: Zero, task: Task, recording: Recording
+) -> tuple[float, float, float]:
+    """Places of zero, run and zero on one clock: UTC, else the order of the runs.
+
+    A rig that is simulated faster than time has UTC that its records' lengths do not fit into.
+    """
+    utc = (before.utc_s, utc_s(recording), after.utc_s)
+    numbers = (before.number, task.number, after.number)
+    for clock in (utc, numbers):
+        known = [float(at) for at in clock if at is not None]
+        if len(known) == 3 and known[0] < known[1] < known[2]:
+            return known[0], known[1], known[2]
+    return 0.0, 0.5, 1.0
+
+
+def utc_s(recording: Recording) -> float | None:
+    """Return the UTC of a recording's middle, in seconds; ``None`` where it does not say."""
+    started = recording.provenance.get("started_utc")
+    if started is None:
+        return None
+    half_s = (recording.end_s - recording.start_s) / 2.0
+    return datetime.fromisoformat(started).timestamp() + half_s

@@ -1,0 +1,154 @@
+"""The console runs: the rig is open, the web server beside it, and the loop goes round."""
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+from socket import socket
+from typing import Final
+
+from hardware.pacing import RealTime
+from hardware.rig import Rig
+from pmm.console.answers import BrowserAnswers
+from pmm.console.link import Link
+from pmm.console.pacing import CountingPacer
+from pmm.console.quick_stop import QuickStop
+from pmm.console.request import ConsoleRequest
+from pmm.console.server import serve
+from pmm.console.station import Station
+from pmm.plan.rig_file import RigFile
+from pmm.real_time import Priority, step_back
+from pmm.run.journal import Taps
+from pmm.run.operator import Interrupts
+from pmm.run.recorder_factory import utc_now
+from pmm.run.session import keep_time
+from pmm.run.states import Command, RunStateError
+from pmm.version import program
+
+_WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
+_JOIN_S: Final = 10.0
+Tell = Callable[[str], object]
+
+
+@contextmanager
+def station_of(request: ConsoleRequest, rig_file: RigFile, tell: Tell) -> Iterator[Station]:
+    """Open a rig under the console, its page served by another process.
+
+    Parameters
+    ----------
+    tell
+        Says what is to be known besides.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot listen where it is asked to.
+    """
+    with ExitStack() as stack:
+        listening = stack.enter_context(request.listening())
+        quick_stop = QuickStop()
+        connection = stack.enter_context(_server(request, rig_file, listening, quick_stop, tell))
+        yield stack.enter_context(_station(request, rig_file, connection, quick_stop, tell))
+
+
+def run_loop(station: Station, interrupts: Interrupts, tell: Tell) -> None:
+    """Step until Ctrl-C, and then until everything rests."""
+    heard, told = 0, False
+    while True:
+        station.step()
+        if interrupts.count > heard:
+            heard += 1
+            with suppress(RunStateError):
+                command = Command.STOP if heard == 1 else Command.QUICK_STOP
+                station.control.request(command)
+        if heard and station.at_rest:
+            return
+        if station.deserted and not told:
+            told = True
+            tell("the web server has ended; the rig runs on. Ctrl-C stops it")
+
+
+@contextmanager
+def _server(
+    request: ConsoleRequest,
+    rig_file: RigFile,
+    listening: socket,
+    quick_stop: QuickStop,
+    tell: Tell,
+) -> Iterator[Connection]:
+    """Start the server's process; end it when the loop has ended."""
+    settings = request.settings(rig_file, listening.getsockname()[1])
+    context = get_context("spawn")
+    ours, theirs = context.Pipe()
+    files = [None if one is None else Path(one) for one in (request.certificate, request.key)]
+    process = context.Process(
+        target=serve, args=(settings, listening, theirs, quick_stop, *files), name="console server"
+    )
+    process.start()
+    theirs.close()
+    for line in request.greeting(rig_file.name, settings.door):
+        tell(line)
+    try:
+        yield ours
+    finally:
+        ours.close()
+        process.join(_JOIN_S)
+        if process.is_alive():
+            process.kill()
+            process.join()
+
+
+@contextmanager
+def _station(
+    request: ConsoleRequest,
+    rig_file: RigFile,
+    connection: Connection,
+    quick_stop: QuickStop,
+    tell: Tell,
+) -> Iterator[Station]:
+    period_s = 1.0 / rig_file.sample_rate_hz / request.speed
+    pacer = CountingPacer(
+        RealTime(period_s, time.monotonic, time.sleep), period_s, round(_WINDOW_S / period_s)
+    )
+    taps, answers = Taps(), BrowserAnswers()
+    with ExitStack() as stack:
+        priority = _priority(stack, request.speed, tell)
+        link = Link(connection)
+        stack.callback(link.close)
+        closing = ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back)
+        executor = stack.enter_context(closing)
+        rig = stack.enter_context(
+            Rig(
+                rig_file.hardware,
+                time.monotonic,
+                pacer,
+                answers,
+                observers=(taps.frame,),
+                line_observers=(taps.line,),
+            )
+        )
+        rig.prepare()
+        for note in rig.notes:
+            tell(f"note: {note}")
+        station = Station(
+            rig, rig_file, link, quick_stop, answers, pacer, taps, time.monotonic, utc_now,
+            {"program": program()}, executor, request.speed,
+        )  # fmt: skip
+        link.tell(replace(station.hello(), priority=str(priority)))
+        yield station
+        for one in station.close():
+            tell(one)
+
+
+def _priority(stack: ExitStack, speed: float, tell: Tell) -> Priority:
+    """Put the loop first; one that runs faster than the clock would leave nothing to others."""
+    if speed != 1.0:
+        return Priority.ORDINARY
+    found = keep_time(stack)
+    if found.advice:
+        tell(found.advice)
+    return found.priority

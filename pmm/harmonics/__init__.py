@@ -1,0 +1,1 @@
+"""Recordings to harmonics: which files are meant, what is asked of them, and what is found."""

@@ -1,0 +1,115 @@
+"""What is asked of recordings: the reference, the settings and the file of columns."""
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from analysis.readers.columns_options import parse_options
+from analysis.readers.columns_toml import read_column_map
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
+from hardware.description.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from analysis.readers import ColumnMap
+    from pmm.harmonics.sources import Source
+
+
+@dataclass(frozen=True)
+class HarmonicsRequest:
+    """The options of ``pmm analyse``, by their names there; ``None`` where one is not given."""
+
+    reference: str | None
+    frequency: float | None
+    edges: str | None
+    latency: float | None
+    angle_offset: float | None
+    channels: tuple[str, ...]
+    harmonics: int | None
+    gate: int | None
+    opens_at: float | None
+    periods: int | None
+    steady_tolerance: float | None
+    let_through: tuple[float, ...]
+    classic: bool
+    carrier: float | None
+    bandwidth: float | None
+    hann: bool
+    no_drift: bool
+    column_map: str | None
+    columns: tuple[str, ...]
+    sample_rate: float | None
+    calibration: str | None
+    level: float
+    save: str | None
+
+    def check(self, sources: "Sequence[Source]") -> None:
+        """Refuse what cannot go together, before any recording is read.
+
+        Raises
+        ------
+        ConfigurationError
+            If it cannot.
+        """
+        ways = {
+            "--reference": self.reference,
+            "--frequency": self.frequency,
+            "--edges": self.edges,
+        }
+        given = [name for name, value in ways.items() if value is not None]
+        if len(given) > 1:
+            raise ConfigurationError(f"give one reference, not {' and '.join(given)}")
+        if self.edges and len(sources) > 1 and "{stem}" not in self.edges:
+            raise ConfigurationError(
+                f"--edges {self.edges}: one file of edges for several recordings; put {{stem}} "
+                "where the recording's name stands in the names of their edge files"
+            )
+        if self.bandwidth is not None and self.carrier is None:
+            raise ConfigurationError("--bandwidth belongs to --carrier; give both or neither")
+        there = [Path(self.save or "") / f"{one.stem}.nc" for one in sources if self.save]
+        there = [path for path in there if path.exists()]
+        if there:
+            names = ", ".join(map(str, there))
+            raise ConfigurationError(f"{names}: exists already; --save to another folder")
+
+    def chosen_columns(self) -> "ColumnMap | None":
+        """Return the column map that is given, if any.
+
+        Raises
+        ------
+        ConfigurationError
+            If both kinds are given, or one is wrong.
+        """
+        if self.column_map and self.columns:
+            raise ConfigurationError("give --map or --column, not both")
+        if self.column_map:
+            return read_column_map(self.column_map)
+        return parse_options(self.columns) if self.columns else None
+
+    def choice(self, base: ReferenceChoice) -> ReferenceChoice:
+        """Return the reference wanted, on top of what a campaign says."""
+        given: dict[str, Any] = {}
+        if self.reference is not None or self.frequency is not None or self.edges is not None:
+            given = {"channel": self.reference, "frequency_hz": self.frequency}
+        if self.latency is not None:
+            given["latency_s"] = self.latency
+        if self.angle_offset is not None:
+            given["angle_offset_rad"] = math.radians(self.angle_offset)
+        return replace(base, **given)
+
+    def settings(self, base: ResolverSettings) -> ResolverSettings:
+        """Return the settings wanted, on top of what a campaign says."""
+        given: dict[str, Any] = {
+            "channels": tuple(dict.fromkeys(self.channels)) or None,
+            "harmonics": self.harmonics,
+            "gate_periods": self.gate,
+            "opens_s": self.opens_at,
+            "periods": self.periods,
+            "steady_tolerance": self.steady_tolerance,
+            "hann": self.hann or None,
+            "take_out_drift": False if self.no_drift else None,
+        }
+        return replace(base, **{key: value for key, value in given.items() if value is not None})

@@ -1,0 +1,195 @@
+"""What ``pmm plan`` shows: what a check found, and the runs in their order."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import accumulate, groupby
+from typing import Any, Final
+
+from hardware.description.kinds import RunKind
+from pmm.document.content import (
+    Column,
+    Data,
+    Document,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    number,
+    word,
+)
+from pmm.document.notation import clock, counted, written
+from pmm.plan.duration import duration_rows, tank_length_m
+from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
+from pmm.plan.force_estimate import force_peak_n
+from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
+from pmm.plan.plan import Plan
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+
+CHECK_SCHEMA: Final = "pmm-plan-check-1"
+SHOW_SCHEMA: Final = "pmm-plan-1"
+_CONDITIONS: Final = (
+    word("condition", "quantity"),
+    number("largest", "value", written(".4g")),
+    number("limit", "limit", lambda limit: f"{limit:.4g}" if math.isfinite(limit) else "none"),
+    word("source", "source"),
+    word("in run", "run"),
+)
+
+
+def check_document(
+    plan: Plan, rig: RigFile, found: Sequence[PlanFinding], *, every: bool
+) -> Document:
+    """Return what a check of a plan found.
+
+    Parameters
+    ----------
+    every
+        Whether people see all findings of a kind and not the worst alone.
+    """
+    refused = sum(one.verdict is PlanVerdict.REFUSE for one in found)
+    warned = sum(one.verdict is PlanVerdict.WARN for one in found)
+    said = (
+        f"the rig cannot run it: {counted(refused, 'refusal')}"
+        if refused
+        else f"the rig can run it, with {counted(warned, 'warning')}"
+    )
+    told = (
+        finding_notes(found, every=every),
+        Table("Conditions", _CONDITIONS, () if every else largest_stated(found)),
+        Text((f"{plan.name}: {counted(len(plan.runs), 'run')}; {said}",)),
+        Data("plan", str(plan.path)),
+        Data("rig", str(rig.path)),
+        Data("runs", len(plan.runs)),
+        Data("possible", not refused),
+        Data("findings", found),
+    )
+    return Document("", "check of a plan", (Section("", told),), CHECK_SCHEMA)
+
+
+def finding_notes(found: Sequence[PlanFinding], *, every: bool = False) -> Notes:
+    """Return a note for each finding; of those of one kind the worst, unless all are wanted."""
+    return Notes([_note(one, more) for one, more in _gathered(found, every=every)])
+
+
+def _note(one: PlanFinding, more: int) -> Note:
+    others = f" (and {counted(more, 'other run')} so)" if more else ""
+    run = f"{one.run}: " if one.run else ""
+    return Note(one.verdict, f"{run}{one.message}{others}")
+
+
+def _gathered(found: Sequence[PlanFinding], *, every: bool) -> Iterator[tuple[PlanFinding, int]]:
+    """Yield findings; of those of one kind the one furthest off, and how many there are beside."""
+    if every:
+        yield from ((one, 0) for one in found)
+        return
+    ranks = list(PlanVerdict)
+    found = [one for one in found if not one.is_stated]
+
+    def kind(one: PlanFinding) -> tuple[int, str, float]:
+        what = one.quantity if one.run else one.message
+        return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
+
+    for _, group in groupby(sorted(found, key=kind), kind):
+        alike = list(group)
+        worst = max(alike, key=lambda one: abs(one.value - kind(one)[2]))
+        yield worst, len({one.run for one in alike}) - 1
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A run in its place; the force is ``None`` where nobody can estimate it."""
+
+    number: int
+    run: RunPlan
+    duration_s: float
+    ends_at_s: float
+    tank_length_m: float
+    force_n: float | None
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The run as programs get it, but for the peaks of an oscillation."""
+        return {
+            **asdict(self.run),
+            "duration_s": self.duration_s,
+            "tank_length_m": self.tank_length_m,
+        }
+
+
+def _turning(heading: str, unit: str, cell: Callable[[_Row], str]) -> Column[_Row]:
+    """Return a column that is empty for a run at rest."""
+    return Column(
+        heading, lambda one: cell(one) if one.run.oscillates else "", unit=unit, number=True
+    )
+
+
+# Amplitudes are half the stroke.
+_RUNS: Final[tuple[Column[_Row], ...]] = (
+    number("", "number"),
+    Column("run", lambda one: _named(one.run)),
+    _turning("f", "Hz", lambda one: f"{one.run.set_point.frequency_hz:g}"),
+    _turning("ampl.", "mm", lambda one: f"{1e3 * one.run.set_point.eccentricity_m:.6g}"),
+    _turning("phase", "deg", lambda one: f"{math.degrees(one.run.set_point.strut_phase_rad):.1f}"),
+    Column("U", lambda one: one.run.set_point.carriage_speed_m_s, unit="m/s", number=True,
+           written=lambda speed: f"{speed:g}" if speed else ""),
+    _turning("periods", "", lambda one: _periods(one.run)),
+    _turning("force, est.", "N", lambda one: "" if one.force_n is None else f"{one.force_n:.1f}"),
+    number("way", "tank_length_m", lambda way: f"{way:.1f}" if way else "", "m"),
+    number("time", "duration_s", clock),
+    number("ends at", "ends_at_s", clock),
+)  # fmt: skip
+
+
+def show_document(plan: Plan, rig: RigFile) -> Document:
+    """Return the runs of a plan in their order, with how long they take and what they ask."""
+    times = duration_rows(plan.runs, rig)
+    rows = [
+        _Row(number, run, time_s, end_s, tank_length_m(run, rig), _force(run, rig))
+        for number, (run, time_s, end_s) in enumerate(
+            zip(plan.runs, times, accumulate(times), strict=True), 1
+        )
+    ]
+    total = math.fsum(times)
+    said = (
+        f"{plan.name}: {counted(len(plan.runs), 'run')}, {clock(total)} at most, without handwork"
+    )
+    told = (
+        Text((said, "")),
+        Table("Runs", _RUNS, rows),
+        Data("name", plan.name),
+        Data("plan", str(plan.path)),
+        Data("rig", str(rig.path)),
+        Data("operator", plan.operator),
+        Data("sha256", plan.sha256),
+        Data("duration_s", total),
+        Data("runs", [{**one.data, **_peaks(one, rig)} for one in rows]),
+    )
+    return Document("", "runs of a plan", (Section("", told),), SHOW_SCHEMA)
+
+
+def _force(run: RunPlan, rig: RigFile) -> float | None:
+    return force_peak_n(run, rig) if run.oscillates else None
+
+
+def _peaks(one: _Row, rig: RigFile) -> dict[str, float | None]:
+    """Return the largest of what the struts do, for an oscillation."""
+    if not one.run.oscillates:
+        return {}
+    return {
+        "strut_velocity_m_s": velocity_peak_m_s(one.run, rig.oscillator),
+        "strut_acceleration_m_s2": acceleration_peak_m_s2(one.run, rig.oscillator),
+        "strut_force_estimate_n": one.force_n,
+    }
+
+
+def _named(run: RunPlan) -> str:
+    """Return the run's name, and its kind where the name does not say it."""
+    says = run.kind is RunKind.OSCILLATION or run.name.startswith(run.kind)
+    return run.name if says else f"{run.name} ({run.kind})"
+
+
+def _periods(run: RunPlan) -> str:
+    return f"{run.periods}" + ("" if run.target_relative is None else f" to {run.max_periods}")

@@ -1,0 +1,57 @@
+"""What ``pmm run`` says when its runs have ended."""
+
+from typing import Final
+
+from pmm.document.content import Data, Document, Section, Text
+from pmm.document.notation import counted
+from pmm.recorder.run_recorder import RunEnd
+from pmm.run.session import RunJob, RunReport
+from pmm.run.status import RunOutcome
+
+SCHEMA: Final = "pmm-run-control-1"
+
+
+def run_document(job: RunJob, found: RunReport, *, dry_run: bool) -> Document:
+    """Return how the runs of a plan ended; ``docs/run-control.md`` describes the keys."""
+    told = (
+        Text(_said(job, found, dry_run=dry_run)),
+        Data("plan", job.plan.path),
+        Data("folder", job.folder),
+        Data("dry_run", dry_run),
+        Data("planned", [one.name for one in job.runs]),
+        Data("findings", job.findings),
+        Data("changes", job.changes),
+        Data("fault", found.fault or None),
+        Data("runs", found.outcomes),
+    )
+    return Document("", "runs of a plan", (Section("", told),), SCHEMA)
+
+
+def complete_runs(found: RunReport) -> int:
+    """Return how many runs are complete."""
+    return sum(one.outcome == RunEnd.COMPLETE for one in found.outcomes)
+
+
+def _said(job: RunJob, found: RunReport, *, dry_run: bool) -> list[str]:
+    if dry_run:
+        return [f"{job.plan.path}: {len(job.runs)} runs would be recorded to {job.folder}"]
+    if not job.runs:
+        return [f"{job.folder}: all runs are complete"]
+    lines = [
+        outcome_line(one)
+        for one in found.outcomes
+        if one.outcome != RunEnd.COMPLETE
+        and not (found.fault and one.reason == found.fault)  # that is the error
+    ]
+    return [*lines, f"{complete_runs(found)} of {len(job.runs)} runs complete in {job.folder}"]
+
+
+def outcome_line(one: RunOutcome) -> str:
+    """Return a finished run in a line."""
+    reason = f": {one.reason}" if one.reason else ""
+    where = f", {one.file}" if one.file else ""
+    voids = sum(flag.code == "gate_void" for flag in one.flags)
+    void = f", {voids} void gates" if voids else ""
+    far = [flag.channel or "" for flag in one.flags if flag.code == "force_far"]
+    off = f", {' and '.join(far)} far from the plan's estimate" if far else ""
+    return f"{one.run}: {one.outcome}, {counted(one.periods, 'period')}{void}{off}{where}{reason}"
