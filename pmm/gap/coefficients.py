@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from analysis.gap.free import tolerated
 from hardware.description.arrays import FloatArray
 from pmm.gap.examine import Examined
 from pmm.gap.hull_report import HULL, Convention, Reported, reported
@@ -154,13 +155,23 @@ def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> 
 
 
 def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
-    """Return the fit without and with the effect that is named; ``None`` where none is."""
+    """Return the fit without and with the effect that is named; ``None`` where none is.
+
+    Of coefficients that are the same in all runs, as the table of coefficients has them.
+    """
     problem, cause = examined.diagnosis.problem, examined.cause
-    columns = problem.nuisances.columns
-    plain = _fitted(examined, problem.residual, columns)
+    same = replace(
+        examined.ready.case.tolerances,
+        added_mass_per_octave=0.0,
+        damping_per_octave=0.0,
+        added_mass_per_speed=0.0,
+        damping_per_speed=0.0,
+    )
+    held = tolerated(problem.simulator, examined.free, same).columns
+    plain = _fitted(examined, problem.residual, held)
     if cause is None:
         return plain, None
-    both = np.hstack((columns, cause.columns))
+    both = np.hstack((held, cause.columns))
     return plain, _fitted(examined, cause.linearised(problem.residual), both)
 
 

@@ -117,12 +117,13 @@ def _notes(examined: Examined, odd: str) -> Iterator[str]:
         yield odd_note(odd, examined.diagnosis.answers.odd_runs[odd])
     yield from run_notes(examined)
     yield from noise_notes(examined)
+    if examined.cause is not None:
+        yield from _of_cause(examined, examined.cause)
+        return
     pulled = coefficient_shift(examined.diagnosis.problem, None)
     beyond = [f"{name} {units:+.1f}" for name, units in pulled.items() if abs(units) > FAR]
     if beyond:
-        yield f"without an effect these would be off by so many tolerances: {', '.join(beyond)}"
-    if examined.cause is not None:
-        yield from _of_cause(examined, examined.cause)
+        yield f"off by so many tolerances, if no effect is there: {', '.join(beyond)}"
 
 
 def _of_cause(examined: Examined, cause: Fit) -> Iterator[str]:

@@ -45,14 +45,14 @@ def odd_note(name: str, probability: float) -> str:
 
 
 def _not_foretold(examined: Examined) -> Iterator[str]:
-    """Yield the only run that was withheld, where the cause that is named leaves much of it."""
+    """Yield what the user withheld and the cause that is named leaves much of."""
     judged, cause = examined.judged, examined.cause
-    if cause is None or len(judged.cured) != 1 or not judged.chosen:
+    if cause is None or not judged.chosen or not judged.cured:
         return
-    before, left = (gap_of(one.left) for one in (judged.plain[0], judged.cured[0]))
-    if left > max(1.0, 0.5 * before):
-        yield (
-            f"{judged.cured[0].regime} is not foretold: {' and '.join(cause.names)} leaves "
-            f"{left:.3g} u of it; it may itself be off, or the cause be another one: withhold more "
-            "runs to tell"
-        )
+    for plain, cured in zip(judged.plain, judged.cured, strict=True):
+        before, left = gap_of(plain.left), gap_of(cured.left)
+        if left > max(1.0, 0.5 * before):
+            yield (
+                f"{cured.regime} is not foretold: {' and '.join(cause.names)} leaves {left:.3g} u "
+                "of it; it may itself be off, or the cause be another one"
+            )

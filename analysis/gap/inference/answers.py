@@ -61,9 +61,9 @@ class Considered:
     singles, pairs
         What was fitted.
     count
-        How many effects were considered.
+        How many effects there are; those that were not considered have no part in any answer.
     concealed
-        How many of them these runs cannot show, or do not: as good as none.
+        How many these runs cannot show, or do not: as good as none.
     """
 
     singles: Sequence[Hypothesis]

@@ -123,8 +123,7 @@ def test_one_that_is_off_is_named_and_takes_no_name_away(tmp_path: Path) -> None
     off = changed(tmp_path / "rig", tmp_path, "zero-5", lambda one: loaded(one, 0.3))
     document = found(off, "--effects", "coulomb-friction")
     assert document["ranking"][0]["answer"] == "coulomb-friction"
-    (note,) = document["notes"]
-    assert note.startswith("run zero-5 alone is off: without it coulomb-friction explains")
+    assert any(one.startswith("run zero-5 alone has a gain or a zero") for one in document["notes"])
 
 
 def test_a_record_at_rest_that_nobody_compares_cannot_be_withheld(
