@@ -1,4 +1,4 @@
-"""What is always on in a good rig, as columns: ripple, a shaft that gives way, warming, drift.
+"""What is always on in a good rig, as columns: ripple, a shaft that gives way, drift, hum.
 
 Each is at the size of its tolerance; what is beyond it is named as out of tolerance.
 """
@@ -11,6 +11,7 @@ import numpy as np
 
 from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.forward import Simulator
+from analysis.gap.mains import hum_columns
 from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
@@ -58,6 +59,8 @@ def always_on(simulator: Simulator, base: FloatArray, tolerances: Tolerances) ->
         yield "warming", _change(simulator, base, warming)
     if tolerances.warming_n_s > 0.0:
         yield from _drifts(simulator.stack, tolerances.warming_n_s)
+    if tolerances.hum_n > 0.0:
+        yield from hum_columns(simulator.stack, tolerances.hum_n)
 
 
 def _change(simulator: Simulator, base: FloatArray, effect: Effect) -> FloatArray:

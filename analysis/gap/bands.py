@@ -12,6 +12,7 @@ Found = Iterator[tuple[Component, float, float]]
 _BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
+_COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 
 
 def free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> BoolArray:
@@ -40,11 +41,11 @@ def band(name: str, number: int, power: FloatArray) -> Found:
     """
     if power.size < _FEW_LINES or not power.any():
         return
-    # Noise makes exponentially distributed powers; under a Hann taper two lines in three count.
-    count = 0.66 * power.size
+    # Noise makes exponentially distributed powers.
+    count = _COUNTED * power.size
     middle = float(np.median(power)) / np.log(2.0) + 1e-15
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
-    highest = np.log(count) + np.euler_gamma
+    highest = expected_highest(power.size)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
     strongest = float(np.log((power / _about(power)).max() / highest))
     yield (
@@ -52,6 +53,11 @@ def band(name: str, number: int, power: FloatArray) -> Found:
         strongest,
         float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count))),
     )
+
+
+def expected_highest(lines: float) -> float:
+    """Return the expected power of the strongest of some lines of noise, over their mean."""
+    return float(np.log(_COUNTED * lines) + np.euler_gamma)
 
 
 def _about(power: FloatArray) -> FloatArray:

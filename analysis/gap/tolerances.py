@@ -82,6 +82,7 @@ class Tolerances:
     warming_n_s: float = _usual(
         1e-4, "N/s", "drift of each zero, alike in each record", "bridges that are warm: 0.4 N/h"
     )
+    hum_n: float = _usual(0.02, "N", "hum of the mains in each force", "shielded cables")
     wander_n: float = _usual(
         0.005, "N", "wander of each zero, where zero runs do not tell it", "0.001 % of 500 N"
     )

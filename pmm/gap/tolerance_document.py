@@ -10,6 +10,7 @@ import numpy as np
 from analysis.gap.diagnose import problem_of
 from analysis.gap.fit import Problem
 from analysis.gap.free import free_numbers
+from analysis.gap.mains import MAINS_HZ
 from analysis.gap.verdict import coefficient_shift
 from pmm.document.content import Document, Section, Table, Text, number, word
 from pmm.document.notation import written
@@ -46,6 +47,9 @@ NUMBERS: Final[Mapping[str, tuple[str, ...]]] = {
     "load_ripple_1_kg_m2": ("load ripple",),
     "warming_k_h": ("warming",),
     "warming_n_s": ("drift aft", "drift fore"),
+    "hum_n": tuple(
+        f"hum {one} {mains_hz:g} Hz" for one in ("aft", "fore") for mains_hz in MAINS_HZ
+    ),
 }
 """The free numbers that each tolerance is of, by its key; no others have a name."""
 

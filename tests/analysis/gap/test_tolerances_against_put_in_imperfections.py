@@ -1,17 +1,20 @@
 """What is always on in a good rig: no gap within its tolerance, named beyond it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Stack
+from analysis.gap.components import GapRun, Part, Stack
 from analysis.gap.forward import Simulator
 from analysis.gap.free import free_numbers, tolerated
+from analysis.gap.mains import hum_columns
 from analysis.gap.noise import pooled
 from analysis.gap.tolerances import Tolerances
 from analysis.gap.where import TIMING, walk
 from sim.effects.catalogue import build
 from sim.rig import SimulatedRig
-from tests.analysis.gap.small import problem_of, record
+from tests.analysis.gap.small import POINTS, problem_of, record
 
 USUAL = Tolerances()
 
@@ -38,6 +41,19 @@ def test_drift_is_that_of_simulated_zeros(rig: SimulatedRig, clean: tuple[GapRun
     column = found.columns[:, found.names.index("drift aft")]
     rows = column != 0.0
     np.testing.assert_allclose(change[rows], column[rows], rtol=0.05)
+
+
+def test_hum_is_that_of_simulated_lines(rig: SimulatedRig) -> None:
+    """Twice the tolerance; 50 Hz, sampled at 64 Hz, is a line at 14 Hz, at 0.5 Hz a harmonic."""
+    points = [replace(POINTS[0], frequency_hz=one) for one in (0.5, 0.53, 1.13)]
+    hum = build("hum:amplitude_n=0.4,frequency_hz=50")
+    quiet, loud = (Stack.of(record(rig, on, 1, points)) for on in ((), (hum,)))
+    stack, change = quiet, loud.values - quiet.values
+    own = [column for name, column in hum_columns(stack, 0.2) if name.endswith("50 Hz")]
+    lines = np.array([one.part is Part.LINE for one in stack.components])
+    told = 2.0 * np.sum(own, axis=0) * stack.uncertainty
+    assert np.count_nonzero(told) == 4  # of two forces; at 0.53 and 1.13 Hz 14 Hz is no harmonic
+    np.testing.assert_allclose(change[lines], told[lines], atol=0.9)
 
 
 @pytest.mark.parametrize(
