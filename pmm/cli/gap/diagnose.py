@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap.options import LOOKS, Looks, engine, progress
+from pmm.cli.gap.options import LOOKS, Looks, engine
 from pmm.cli.options import JSON, SCHEDULER, jobs_option
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def diagnose(
     one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.files import check_files, tell_damaged, tell_unchecked, tell_writers
     from pmm.cli.hints import pasted
-    from pmm.cli.screen import messages, output, show
+    from pmm.cli.screen import doing, messages, output, show
     from pmm.document.page import write_page
     from pmm.gap.case import CASE_FILE
     from pmm.gap.document import document
@@ -62,7 +62,7 @@ def diagnose(
     read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
     check_files({"--page": page, "--plan": plan}, read)
     tell_writers([path])
-    with progress() as told, engine(looks, jobs, scheduler) as executor:
+    with doing("reading") as told, engine(looks, jobs, scheduler) as executor:
         found = examine(path, looks.options, executor, told)
     report = gap_report(found)
     content = document(report)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap.options import CATALOGUE, MOST, Chosen, progress
+from pmm.cli.gap.options import CATALOGUE, MOST, Chosen
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def pendulum(
     """  # noqa: D301
     from pmm.cli.files import check_files, check_folder
     from pmm.cli.hints import pasted
-    from pmm.cli.screen import messages, output, show
+    from pmm.cli.screen import doing, messages, output, show
     from pmm.document.page import write_page
     from pmm.gap.pendulum_conclusion import conclusion_of
     from pmm.gap.pendulum_document import document
@@ -52,7 +52,7 @@ def pendulum(
     if plot is not None:
         check_folder(Path(plot), "--plot")
     options = PendulumOptions(given.effects, given.without, most)
-    with progress() as shown:
+    with doing("reading") as shown:
         examined = examine_pendulum(path, options, shown)
     told = document(path.stem, examined)
     words = ("--most", str(most), *given.words())
