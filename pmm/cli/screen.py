@@ -1,7 +1,13 @@
-"""What goes to the screen: results on the output, messages and progress on the error stream."""
+"""What goes to the screen: results on the output, messages and progress on the error stream.
 
+Commands are named as a shell takes them.
+"""
+
+import shlex
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import contextmanager
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, TypeVar
 
 import click
@@ -81,6 +87,12 @@ def busy(what: str) -> Iterator[Callable[[float], None]]:
         yield lambda part: tell(f"{what}: {100.0 * part:.0f} % read")
 
 
+def say(*lines: object) -> None:
+    """Print lines beside a result, unbroken whatever the width."""
+    for line in lines:
+        output().print(str(line), soft_wrap=True)
+
+
 def show(document: "Document", *, as_json: bool) -> None:
     """Print what a command found: for programs, or for people."""
     from pmm.document.data import as_json as written
@@ -90,3 +102,14 @@ def show(document: "Document", *, as_json: bool) -> None:
         click.echo(written(document))
     else:
         print_document(output(), document)
+
+
+def program() -> str:
+    """Return the program as it was called, ``pmm`` where that cannot be told."""
+    called = sys.argv[0] if sys.argv else ""
+    return called if Path(called).stem == "pmm" else "pmm"
+
+
+def pasted(*words: str | Path) -> str:
+    """Return a command of this program that a shell takes as it is, blanks and all."""
+    return shlex.join([program(), *map(str, words)])

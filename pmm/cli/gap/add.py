@@ -45,7 +45,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
 
     from hardware.description.errors import ConfigurationError
     from pmm.campaign.file_names import CAMPAIGN_FILE
-    from pmm.cli.hints import pasted
+    from pmm.cli.screen import pasted
     from pmm.gap.appending import Added
     from pmm.gap.load import campaign_of
 

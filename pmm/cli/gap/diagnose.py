@@ -48,8 +48,7 @@ def diagnose(
 
     one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.files import check_files, tell_damaged, tell_unchecked, tell_writers
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import doing, messages, output, show
+    from pmm.cli.screen import doing, messages, pasted, say, show
     from pmm.document.page import write_page
     from pmm.gap.case import CASE_FILE
     from pmm.gap.document import document
@@ -74,7 +73,7 @@ def diagnose(
         _write_plan(found, Path(plan))
     show(content, as_json=as_json)
     if report.conclusion.adds and not as_json:
-        output().print(pasted("gap", "add", campaign, *looks.words()), soft_wrap=True)
+        say(pasted("gap", "add", campaign, *looks.words()))
     tell_unchecked(_read_files(found, file.parent))
     if tell_damaged(found.ready.damaged.items()):
         click.get_current_context().exit(1)
