@@ -83,7 +83,7 @@ class GearBacklash(Effect):
     def forms(self) -> tuple[Effect, ...]:
         """Return softer teeth, and such as bounce less."""
         softer = replace(self, stiffness_n_m_rad=max(self.stiffness_n_m_rad / 5.0, _SOFTEST))
-        damped = replace(self, damping_n_m_s=min(self.damping_n_m_s * 3.0, _MOST_DAMPED))
+        damped = replace(self, damping_n_m_s=min(self.damping_n_m_s * 2.0, _MOST_DAMPED))
         return softer, damped
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -69,8 +69,8 @@ class FreePlay(Effect):
 
         The sides are the gauges', where these give way; the last two are then the effect itself.
         """
-        softer = replace(self, stiffness_n_m=max(self.stiffness_n_m / 3.0, _SOFTEST_N_M))
-        damped = replace(self, damping_n_s_m=min(self.damping_n_s_m * 3.0, _MOST_DAMPED_N_S_M))
+        softer = replace(self, stiffness_n_m=max(self.stiffness_n_m / 1.5, _SOFTEST_N_M))
+        damped = replace(self, damping_n_s_m=min(self.damping_n_s_m * 2.0, _MOST_DAMPED_N_S_M))
         return (*super().forms(), softer, damped)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:

@@ -12,7 +12,9 @@ from hardware.description.setpoint import SetPoint
 from sim.effects import typical
 from sim.effects.a1_amplifier_lag import AmplifierLag
 from sim.effects.catalogue import catalogue
+from sim.effects.d4_gear_backlash import GearBacklash
 from sim.effects.effect import Effect, parameter
+from sim.effects.k6b_free_play import FreePlay
 from sim.effects.switching import switch_on
 from sim.rig import horizontal_rig
 from sim.solve.periodic import steady_run
@@ -34,7 +36,7 @@ LARGER: dict[str, dict[str, float]] = {
 OVER_A_CAMPAIGN = ("carriage-speed", "dynamic-trim", "temperature")
 # Periods until they repeat, where that takes more than a dozen.
 SETTLED = {"load-ripple": 120, "tank-walls": 120}
-# What bounces is run on until it repeats: its own test is in test_forms_against_closed_form.py.
+# What bounces is run on until it repeats, and has a test of its own.
 BOUNCING = ("free-play", "gear-backlash")
 REPEATING = [
     (effect, form)
@@ -152,3 +154,19 @@ def test_a_plain_delay_turns_and_does_not_weaken() -> None:
     omega = 2.0 * math.pi * TYPICAL.frequency_hz
     ratio = periodic(effect)[1:, 1] / periodic(None)[1:, 1]
     np.testing.assert_allclose(ratio, np.exp(-1j * omega * effect.lag_s), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [FreePlay(2e-4), GearBacklash(3e-4, 20.0, 1e7, 2e3)],
+    ids=name_of,
+)
+def test_what_bounces_is_as_large(effect: Effect) -> None:
+    """At the largest of the first three orders, within a fifth; each of them another one."""
+    own = signature(effect)
+    order = int(np.argmax(np.linalg.norm(own[:, :4], axis=0)))
+    for form in effect.forms():
+        other = signature(form)
+        ratio = np.linalg.norm(other[:, order]) / np.linalg.norm(own[:, order])
+        assert abs(math.log(float(ratio))) < math.log(1.2)
+        assert np.linalg.norm(other - own) > 1e-4 * np.linalg.norm(own)
