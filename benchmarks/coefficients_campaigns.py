@@ -17,10 +17,11 @@ from numpy.random import Generator
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.terms import term_of
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
@@ -136,7 +137,7 @@ def made_struts(point: SetPoint, made: Made, name: str) -> StrutCycle:
     channels = (*DISPLACEMENTS, *FORCES, FORCE_X.name)
     units = ("m", "m", "N", "N", "N")
     count = 4 if made.surge is None else 5
-    phasors = Phasors(
+    phasors = Phasors.of(
         labels(channels[:count], made.orders),
         units[:count] * (made.orders + 1),
         _harmonics(np.stack((aft, fore, *read))[:count], made.orders),
@@ -224,9 +225,9 @@ def scattered(struts: StrutCycle, generator: Generator, scatter: Scatter = SCATT
     common = generator.standard_normal((scatter.periods, 1))
     own = generator.standard_normal((scatter.periods, 2 * count))
     draws = spread * (math.sqrt(tied) * common + math.sqrt(1.0 - tied) * own)
-    values = from_interleaved(interleaved(phasors.values) + draws.mean(axis=0))
     source = of_draws(f"scatter of {struts.name}", draws)
-    return replace(struts, phasors=replace(phasors, values=values, sources=(source,)))
+    real = UncertainValues(phasors.real.values + draws.mean(axis=0), (source,))
+    return replace(struts, phasors=replace(phasors, real=real))
 
 
 def wrong(

@@ -12,8 +12,9 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles
-from analysis.coefficients.phasors import from_interleaved, interleaved
+from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.uncertainty.values import UncertainValues
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
@@ -94,7 +95,7 @@ def _scattered(struts: StrutCycle, generator: Generator, *, noisy: bool = True) 
     draws = spread * generator.standard_normal((_PERIODS, len(exact)))
     source = of_draws(f"scatter of {struts.name}", draws)
     values = exact + draws.mean(axis=0) if noisy else exact
-    phasors = replace(struts.phasors, values=from_interleaved(values), sources=(source,))
+    phasors = replace(struts.phasors, real=UncertainValues(values, (source,)))
     return replace(struts, phasors=phasors)
 
 

@@ -80,7 +80,7 @@ def of_struts(
     omega = 2.0 * math.pi * frequency_hz
     wanted = (*_DRIVEN, *((k, 0) for k in range(2, channels)))
     maps = per_part(orders + 1, channels, wanted, omega)
-    parts = interleaved(struts.values)
+    parts = struts.real.values
     given = np.array([[value] for value in _given(geometry)])
     inputs = np.concatenate((parts @ maps, given * np.ones(maps.shape[-1])))
     values, slope = pointwise(lambda waves: _model(geometry, waves), inputs)
@@ -89,11 +89,10 @@ def of_struts(
     harmonics_of_body = harmonics(values, orders)
     harmonics_of_body[2] -= geometry.drift_rad
     names = CHANNELS[: len(values)]
-    phasors = struts.carried(
-        harmonics_of_body[0::2] + 1j * harmonics_of_body[1::2],
-        by_struts,
+    phasors = Phasors(
         labels(names, orders),
         UNITS[: len(names)] * (orders + 1),
+        struts.real.carried(harmonics_of_body, by_struts),
     )
     sensitivity = by_struts @ _by_stated(struts.values, channels, omega, asked=asked)
     for k, name in enumerate(_GEOMETRY):

@@ -7,8 +7,10 @@ coefficients have in common is kept (:func:`correlation`), because both are made
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.uncertainty.freedom import student_factor
+from analysis.uncertainty.freedom import effective_freedom, student_factor
 
 _KINDS = {
     "scatter of": "harmonic scatter",
@@ -54,7 +56,7 @@ class BudgetLine:
     share
         Part of the variance; all lines together are 1.
     degrees_of_freedom
-        Fewest of the inputs of this kind.
+        Effective, of the inputs of this kind.
     """
 
     source: str
@@ -70,7 +72,7 @@ class CoefficientBudget:
     Attributes
     ----------
     degrees_of_freedom
-        Effective, by Welch and Satterthwaite ; deviates of one input count as one term.
+        Effective, by Welch and Satterthwaite; deviates of one input count as one term.
     coverage_factor, half_width
         Of the interval at the campaign's level.
     digits
@@ -115,18 +117,18 @@ def correlation(coefficients: CampaignCoefficients, first: int, second: int) -> 
 
 
 def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
-    variances: dict[str, float] = {}
-    freedom: dict[str, float] = {}
-    parts = coefficients.uncertain.variances()[:, row]
-    for contribution, part in zip(coefficients.uncertain.contributions, parts, strict=True):
-        if part > 0.0:
-            source = _source(contribution.label)
-            variances[source] = variances.get(source, 0.0) + float(part)
-            freedom[source] = min(freedom.get(source, math.inf), contribution.degrees_of_freedom)
-    lines = [
-        BudgetLine(source, math.sqrt(part), part / spread**2, freedom[source])
-        for source, part in variances.items()
-    ]
+    uncertain = coefficients.uncertain
+    parts = uncertain.variances()[:, row]
+    freedom = np.array([one.degrees_of_freedom for one in uncertain.contributions])
+    kinds: dict[str, list[int]] = {}
+    for k in np.flatnonzero(parts > 0.0).tolist():
+        kinds.setdefault(_source(uncertain.contributions[k].label), []).append(k)
+    lines = []
+    for source, inputs in kinds.items():
+        own = parts[inputs]
+        variance = float(own.sum())
+        whole = float(effective_freedom(own[:, None], freedom[inputs])[0])
+        lines.append(BudgetLine(source, math.sqrt(variance), variance / spread**2, whole))
     return tuple(sorted(lines, key=lambda line: -line.share))
 
 

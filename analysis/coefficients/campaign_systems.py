@@ -12,7 +12,7 @@ from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term, term_of
-from analysis.uncertainty.values import Contribution, UncertainValues
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
@@ -119,13 +119,8 @@ def _scaled(
     units: tuple[str, ...] | None,
 ) -> CampaignCoefficients:
     contributions = tuple(
-        Contribution(
-            contribution.label,
-            contribution.degrees_of_freedom,
-            contribution.rows,
-            contribution.parts * factors[contribution.rows][:, None],
-        )
-        for contribution in coefficients.uncertain.contributions
+        replace(one, parts=one.parts * factors[one.rows][:, None])
+        for one in coefficients.uncertain.contributions
     )
     trials = coefficients.trials
     texts = units or ("1",) * len(coefficients.entries)

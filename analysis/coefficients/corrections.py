@@ -158,7 +158,7 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
     source = Contribution(f"zero run {recording.name}", ZERO_BLOCKS - 1.0, rows, parts)
     units = tuple(recording.channels[recording.index(name)].unit for name in names)
     means: ComplexArray = values.mean(axis=1).astype(np.complex128)
-    return ZeroReading(at_s, Phasors(tuple(names), units, means, (source,)))
+    return ZeroReading(at_s, Phasors.of(tuple(names), units, means, (source,)))
 
 
 def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:

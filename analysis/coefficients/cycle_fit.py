@@ -216,7 +216,7 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
 def _variance(problem: CycleProblem, cycle: BodyCycle, slope: FloatArray) -> FloatArray:
     """Of one load's residuals by a cycle's scatter: the mean of both parts of each order."""
     variance = np.zeros(len(slope))
-    for source in cycle.hull.phasors.sources:
+    for source in cycle.hull.phasors.real.contributions:
         variance += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
     numbers = problem.real.reshape(-1, 2)
     return np.asarray((variance.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
@@ -228,7 +228,9 @@ def _trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray
 
 
 def _fewest(cycle: BodyCycle) -> float:
-    return min((source.degrees_of_freedom for source in cycle.phasors.sources), default=np.inf)
+    return min(
+        (source.degrees_of_freedom for source in cycle.phasors.real.contributions), default=np.inf
+    )
 
 
 def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
@@ -238,7 +240,7 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     everywhere, contributions = np.arange(len(problem.terms)), []
     by_stated = np.zeros((len(everywhere), len(STATED)))
     for slope, cycle in zip(slopes, problem.cycles, strict=True):
-        for source in cycle.hull.phasors.sources:
+        for source in cycle.hull.phasors.real.contributions:
             parts = slope @ problem.scatter(cycle, source)
             contributions.append(
                 Contribution(source.label, source.degrees_of_freedom, everywhere, parts)

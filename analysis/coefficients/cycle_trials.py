@@ -50,7 +50,7 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     for cycle in problem.cycles:
         own = [
             (scatter.of(source), problem.scatter(cycle, source).T)
-            for source in cycle.hull.phasors.sources
+            for source in cycle.hull.phasors.real.contributions
         ]
         ways.append([*own, (deviations, problem.sensitivity(cycle).T)])
     pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
@@ -74,12 +74,6 @@ class DeviateDraws:
     def of(self, source: Contribution) -> FloatArray:
         """Return the deviates, shape ``(count, k)``: Student's t where that is known."""
         if source.label not in self._deviates:
-            self._deviates[source.label] = self._drawn(source)
+            normal = self._generator.standard_normal((self._count, source.parts.shape[1]))
+            self._deviates[source.label] = source.deviates(normal.T, self._generator).T
         return self._deviates[source.label]
-
-    def _drawn(self, source: Contribution) -> FloatArray:
-        normal = self._generator.standard_normal((self._count, source.parts.shape[1]))
-        nu = source.degrees_of_freedom
-        if np.isfinite(nu) and nu > 0.0:
-            normal *= np.sqrt(nu / self._generator.chisquare(nu, self._count))[:, None]
-        return normal

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved, real_form
+from analysis.coefficients.phasors import Phasors, real_form
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
 from analysis.kinematics.body_frame import CHANNELS, UNITS
@@ -74,7 +74,7 @@ def on_hull(
     count = len(gross.names) // len(channels)
     omega = 2.0 * math.pi * frequency_hz
     maps = per_part(count, len(channels), INPUTS, omega)
-    parts = interleaved(gross.values)
+    parts = gross.real.values
     moved = parts @ maps
     stated = stated_at_instants(body, drift_rad, plane, medium)
     loads = len(channels) - MOVING
@@ -102,11 +102,10 @@ def on_hull(
     sensitivity[:, STATED.index("speed_m_s")] += by_speed @ changes
     changes = shift @ changes
     return HullCycle(
-        gross.carried(
-            from_interleaved(changes),
-            shift @ whole,
+        Phasors(
             labels(channels, orders),
             UNITS[: len(channels)] * count,
+            gross.real.carried(changes, shift @ whole),
         ),
         sensitivity,
     )

@@ -4,7 +4,7 @@ A phasor ``S + iC`` counts as two real numbers, in the order S1, C1, S2, C2, ...
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,21 +20,29 @@ class Phasors:
 
     Attributes
     ----------
-    values
-        ``S + iC`` each, shape ``(n,)``.
-    sources
-        What the scatter of their real numbers comes from; none where they are known exactly.
+    real
+        Their real numbers S1, C1, S2, C2, ..., with what is uncertain in them, shape ``(2 n,)``.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
-    values: ComplexArray
-    sources: tuple[Contribution, ...] = ()
+    real: UncertainValues
+
+    @classmethod
+    def of(
+        cls,
+        names: tuple[str, ...],
+        units: tuple[str, ...],
+        values: ComplexArray,
+        contributions: tuple[Contribution, ...] = (),
+    ) -> "Phasors":
+        """Return phasors ``S + iC``, shape ``(n,)``, known exactly where nothing contributes."""
+        return cls(names, units, UncertainValues(interleaved(values), contributions))
 
     @cached_property
-    def real(self) -> UncertainValues:
-        """The real numbers S1, C1, S2, C2, ..., shape ``(2 n,)``."""
-        return UncertainValues(interleaved(self.values), self.sources)
+    def values(self) -> ComplexArray:
+        """``S + iC`` each, shape ``(n,)``."""
+        return from_interleaved(self.real.values)
 
     def __getitem__(self, name: str) -> complex:
         """Return one of the phasors."""
@@ -77,20 +85,17 @@ class Phasors:
         names, units
             Of the result; by default the same ones.
         """
-        matrix = np.asarray(matrix, dtype=np.complex128)
-        return self.carried(
-            matrix @ self.values,
-            real_form(matrix),
+        return Phasors(
             self.names if names is None else tuple(names),
             self.units if units is None else tuple(units),
+            self.real.mapped(real_form(matrix)),
         )
 
     def select(self, names: Sequence[str]) -> "Phasors":
         """Return some of the phasors, in this order."""
         rows = [self.index(name) for name in names]
         units = tuple(self.units[row] for row in rows)
-        selected = self.real.taken(parts_of(rows))
-        return Phasors(tuple(names), units, self.values[rows], selected.contributions)
+        return Phasors(tuple(names), units, self.real.taken(parts_of(rows)))
 
     def referred_to(self, name: str) -> "Phasors":
         """Turn all phases so that this phasor's own is zero (fundamentals only).
@@ -113,7 +118,7 @@ class Phasors:
         angle = np.zeros(len(slope))  # d(angle) = Im(conj(own) d(own)) / |own|^2
         angle[column : column + 2] = np.array([-own.imag, own.real]) / abs(own) ** 2
         slope -= np.outer(interleaved(1j * values), angle)
-        return self.carried(values, slope, self.names, self.units)
+        return replace(self, real=self.real.carried(interleaved(values), slope))
 
     def minus(self, other: "Phasors") -> "Phasors":
         """Return the difference of phasors of the same names; what they share, cancels.
@@ -129,18 +134,7 @@ class Phasors:
             )
         own = np.eye(2 * len(self.values))
         apart = stacked([self.real, other.real]).mapped(np.hstack([own, -own]))
-        values = self.values - other.values
-        return Phasors(self.names, self.units, values, apart.contributions)
-
-    def carried(
-        self,
-        values: ComplexArray,
-        slope: FloatArray,
-        names: tuple[str, ...],
-        units: tuple[str, ...],
-    ) -> "Phasors":
-        """Return values that follow these phasors' real numbers with a slope."""
-        return Phasors(names, units, values, self.real.mapped(slope).contributions)
+        return replace(self, real=apart)
 
 
 def joined(first: Phasors, second: Phasors) -> Phasors:
@@ -148,8 +142,7 @@ def joined(first: Phasors, second: Phasors) -> Phasors:
     return Phasors(
         first.names + second.names,
         first.units + second.units,
-        np.concatenate((first.values, second.values)),
-        stacked([first.real, second.real]).contributions,
+        stacked([first.real, second.real]),
     )
 
 

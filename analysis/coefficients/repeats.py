@@ -88,7 +88,9 @@ def with_repeats(cycle: BodyCycle, repeating: Repeatability) -> BodyCycle:
     rows = np.array(parts_of(places))
     label = f"repeats: {cycle.name}"
     source = Contribution(label, repeating.degrees_of_freedom, rows, np.diag(spread))
-    return replace(cycle, phasors=replace(cycle.phasors, sources=(*cycle.phasors.sources, source)))
+    real = cycle.phasors.real
+    wider = replace(real, contributions=(*real.contributions, source))
+    return replace(cycle, phasors=replace(cycle.phasors, real=wider))
 
 
 def outliers(repeating: Repeatability) -> tuple[Outlier, ...]:
@@ -187,7 +189,7 @@ def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:
     for cycle in cycles:
         loads.append(cycle.loads / _ratio(cycles[0], cycle))
         variance.append(np.maximum(_variance(cycle.hull.phasors), _variance(cycle.phasors)))
-        freedom = min([freedom, *(s.degrees_of_freedom for s in cycle.phasors.sources)])
+        freedom = min([freedom, *(s.degrees_of_freedom for s in cycle.phasors.real.contributions)])
     names = tuple(cycle.name for cycle in cycles)
     return RepeatedMotion(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.random import Generator
 
+from analysis.uncertainty.distribution import Distribution, shaped
 from hardware.description.arrays import FloatArray
 
 
@@ -82,8 +83,8 @@ class StatedUncertainties:
         """Draw deviations, shape ``(count, len(STATED))``: Student's t where repeats are behind."""
         deviations = generator.standard_normal((count, len(STATED))) * self.vector
         for k, name in enumerate(STATED):
-            if np.isfinite(nu := self.freedom(name)):
-                deviations[:, k] *= np.sqrt(nu / generator.chisquare(nu, count))
+            own = deviations[None, :, k]
+            deviations[:, k] = shaped(own, Distribution.NORMAL, self.freedom(name), generator)[0]
         return deviations
 
 

@@ -165,7 +165,7 @@ def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> P
     values = strut_displacements(oscillator, set_point, max(orders, 1))[: orders + 1]
     values[0] = values[0].imag  # H[0] = i A0
     names = tuple(at_order(name, n) for n in range(orders + 1) for name in DISPLACEMENTS)
-    return Phasors(names, ("m",) * len(names), values.ravel())
+    return Phasors.of(names, ("m",) * len(names), values.ravel())
 
 
 def static_cycle(
@@ -185,7 +185,7 @@ def static_cycle(
     zero
         Offsets of the zero runs at that time; without them the means are not known to be loads.
     """
-    still = Phasors(
+    still = Phasors.of(
         tuple(at_order(channel, 0) for channel in DISPLACEMENTS), ("m", "m"), np.zeros(2, complex)
     )
     names = tuple(at_order(name, 0) for name in reading.offsets.names)

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.phasors import Phasors, from_interleaved
+from analysis.coefficients.phasors import Phasors
 from analysis.resolver.harmonics import Harmonics
-from analysis.uncertainty.values import Contribution
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -47,10 +47,10 @@ def reading_phasors(reading: Harmonics, names: Sequence[str], orders: int) -> Ph
     rows = [reading.channel_names.index(name) for name in names]
     values, parts = _ordered(reading.coefficients[rows], orders), reading.deviations[rows]
     by_order = _ordered(parts, orders).reshape(-1, parts.shape[2])
-    freedom = float(reading.degrees_of_freedom[-1])
+    freedom = float(reading.degrees_of_freedom[2 * orders])
     scatter = Contribution(f"scatter of {reading.run}", freedom, np.arange(len(by_order)), by_order)
     units = tuple(reading.units[row] for row in rows) * (orders + 1)
-    return Phasors(labels(names, orders), units, from_interleaved(values.ravel()), (scatter,))
+    return Phasors(labels(names, orders), units, UncertainValues(values.ravel(), (scatter,)))
 
 
 def _ordered(coefficients: FloatArray, orders: int) -> FloatArray:

@@ -3,11 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from analysis.coefficients.body_cycle import SURGE_FORCE, BodyCycle, at_order
-from analysis.uncertainty.freedom import student_factor
-from hardware.description.oscillator import Plane
+import numpy as np
 
-_LEVEL = 0.95
+from analysis.coefficients.body_cycle import SURGE_FORCE, BodyCycle, at_order
+from hardware.description.oscillator import Plane
 
 
 @dataclass(frozen=True)
@@ -27,8 +26,8 @@ class Tow:
         Against the motion ahead; NaN without a surge gauge.
     force_u, moment_u, resistance_u
         Standard uncertainties, from the scatter within run and zeros.
-    degrees_of_freedom
-        The least of these scatters'.
+    force_half_width, moment_half_width, resistance_half_width
+        Of the intervals of 95 %.
     """
 
     run: str
@@ -39,36 +38,22 @@ class Tow:
     across_m_s: float
     force_n: float
     force_u: float
+    force_half_width: float
     moment_n_m: float
     moment_u: float
+    moment_half_width: float
     resistance_n: float
     resistance_u: float
-    degrees_of_freedom: float
-
-    def half_width(self, standard_uncertainty: float) -> float:
-        """Return the half-width at 95 %."""
-        return float(student_factor(self.degrees_of_freedom, _LEVEL)) * standard_uncertainty
+    resistance_half_width: float
 
 
 def tow_of(kind: str, cycle: BodyCycle) -> Tow:
     """Return the loads of a tow, zero readings subtracted."""
     rows = ["force", "moment", *([SURGE_FORCE] if cycle.has_surge else [])]
-    means = cycle.phasors.select([at_order(name, 0) for name in rows])
-    value = {name: float(value.real) for name, value in zip(rows, means.values, strict=True)}
-    spread = means.standard_uncertainty.real
-    u = {name: float(standard) for name, standard in zip(rows, spread, strict=True)}
-    return Tow(
-        cycle.name,
-        kind,
-        cycle.plane,
-        cycle.speed_m_s,
-        cycle.drift_rad,
-        cycle.phasors[at_order("across", 0)].real,
-        -value["force"],
-        u["force"],
-        -value["moment"],
-        u["moment"],
-        value.get(SURGE_FORCE, math.nan),
-        u.get(SURGE_FORCE, math.nan),
-        min((source.degrees_of_freedom for source in means.sources), default=math.inf),
-    )
+    means = cycle.phasors.select([at_order(name, 0) for name in rows]).real
+    columns = np.stack((means.values, means.standard_uncertainty, means.half_width()))[:, ::2]
+    (force, *force_u), (moment, *moment_u), *surge = map(tuple, columns.T.tolist())
+    resistance = surge[0] if surge else (math.nan,) * 3
+    loads = (-force, *force_u, -moment, *moment_u, *resistance)
+    across = cycle.phasors[at_order("across", 0)].real
+    return Tow(cycle.name, kind, cycle.plane, cycle.speed_m_s, cycle.drift_rad, across, *loads)

@@ -211,7 +211,7 @@ def cycle_of(deliverables: Deliverables, half_spacing_m: float = 0.5) -> BodyCyc
     channels = CHANNELS if SURGE_FORCE in rows else CHANNELS[:-1]
     values = np.stack([rows[channel] for channel in channels], axis=-1).ravel()
     units = body_frame.UNITS[: len(channels)] * (orders + 1)
-    phasors = Phasors(labels(channels, orders), units, values)
+    phasors = Phasors.of(labels(channels, orders), units, values)
     return BodyCycle(
         deliverables.description.run,
         deliverables.plane,

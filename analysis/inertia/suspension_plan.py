@@ -9,7 +9,7 @@ from analysis.inertia.double_pendulum import (
     gyradius_from_periods,
     mode_periods,
 )
-from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, require_positive
 from hardware.description.flags import Flag
 
@@ -104,8 +104,8 @@ def forecast_suspension(
         yaw,
         slow,
         fast,
-        linear_budget("k_yaw", yaw_gyradius, yaw_inputs, unit="m").result,
-        linear_budget("k_pitch", gyradius_from_periods, pitch_inputs, unit="m").result,
+        derived("k_yaw", yaw_gyradius, "m", **yaw_inputs),
+        derived("k_pitch", gyradius_from_periods, "m", **pitch_inputs),
         best,
         resonance_flags(yaw, slow),
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from analysis.inertia.elementary_functions import Value
 from analysis.inertia.swing import inertia_at_cg
-from analysis.uncertainty.budget import linear_budget
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
 
 LIMIT = 2.0  # of the joint standard uncertainty
@@ -70,7 +70,7 @@ def check_two_pivots(
         return inertia_at_cg(t1, m, d1, g) - inertia_at_cg(t2, m, d2, g)
 
     inputs = {"d1": first.cg_below, "d2": second.cg_below, "h": pivot_distance}
-    apart = linear_budget("distance of the pivots", excess, inputs, unit="m").result
+    apart = derived("distance of the pivots", excess, "m", **inputs)
     inputs = {
         "t1": first.period,
         "d1": first.cg_below,
@@ -79,7 +79,7 @@ def check_two_pivots(
         "m": mass,
         "g": gravity,
     }
-    inertia = linear_budget("inertia by both pivots", difference, inputs, unit="kg m2").result
+    inertia = derived("inertia by both pivots", difference, "kg m2", **inputs)
     from_periods = lamboley_depth(
         first.period.value, second.period.value, pivot_distance.value, gravity.value
     )

@@ -97,7 +97,7 @@ def cli(debug: bool) -> None:
 
 def main() -> None:
     """Run the command line of this process."""
-    from pmm.cli.hints import pasted
+    from pmm.cli.screen import pasted
 
     _hold_standard_numbers()
     cli.main(args=sys.argv[1:], prog_name=pasted(), complete_var="_PMM_COMPLETE")

@@ -158,8 +158,8 @@ def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: 
     from pmm.report.harmonics_document import analysis_document, doubt_section, run_section
 
     request = HarmonicsRequest(**options)
+    tell_writers(one for one in map(Path, files) if one.is_dir() or one.suffix == ".toml")
     found = find_sources(files)
-    tell_writers(one.campaign_path for one in found.sources if one.campaign_path is not None)
     _check(found.sources, request, plot)
     done: list[Resolved] = []
     failed: list[Failure] = []

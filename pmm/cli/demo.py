@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from pmm.cli.files import check_folder
-from pmm.cli.hints import pasted
 from pmm.cli.options import DEFAULT_LEVEL
-from pmm.cli.screen import busy, output, show_progress
+from pmm.cli.screen import busy, output, pasted, say, show_progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,13 +45,12 @@ def demo(target: str, vertical_only: bool) -> None:
     _write_plots([list(each.items())[1] for each in campaigns], folder / "plots")
     _write_page([analysis for _, analysis in found], folder)
     rig = folder / f"{CAMPAIGNS[0]}-rig" / "rig.toml"
-    for line in (
+    say(
         f"plots   {folder / 'plots'}",
         f"again   {pasted('analyse', found[0][0])}",
         f"console {pasted('console', rig, '--output', folder / 'console')}",
-        f"{folder / PAGE}",
-    ):
-        output().print(line, soft_wrap=True)
+        folder / PAGE,
+    )
 
 
 def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":

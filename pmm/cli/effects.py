@@ -58,7 +58,7 @@ def effects(
     """
     from hardware.description.errors import ConfigurationError
     from hardware.description.setpoint import Medium, SetPoint
-    from pmm.cli.screen import output, show
+    from pmm.cli.screen import say, show
     from pmm.report.effects_document import catalogue_document, effect_document
     from sim.effects.catalogue import build, catalogue, user_effects
 
@@ -80,8 +80,8 @@ def effects(
     told = effect_document(_at_set_point(built, rig, at))
     figures = [] if plot is None else _draw(built, rig, at, Path(plot))
     show(told, as_json=as_json)
-    for path in () if as_json else figures:
-        output().print(str(path), soft_wrap=True)
+    if not as_json:
+        say(*figures)
 
 
 def _rig(campaign: str | None, plane: str) -> "SimulatedRig":

@@ -58,7 +58,7 @@ def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> N
     show(evaluation_document(replace(found, files=tuple(files))), as_json=as_json)
     if not as_json:
         for note in found.notes:
-            messages().print(note, soft_wrap=True)
+            messages().print(note)
         for text in found.failed:
             error_line(text)
     if not found.in_control or found.failed:

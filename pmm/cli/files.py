@@ -110,7 +110,7 @@ def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:
 def tell_unchecked(paths: Iterable[Path | str]) -> None:
     """Say, in one line, which recordings carry no checksums: those of other systems do not."""
     from analysis.readers.damage import carries_checksums
-    from pmm.document.flag_lines import joined
+    from pmm.document.notation import joined
 
     names = [Path(one).name for one in dict.fromkeys(paths) if not carries_checksums(Path(one))]
     if names:

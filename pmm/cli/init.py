@@ -8,8 +8,7 @@ import click
 
 from pmm.cli.files import check_folder
 from pmm.cli.group import CommandGroup
-from pmm.cli.hints import pasted
-from pmm.cli.screen import messages, output
+from pmm.cli.screen import messages, pasted, say
 
 if TYPE_CHECKING:
     from pmm.start.questions import StartQuestion
@@ -143,12 +142,12 @@ def _write(job: str, options: dict[str, Any]) -> None:
     for path in done.paths:
         messages().print(f"written: {path}")
     for note in done.notes:
-        messages().print(note, soft_wrap=True, markup=False)
+        messages().print(note)
     kind = "recordings" if job == "campaign" and recordings else job
     for words in _NEXT[kind]:
         place = folder.as_posix()
         command = pasted(*(Path(word.format(place)) if "{}" in word else word for word in words))
-        output().print(f"next: {command}", soft_wrap=True)
+        say(f"next: {command}")
 
 
 def _default(question: "StartQuestion") -> str | float:

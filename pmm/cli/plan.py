@@ -48,8 +48,7 @@ def check(file: str, every: bool, as_json: bool) -> None:
 def show(file: str, plot: str | None, as_json: bool) -> None:
     """Print the runs in their order, and how long they take."""
     from pmm.cli.files import check_folder
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import messages, output
+    from pmm.cli.screen import pasted, say
     from pmm.cli.screen import show as tell
     from pmm.document.style import write_figure
     from pmm.plan.plan import read_plan_and_rig
@@ -60,8 +59,8 @@ def show(file: str, plot: str | None, as_json: bool) -> None:
     if plot is not None:
         check_folder(Path(plot), "--plot")
     tell(show_document(read, rig), as_json=as_json)
+    figures: list[Path] = []
     if plot is not None:
-        for path in write_figure(matrix_figure(read, rig), Path(plot), f"{read.name}-matrix"):
-            messages().print(str(path), soft_wrap=True)
+        figures = write_figure(matrix_figure(read, rig), Path(plot), f"{read.name}-matrix")
     if not as_json:
-        output().print(pasted("plan", "check", file), soft_wrap=True)
+        say(*figures, pasted("plan", "check", file))

@@ -34,8 +34,7 @@ def report(**options: Any) -> None:
     Exit status: as `pmm coefficients`.
     """  # noqa: D301
     from pmm.cli.files import check_file
-    from pmm.cli.hints import program
-    from pmm.cli.screen import busy, output
+    from pmm.cli.screen import busy, program, say
     from pmm.document.page import write_page
     from pmm.report.coefficients_document import report_document
 
@@ -46,7 +45,7 @@ def report(**options: Any) -> None:
     command = shlex.join([Path(program()).name, *sys.argv[1:]])
     with busy("drawing the page"):
         write_page(report_document(outcome), path, title=title, command=command, read=files)
-    output().print(str(path), soft_wrap=True)
+    say(path)
     finish(outcome)
 
 

@@ -60,9 +60,7 @@ def run(
     """  # noqa: D301
     from hardware.description.room import is_full, said
     from pmm.cli.files import check_folder
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import output as screen
-    from pmm.cli.screen import show
+    from pmm.cli.screen import pasted, say, show
     from pmm.report.run_document import complete_runs, run_document
     from pmm.run.session import RunFailedError, RunReport, run_job
 
@@ -95,7 +93,7 @@ def run(
         ) from error
     show(run_document(job, found, dry_run=dry_run), as_json=as_json)
     if complete_runs(found) and not as_json:
-        screen().print(pasted("analyse", job.folder), soft_wrap=True)
+        say(pasted("analyse", job.folder))
     if found.fault:
         raise RunFailedError(
             f"{found.fault}\nall axes are told to stop and the fault is latched; when its cause "
@@ -113,7 +111,7 @@ def _tell(job: "RunJob") -> None:
 
     print_content(finding_notes(job.findings), messages())
     for told in job.changes:
-        messages().print(f"keeps what it was recorded with: {told}", soft_wrap=True)
+        messages().print(f"keeps what it was recorded with: {told}")
 
 
 def _carried_out(job: "RunJob", shown: ExitStack, *, quiet: bool) -> "RunReport":

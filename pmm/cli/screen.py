@@ -1,7 +1,13 @@
-"""What goes to the screen: results on the output, messages and progress on the error stream."""
+"""What goes to the screen: results on the output, messages and progress on the error stream.
 
-from collections.abc import Callable, Iterator, Sequence
+Commands are named as a shell takes them.
+"""
+
+import shlex
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import contextmanager
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, TypeVar
 
 import click
@@ -42,29 +48,49 @@ def error_line(message: str) -> None:
     messages().print(Text.assemble(("error: ", "bold red"), message))
 
 
-def show_progress(items: Sequence[T], what: str) -> Iterator[T]:
-    """Yield the items, with a progress bar where there are several and a terminal to see it."""
+def show_progress(items: Iterable[T], what: str, count: int | None = None) -> Iterator[T]:
+    """Yield the items, with a progress bar where there are several and a terminal to see it.
+
+    Parameters
+    ----------
+    count
+        How many there are, where they do not say it.
+    """
     from rich.progress import Progress
 
+    count = len(items) if isinstance(items, Sized) else count or 0
     console = messages()
     with Progress(
-        console=console, transient=True, disable=len(items) < 2 or not console.is_terminal
+        console=console, transient=True, disable=count < 2 or not console.is_terminal
     ) as progress:
-        yield from progress.track(items, description=what)
+        yield from progress.track(items, total=count, description=what)
 
 
 @contextmanager
-def busy(what: str) -> Iterator[Callable[[float], None]]:
+def doing(what: str) -> Iterator[Callable[[str], None]]:
     """Say that something is going on, on a terminal, for as long as the context lasts.
 
-    What it gives may be told how much of that has been read, from 0 to 1.
+    What it gives may be told what is done now.
     """
     console = messages()
     if not console.is_terminal:
         yield lambda _: None
         return
     with console.status(what) as status:
-        yield lambda part: status.update(f"{what}: {100.0 * part:.0f} % read")
+        yield lambda said: status.update(said)
+
+
+@contextmanager
+def busy(what: str) -> Iterator[Callable[[float], None]]:
+    """Say so of something of which parts have been read, from 0 to 1."""
+    with doing(what) as tell:
+        yield lambda part: tell(f"{what}: {100.0 * part:.0f} % read")
+
+
+def say(*lines: object) -> None:
+    """Print lines beside a result, unbroken whatever the width."""
+    for line in lines:
+        output().print(str(line), soft_wrap=True)
 
 
 def show(document: "Document", *, as_json: bool) -> None:
@@ -76,3 +102,14 @@ def show(document: "Document", *, as_json: bool) -> None:
         click.echo(written(document))
     else:
         print_document(output(), document)
+
+
+def program() -> str:
+    """Return the program as it was called, ``pmm`` where that cannot be told."""
+    called = sys.argv[0] if sys.argv else ""
+    return called if Path(called).stem == "pmm" else "pmm"
+
+
+def pasted(*words: str | Path) -> str:
+    """Return a command of this program that a shell takes as it is, blanks and all."""
+    return shlex.join([program(), *map(str, words)])

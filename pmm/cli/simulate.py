@@ -45,9 +45,7 @@ def simulate(
     from pmm.campaign.campaign_file import read_campaign
     from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.files import check_folder
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import output as screen
-    from pmm.cli.screen import show, show_progress
+    from pmm.cli.screen import pasted, say, show, show_progress
     from pmm.recorder.campaign_owner import own_new_campaign
     from pmm.report.simulation_document import simulation_document
     from sim.effects.catalogue import build, user_effects
@@ -88,5 +86,4 @@ def simulate(
             figures += save_chain_figure(read, one.run, on, one.seed, Path(plot))
     show(simulation_document(read.name, folder, done, at_rest, on), as_json=as_json)
     if not as_json:
-        for line in (pasted("analyse", folder), *figures):
-            screen().print(str(line), soft_wrap=True)
+        say(pasted("analyse", folder), *figures)

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -12,7 +12,6 @@ from socket import socket
 from typing import Final
 
 from hardware.pacing import RealTime
-from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
@@ -25,8 +24,7 @@ from pmm.real_time import Priority, step_back
 from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts
 from pmm.run.recorder_factory import utc_now
-from pmm.run.session import keep_time
-from pmm.run.states import Command, RunStateError
+from pmm.run.session import keep_time, tapped_rig
 from pmm.version import program
 
 _WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
@@ -57,15 +55,11 @@ def station_of(request: ConsoleRequest, rig_file: RigFile, tell: Tell) -> Iterat
 
 def run_loop(station: Station, interrupts: Interrupts, tell: Tell) -> None:
     """Step until Ctrl-C, and then until everything rests."""
-    heard, told = 0, False
+    told = False
     while True:
         station.step()
-        if interrupts.count > heard:
-            heard += 1
-            with suppress(RunStateError):
-                command = Command.STOP if heard == 1 else Command.QUICK_STOP
-                station.control.request(command)
-        if heard and station.at_rest:
+        interrupts.hand_on(station.control.request)
+        if interrupts.heard and station.at_rest:
             return
         if station.deserted and not told:
             told = True
@@ -121,16 +115,7 @@ def _station(
         stack.callback(link.close)
         closing = ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back)
         executor = stack.enter_context(closing)
-        rig = stack.enter_context(
-            Rig(
-                rig_file.hardware,
-                time.monotonic,
-                pacer,
-                answers,
-                observers=(taps.frame,),
-                line_observers=(taps.line,),
-            )
-        )
+        rig = stack.enter_context(tapped_rig(rig_file, pacer, answers, taps))
         rig.prepare()
         for note in rig.notes:
             tell(f"note: {note}")

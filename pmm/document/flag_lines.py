@@ -7,10 +7,10 @@ from types import MappingProxyType
 
 from hardware.description.flags import Flag, Severity
 from pmm.document.content import Note
+from pmm.document.notation import joined
 
 _NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 NONE: Mapping[str, str] = MappingProxyType({})
-_NAMED = 12  # names in one line; JSON holds all
 _ORDER = (Severity.VOID, Severity.WARNING, Severity.NOTE)
 
 
@@ -98,9 +98,3 @@ def _without_names(flag: Flag) -> str:
     for name in sorted(names, key=len, reverse=True):
         text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", "", text)
     return text
-
-
-def joined(names: Sequence[str]) -> str:
-    """Return names in a row, of very many the first and how many there are besides."""
-    more = len(names) - _NAMED
-    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -1,12 +1,13 @@
 """How numbers and names are written for people: digits, intervals, shares, rows of names."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 NOT_KNOWN: Final = "–"
 _NEGLIGIBLE: Final = 1e-8  # of a value: its digits would run on without saying more
 _SIGNIFICANT: Final = 4  # digits where no interval says how many
+_NAMED: Final = 12  # names in one line; JSON holds all
 _OPEN_DEG: Final = 90.0  # half-width of a phase that is not known
 
 
@@ -55,6 +56,12 @@ def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
 def counted(number: int, what: str) -> str:
     """Return ``1 run``, ``2 runs``."""
     return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
+def joined(names: Sequence[str], most: int = _NAMED) -> str:
+    """Return names in a row, of more than ``most`` the first and how many there are besides."""
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def clock(seconds: float) -> str:

@@ -15,6 +15,11 @@ from sim.rig import SimulatedRig
 
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}
 _BODY: Final = ("mass_kg", "inertia_kg_m2", "cg_x_m", "cg_z_m")
+# Tolerances of what is not the same in all runs, or goes beyond coefficients and settings.
+_CHANGING: Final = (
+    "added_mass_per_octave", "damping_per_octave", "added_mass_per_speed", "damping_per_speed",
+    "ripple_1_relative", "ripple_2_relative", "load_ripple_1_kg_m2", "warming_k_h", "warming_n_s",
+)  # fmt: skip
 UNITS: Final = {
     "a11": "kg", "a12": "kg m", "a21": "kg m", "a22": "kg m2",
     "b11": "N s/m", "b12": "N s", "b21": "N s", "b22": "N m s",
@@ -157,16 +162,11 @@ def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> 
 def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
     """Return the fit without and with the effect that is named; ``None`` where none is.
 
-    Of coefficients that are the same in all runs, as the table of coefficients has them.
+    Of coefficients that are the same in all runs, on a rig that only its settings are off of: so
+    they are what ``pmm coefficients`` finds.
     """
     problem, cause = examined.diagnosis.problem, examined.cause
-    same = replace(
-        examined.ready.case.tolerances,
-        added_mass_per_octave=0.0,
-        damping_per_octave=0.0,
-        added_mass_per_speed=0.0,
-        damping_per_speed=0.0,
-    )
+    same = replace(examined.ready.case.tolerances, **dict.fromkeys(_CHANGING, 0.0))
     held = tolerated(problem.simulator, examined.free, same).columns
     plain = _fitted(examined, problem.residual, held)
     if cause is None:

@@ -1,7 +1,7 @@
 """The tables of a campaign's values: those to be used first, all others, and their budgets."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import count, product
 from string import ascii_uppercase
 
@@ -9,7 +9,7 @@ from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.recommendation import recommended
 from pmm.document.content import Column, Table
-from pmm.document.notation import NOT_KNOWN, percent, rounded, written
+from pmm.document.notation import NOT_KNOWN, joined, percent, rounded, written
 
 _FEW_DIGITS = 0.1
 _MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution
@@ -98,7 +98,7 @@ def alternatives_tables(found: CampaignCoefficients) -> Iterator[Table[int]]:
             Column[int]("motion", motion, number=True),
             shared["value"],
             *([drawn] if seen else []),
-            Column("runs", lambda k: shortened(entries[k].runs)),
+            Column("runs", lambda k: joined(entries[k].runs, 2)),
         )
         name = f"Alternatives, {method}: {found.normalisation}"
         yield Table(name, columns, rows, titled=True, folded=True)
@@ -159,12 +159,6 @@ def amplitudes(way_m: float, turn_rad: float) -> str:
     if turn_rad > 1e-3 * way_m:
         parts.append(f"{math.degrees(turn_rad):.3g}°")
     return ", ".join(parts) or NOT_KNOWN
-
-
-def shortened(runs: Sequence[str]) -> str:
-    """Return the names of runs, of many the first two."""
-    more = len(runs) - 2
-    return ", ".join(runs[:2]) + (f" and {more} more" if more > 0 else "")
 
 
 def _interval(low: float, high: float) -> str:

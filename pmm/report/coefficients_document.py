@@ -34,8 +34,8 @@ from pmm.document.content import (
     pairs,
     word,
 )
-from pmm.document.flag_lines import flag_lines, flag_notes, joined
-from pmm.document.notation import NOT_KNOWN, counted, rounded, written
+from pmm.document.flag_lines import flag_lines, flag_notes
+from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,

@@ -1,7 +1,7 @@
 """What ``pmm devices`` shows: who answers, what is read, what came of a test."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Final
 
 from hardware.listening import Heard
@@ -190,7 +190,7 @@ def photocell_document(watched: PhotocellRecord) -> Document:
 
 def gauges_document(found: Sequence[Pushed]) -> Document:
     """Return which gauges were pushed, and which way."""
-    return _document("gauges", Data("gauges", [asdict(one) for one in found]))
+    return _document("gauges", Data("gauges", found))
 
 
 def push_line(pushed: Pushed) -> str:

@@ -117,7 +117,7 @@ def _calibration(one: Calibration | None) -> Iterator[Content]:
 def _tows(found: Sequence[Tow]) -> Table[Tow]:
     def load(name: str, key: str, unit: str) -> Column[Tow]:
         def told(one: Tow) -> str:
-            return _with_width(getattr(one, key), one.half_width(getattr(one, f"{name}_u")))
+            return _with_width(getattr(one, key), getattr(one, f"{name}_half_width"))
 
         return Column(name, told, unit=unit, number=True)
 

@@ -9,6 +9,7 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import PeriodSums
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from pmm.document.notation import counted
 
 # What a window is called by how it was come by.
 WINDOWS = {
@@ -65,14 +66,9 @@ def single_periods(analysis: Analysis, reading: Harmonics) -> FloatArray:
     return steady[:, :, 1:].reshape(*steady.shape[:2], reading.order, 2)
 
 
-def in_words(periods: int) -> str:
-    """Return a number of periods in words."""
-    return f"{periods} period" if periods == 1 else f"{periods} periods"
-
-
 def caption(reading: Harmonics) -> str:
     """Return where a gate lies, in words."""
     return (
-        f"gate of {in_words(reading.periods)}, {reading.opened_s:.3f} s to "
+        f"gate of {counted(reading.periods, 'period')}, {reading.opened_s:.3f} s to "
         f"{reading.closed_s:.3f} s, {reading.frequency_hz:.5g} Hz"
     )

@@ -60,7 +60,7 @@ def simulation_document(
         Text([f"at rest: {file}" for file in at_rest]),
         Text([f"effect {one.name}: {_parameters(one)}" for one in effects]),
         Notes(flag_notes(flag for one in runs for flag in one.flags)),
-        Data("folder", str(folder)),
+        Data("folder", folder),
         Data("effects", effect_rows(effects)),
         Data("at_rest", at_rest),
     )

@@ -70,14 +70,14 @@ def drift_figure(tows: Sequence[Tow], found: CampaignCoefficients) -> "Figure":
 
     figure = Figure(figsize=(6.4, 5.2), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
-    loads = ((0, "force_n", "force_u"), (1, "moment_n_m", "moment_u"))
+    loads = ((0, "force_n", "force"), (1, "moment_n_m", "moment"))
     static = found.rows(method=STATIC_DRIFT)
     for k, runs in enumerate(dict.fromkeys(found.entries[row].runs for row in static)):
         mine = [one for one in tows if one.run in runs]
-        for panel, (load, value, u) in zip(panels, loads, strict=True):
+        for panel, (load, value, name) in zip(panels, loads, strict=True):
             rows = [row for row in static if found.entries[row].runs == runs
                     and term_of(found.entries[row].name, found.plane).row == load]  # fmt: skip
-            _draw_load(panel, mine, found, rows, k, value, u)
+            _draw_load(panel, mine, found, rows, k, value, name)
     velocity = VELOCITY_LETTERS[found.plane][0]
     panels[0].set_ylabel("force [N]")
     panels[1].set_ylabel("moment [N m]")
@@ -95,11 +95,11 @@ def _draw_load(
     rows: Sequence[int],
     k: int,
     value: str,
-    u: str,
+    name: str,
 ) -> None:
     across = np.array([tow.across_m_s for tow in tows])
     loads = np.array([getattr(tow, value) for tow in tows])
-    widths = np.array([tow.half_width(getattr(tow, u)) for tow in tows])
+    widths = np.array([getattr(tow, f"{name}_half_width") for tow in tows])
     colour = PALETTE[k % len(PALETTE)]
     grid = np.linspace(across.min(), across.max(), 100)
     moves = np.zeros((len(MOVES), len(grid)))
@@ -122,18 +122,18 @@ def resistance_figure(tows: Sequence[Tow]) -> "Figure":
     """Return the straight tows over speed: resistance where it was measured, force and moment."""
     from matplotlib.figure import Figure
 
-    rows = [("force_n", "force_u", "force [N]"), ("moment_n_m", "moment_u", "moment [N m]")]
+    rows = [("force_n", "force", "N"), ("moment_n_m", "moment", "N m")]
     if any(not math.isnan(one.resistance_n) for one in tows):
-        rows.insert(0, ("resistance_n", "resistance_u", "resistance [N]"))
+        rows.insert(0, ("resistance_n", "resistance", "N"))
     figure = Figure(figsize=(6.4, 1.7 * len(rows) + 0.7), layout="constrained")
     panels = figure.subplots(len(rows), 1, sharex=True)
     speeds = np.array([one.speed_m_s for one in tows])
-    for panel, (value, u, label) in zip(panels, rows, strict=True):
+    for panel, (value, name, unit) in zip(panels, rows, strict=True):
         loads = np.array([getattr(one, value) for one in tows])
-        widths = np.array([one.half_width(getattr(one, u)) for one in tows])
+        widths = np.array([getattr(one, f"{name}_half_width") for one in tows])
         panel.errorbar(speeds, loads, widths, fmt="s", ms=4, color=FIT, capsize=2)
         panel.axhline(0.0, color="0.5", lw=0.8)
-        panel.set_ylabel(label)
+        panel.set_ylabel(f"{name} [{unit}]")
     panels[-1].set_xlim(left=0.0)
     panels[-1].set_xlabel("speed [m/s]")
     figure.suptitle("Straight tow: mean loads of the water on the model")

@@ -11,9 +11,10 @@ from analysis.resolver.leakage import boxcar_leakage
 from analysis.resolver.weights import gate_weights
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import axis_label, display, loads_first, shown_name
+from pmm.document.notation import counted
 from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.report.envelope import tops
-from pmm.report.gate_fit import caption, gate_sums, in_words, reading_of
+from pmm.report.gate_fit import caption, gate_sums, reading_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +57,7 @@ def spectrum_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
             top = top or axes
             handles = _draw_spectrum(axes, analysis, reading, row, (frequency_hz, amplitude[row]))
             if place == 0:
-                axes.set_title(f"amplitude of lines over {in_words(periods)}", loc="left")
+                axes.set_title(f"amplitude of lines over {counted(periods, 'period')}", loc="left")
         below = figure.add_subplot(grid[-1], sharex=top)
         handles += _draw_leakage(below, reading, float(frequency_hz[-1]))
         if top is not None:

@@ -5,9 +5,11 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Final, TextIO
+
+from pmm.run.states import Command, RunStateError
 
 _STOPS: Final = ("SIGINT", "SIGTERM")
 _HANGS_UP: Final = ("SIGHUP",)  # a terminal that is closed; twice by the shell and the system
@@ -65,10 +67,24 @@ class Interrupts:
 
     Ctrl-C and SIGTERM count each time; a terminal that is closed counts as one of them, unless
     ``nohup`` has it ignored. Nothing halts the program meanwhile: Ctrl-Z is ignored.
+
+    Attributes
+    ----------
+    count
+        How many there were so far.
+    heard
+        How many of them have been handed on.
     """
 
     def __init__(self) -> None:
-        self.count = 0
+        self.count = self.heard = 0
+
+    def hand_on(self, request: Callable[[Command], object]) -> None:
+        """Request a gentle stop at the first, a quick one at each other, unless it has stopped."""
+        if self.count > self.heard:
+            self.heard += 1
+            with suppress(RunStateError):
+                request(Command.STOP if self.heard == 1 else Command.QUICK_STOP)
 
     def _take(self, _number: int, _frame: FrameType | None) -> None:
         self.count += 1

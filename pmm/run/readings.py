@@ -8,6 +8,7 @@ import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live import Provisional
+from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from pmm.plan.force_estimate import Expected
@@ -64,12 +65,14 @@ class Means:
         self._count += good.shape[1]
 
     def rows(self) -> tuple[ChannelReading, ...]:
-        """Return the means; the half-width is that of white noise."""
+        """Return the means; the half-width is that of white noise, NaN of a single sample."""
         if not self._count:
             return ()
         means = self._sum / self._count
-        spread = np.sqrt(np.maximum(self._square / self._count - means**2, 0.0))
-        widths = 1.96 * spread / math.sqrt(self._count)
+        freedom = self._count - 1
+        squares = np.maximum(self._square - self._count * means**2, 0.0)
+        spread = np.sqrt(squares / max(freedom, 1) / self._count)
+        widths = student_factor(freedom) * spread
         return tuple(
             ChannelReading(one.name, one.unit, float(mean), 0.0, 0.0, float(width), final=True)
             for one, mean, width in zip(self._channels, means, widths, strict=True)

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from hardware.description.errors import DataError
+from hardware.driver import Prompt
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
 from pmm.plan.campaign_writer import write_campaign
@@ -153,7 +154,7 @@ def carry_out(
         stack.callback(_write, job)  # at the end, when the rig is left; a failure is heard here
         shown = stack.enter_context(view(lambda: answers.question))
         taps = Taps()
-        rig = stack.enter_context(_rig(job, answers, taps))
+        rig = stack.enter_context(tapped_rig(job.rig_file, _pacer(job), answers, taps))
         executor = stack.enter_context(_executor(job.real_time))
         recording = stack.enter_context(
             RecorderFactory(
@@ -182,25 +183,19 @@ def _loop(
     write: Callable[[], object],
 ) -> None:
     """Step until nothing more happens; hand Ctrl-C on, once and twice."""
-    heard = written = 0
+    written = 0
     attended = rig.master is not None and rig.master.operator is not None
     while not control.finished:
         answers.question = ""
         control.step()
-        if interrupts.count > heard:
-            heard += 1
-            _interrupt(control, Command.STOP if heard == 1 else Command.QUICK_STOP)
+        interrupts.hand_on(control.request)
         if answers.absent and answers.question and not attended:
-            _interrupt(control, Command.STOP)
+            with suppress(RunStateError):
+                control.request(Command.STOP)
             raise RunFailedError(f"nobody answers: {answers.question}; the input has ended")
         if len(control.outcomes) > written:
             written = len(control.outcomes)
             write()
-
-
-def _interrupt(control: RunControl, command: Command) -> None:
-    with suppress(RunStateError):  # it is stopping already, or has stopped
-        control.request(command)
 
 
 def _write(job: RunJob) -> None:
@@ -208,22 +203,22 @@ def _write(job: RunJob) -> None:
     write_campaign(job.folder, job.plan, job.rig_file, done)
 
 
-@contextmanager
-def _rig(job: RunJob, answers: Answers, taps: Taps) -> Iterator[Rig]:
-    configuration = job.rig_file.hardware
-    period_s = 1.0 / configuration.sample_rate_hz
-    pacer: Pacer = FreeRunning()
-    if job.real_time:
-        pacer = RealTime(period_s, time.monotonic, time.sleep)
-    with Rig(
-        configuration,
+def tapped_rig(rig_file: RigFile, pacer: Pacer, prompt: Prompt, taps: Taps) -> Rig:
+    """Return a rig whose frames and lines are heard by the taps; it is open within ``with``."""
+    return Rig(
+        rig_file.hardware,
         time.monotonic,
         pacer,
-        answers,
+        prompt,
         observers=(taps.frame,),
         line_observers=(taps.line,),
-    ) as rig:
-        yield rig
+    )
+
+
+def _pacer(job: RunJob) -> Pacer:
+    if not job.real_time:
+        return FreeRunning()
+    return RealTime(1.0 / job.rig_file.sample_rate_hz, time.monotonic, time.sleep)
 
 
 @contextmanager

@@ -20,6 +20,7 @@ class TorqueCogging(Effect):
 
     Like a ripple of the speed that falls with the frequency squared. Without a motor in the rig it
     is just that, of a shaft with this inertia: what the load does to such a shaft is load-ripple.
+    Poles and slots make no pure sine: its double is beside it.
     """
 
     code: ClassVar[str] = "D1b"
@@ -51,22 +52,52 @@ class TorqueCogging(Effect):
         one_sign=OneSign.MASS,
     )
 
+    double: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "torque at twice the order, over that at the order",
+        held=True,
+        one_sign=OneSign.AMPLITUDE,
+    )
+    double_phase_rad: float = parameter(
+        0.0, -np.pi, np.pi, "rad", "its phase at the shaft's zero", held=True
+    )
+
+    def forms(self) -> tuple[Effect, ...]:
+        """Return waves that are no sine: a third at twice the order, in two phases."""
+        with_double = replace(self, double=0.3)
+        return (with_double, replace(with_double, double_phase_rad=np.pi / 2.0))
+
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this torque on its motor, or with the ripple that it makes."""
-        order, drive = round(self.order), rig.drive
+        waves, drive = self._waves, rig.drive
         if drive.motor is not None:
-            torque = Cogging(order, self.torque_n_m, self.phase_rad)
-            motor = replace(drive.motor, cogging=(*drive.motor.cogging, torque))
+            motor = replace(drive.motor, cogging=(*drive.motor.cogging, *waves))
             return replace(rig, drive=replace(drive, motor=motor))
-        relative = order * self._angle_rad(2.0 * np.pi * set_point.frequency_hz)
-        ripple = (*drive.ripple, SpeedRipple(order, relative, self.phase_rad))
-        return replace(rig, drive=replace(drive, ripple=ripple))
+        omega = 2.0 * np.pi * set_point.frequency_hz
+        own = [
+            SpeedRipple(wave.order, wave.order * self._angle_rad(wave, omega), wave.phase_rad)
+            for wave in waves
+        ]
+        return replace(rig, drive=replace(drive, ripple=(*drive.ripple, *own)))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the modulated motion and the model's reaction, of a shaft that no load moves."""
-        wave = -1j * self._angle_rad(situation.omega) * np.exp(1j * self.phase_rad)
+        angle = self._angle_rad(self._waves[0], situation.omega)
+        wave = -1j * angle * np.exp(1j * self.phase_rad)
         return uneven_signature(situation, {round(self.order): complex(wave)})
 
-    def _angle_rad(self, omega_rad_s: float) -> float:
+    @property
+    def _waves(self) -> tuple[Cogging, ...]:
+        """The torque, and its double if there is one."""
+        order = round(self.order)
+        first = Cogging(order, self.torque_n_m, self.phase_rad)
+        if not self.double:
+            return (first,)
+        return first, Cogging(2 * order, self.double * self.torque_n_m, self.double_phase_rad)
+
+    def _angle_rad(self, wave: Cogging, omega_rad_s: float) -> float:
         """Return by how much the shaft is moved to either side."""
-        return self.torque_n_m / (self.inertia_kg_m2 * (round(self.order) * omega_rad_s) ** 2)
+        return wave.torque_n_m / (self.inertia_kg_m2 * (wave.order * omega_rad_s) ** 2)

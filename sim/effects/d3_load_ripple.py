@@ -19,7 +19,7 @@ class LoadRipple(Effect):
 
     As a force it grows with the amplitude cubed. At a strut phase of 90 degrees the torques of
     equal struts cancel, but for what one strut's motion asks of the other. Guides' friction is part
-    of the torque. To first order in ``M e^2/J``.
+    of the torque. To first order in ``M e^2/J``. What holds the mean speed may swing, or creep.
     """
 
     code: ClassVar[str] = "D3"
@@ -36,8 +36,11 @@ class LoadRipple(Effect):
         0.001,
         2.0,
         "Hz",
-        "bandwidth of what brings the mean speed back, critically damped",
+        "bandwidth of what brings the mean speed back",
         one_sign=OneSign.RATE,
+    )
+    damping_ratio: float = parameter(
+        1.0, 0.1, 10.0, "1", "of it", one_sign=OneSign.DAMPING, forms=(0.5, 2.0)
     )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
@@ -62,4 +65,4 @@ class LoadRipple(Effect):
     def _shaft(self) -> Yielding:
         rate = 2.0 * np.pi * self.hold_hz
         inertia = self.inertia_kg_m2
-        return Yielding(inertia, 2.0 * rate * inertia, rate**2 * inertia)
+        return Yielding(inertia, 2.0 * self.damping_ratio * rate * inertia, rate**2 * inertia)

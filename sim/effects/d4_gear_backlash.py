@@ -1,7 +1,7 @@
 """D4: backlash of the gear before the cranks."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from sim.effects.flights import POINTS, Clearances, flight_harmonics
 from sim.effects.shaft import HIGHEST, nominal_torque, uneven_signature
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
+
+_SOFTEST: Final = 500.0  # N m/rad
+_MOST_DAMPED: Final = 1e6  # N m s
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ class GearBacklash(Effect):
     )
     stiffness_n_m_rad: float = parameter(
         1e4,
-        500.0,
+        _SOFTEST,
         1e9,
         "N m/rad",
         "of the teeth",
@@ -67,8 +70,21 @@ class GearBacklash(Effect):
         one_sign=OneSign.SPRING,
     )
     damping_n_m_s: float = parameter(
-        20.0, 1.0, 1e6, "N m s", "of the teeth", starts=(2e3,), held=True, one_sign=OneSign.DAMPING
+        20.0,
+        1.0,
+        _MOST_DAMPED,
+        "N m s",
+        "of the teeth",
+        starts=(2e3,),
+        held=True,
+        one_sign=OneSign.DAMPING,
     )
+
+    def forms(self) -> tuple[Effect, ...]:
+        """Return softer teeth, and such as bounce less."""
+        softer = replace(self, stiffness_n_m_rad=max(self.stiffness_n_m_rad / 5.0, _SOFTEST))
+        damped = replace(self, damping_n_m_s=min(self.damping_n_m_s * 2.0, _MOST_DAMPED))
+        return softer, damped
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the gear; the backlash of one that is there already is added to."""

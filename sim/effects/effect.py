@@ -154,11 +154,12 @@ def parameter(
     ConfigurationError
         If a start, or another form, lies outside the plausible range.
     """
-    for start in (*starts, *forms):
-        if not low <= start <= high:
+    stated = [*(("start", one) for one in starts), *(("form", one) for one in forms)]
+    for what, value in stated:
+        if not low <= value <= high:
             raise ConfigurationError(
-                f"parameter {meaning!r}: {start:g}, a start or a form, is outside the plausible "
-                f"range {low:g} to {high:g}"
+                f"parameter {meaning!r}: its {what} {value:g} is outside the plausible range "
+                f"{low:g} to {high:g}"
             )
     told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
     sought = {"starts": starts, "held": held or bool(forms), "resonance": resonance}

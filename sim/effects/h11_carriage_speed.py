@@ -6,7 +6,7 @@ from typing import ClassVar
 from hardware.description import channels
 from hardware.description.setpoint import SetPoint
 from sim import signals
-from sim.effects.effect import Effect, Signature, StageName, parameter
+from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import faster
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
@@ -17,7 +17,8 @@ class CarriageSpeedError(Effect):
     """A mean speed of ``U (1 + d)``: what goes with the speed changes by d, with U^2 by 2 d.
 
     The speed's record, where there is one, shows it. Without speed it does nothing, nor in air but
-    for that record.
+    for that record. A tachometer's zero makes an error that is the same at all speeds, as large at
+    1 m/s.
     """
 
     code: ClassVar[str] = "H11"
@@ -26,10 +27,22 @@ class CarriageSpeedError(Effect):
     stage: ClassVar[StageName] = StageName.CARRIAGE
 
     relative: float = parameter(0.003, -0.05, 0.05, "1", "d, relative to the speed")
+    steady: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share of it that is the same at all speeds, per 1 m/s",
+        one_sign=OneSign.SHARE,
+        forms=(1.0,),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this error on top of the carriage's own."""
-        error = (1.0 + rig.carriage.speed_error) * (1.0 + self.relative) - 1.0
+        speed = set_point.carriage_speed_m_s
+        fixed = self.steady / speed if speed else 0.0  # a carriage that stands is braked
+        own = self.relative * (1.0 - self.steady + fixed)
+        error = (1.0 + rig.carriage.speed_error) * (1.0 + own) - 1.0
         return replace(rig, carriage=replace(rig.carriage, speed_error=error))
 
     def signature(self, situation: Situation) -> Signature:

@@ -18,7 +18,8 @@ class DynamicTrim(Effect):
     """A mean, a stiffness and its curvature that grow with U^2.
 
     Sunk and trimmed, the hull carries more, and its waterplane is another one; at rest, and in air,
-    there is nothing of it.
+    there is nothing of it. Towards the hump of its resistance a hull trims with a higher power of
+    the speed, as much at 1 m/s.
     """
 
     code: ClassVar[str] = "H15"
@@ -30,10 +31,13 @@ class DynamicTrim(Effect):
     k1_n_s2_m3: float = parameter(100.0, -3000.0, 3000.0, "N s2/m3", "stiffness over U^2")
     k2_n_s2_m4: float = parameter(500.0, -3e4, 3e4, "N s2/m4", "its quadratic part over U^2")
     at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
+    power: float = parameter(
+        2.0, 1.0, 6.0, "1", "of the speed", one_sign="water at rest carries no more", forms=(3.0,)
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with these loads, at the set-point's speed, along the hull."""
-        square = set_point.carriage_speed_m_s**2
+        square = set_point.carriage_speed_m_s**self.power
         if not square:
             return rig
 

@@ -1,7 +1,7 @@
 """H6: a water that remembers: added mass and damping depend on the frequency."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -9,7 +9,10 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import load, radiation_of
 from sim.effects.situation import Situation
+from sim.effects.typical import omega_rad_s
 from sim.rig import SimulatedRig
+
+_APART: Final = 4.0  # of two rates of a kernel
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,8 @@ class Memory(Effect):
     """A kernel ``K exp(-beta t)``: with N = beta^2 + w^2, ``B = K beta/N`` and ``A = A_inf - K/N``.
 
     Linear in the amplitude; both parts are tied to each other as Kramers and Kronig have it, and
-    the first cycles after the start are unlike the later ones.
+    the first cycles after the start are unlike the later ones. No hull's kernel is one exponential:
+    a share of it fades more slowly, or sooner; the whole is as large at a typical frequency.
     """
 
     code: ClassVar[str] = "H6"
@@ -35,11 +39,44 @@ class Memory(Effect):
         5.0, 0.1, 100.0, "1/s", "beta, at which it fades", one_sign=OneSign.RATE
     )
 
+    slow: float = parameter(
+        0.0,
+        0.0,
+        0.9,
+        "1",
+        "share of the kernel that fades at a quarter of the rate",
+        one_sign=OneSign.SHARE,
+        forms=(0.3,),
+    )
+    quick: float = parameter(
+        0.0,
+        0.0,
+        0.9,
+        "1",
+        "share of the rest that fades at four times the rate",
+        one_sign=OneSign.SHARE,
+        forms=(0.5,),
+    )
+
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with this memory, one state for each motion, beside what its water has."""
+        """Return the rig with this memory, a state for each motion and rate, beside what it has."""
         kernel = np.diag([self.translation_n_m, self.rotation_n_m_rad])
-        fading = -self.rate_1_s * np.eye(2)
-        return replace(rig, radiation=radiation_of(rig).joined(fading, np.eye(2), kernel))
+        parts, s = self._parts, 1j * omega_rad_s(rig)
+        whole = sum(share / (rate + s) for rate, share in parts)
+        as_large = 1.0 / (abs(whole) * abs(self.rate_1_s + s))
+        radiation = radiation_of(rig)
+        for rate, share in parts:
+            fading = -rate * np.eye(2)
+            radiation = radiation.joined(fading, np.eye(2), as_large * share * kernel)
+        return replace(rig, radiation=radiation)
+
+    @property
+    def _parts(self) -> list[tuple[float, float]]:
+        """Rates and shares of the kernel's exponentials."""
+        rest = 1.0 - self.slow
+        shares = (rest * (1.0 - self.quick), self.slow, rest * self.quick)
+        rates = (self.rate_1_s, self.rate_1_s / _APART, self.rate_1_s * _APART)
+        return [(rate, share) for rate, share in zip(rates, shares, strict=True) if share]
 
     def signature(self, situation: Situation) -> Signature:
         """Return ``K/(beta + s)`` times the velocity through the water."""

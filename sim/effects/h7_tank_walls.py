@@ -12,6 +12,7 @@ from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import damping_at, load, radiation_of
 from sim.effects.situation import Situation
+from sim.effects.typical import omega_rad_s
 from sim.model.water.tank import Tank, echo_delay_s, with_walls
 from sim.rig import SimulatedRig
 
@@ -24,7 +25,8 @@ class TankWalls(Effect):
 
     ``w_m^2 = g k tanh(k h)``, with whole waves between the walls for heave and pitch, odd half
     waves for sway and yaw. The model is undisturbed until the first echo is back, after W/c_g
-    with the group velocity c_g at the set frequency. See :mod:`sim.model.water.tank`.
+    with the group velocity c_g at the set frequency. See :mod:`sim.model.water.tank`. Beaches along
+    the walls take more of short waves.
     """
 
     code: ClassVar[str] = "H7"
@@ -45,10 +47,27 @@ class TankWalls(Effect):
     damping_ratio: float = parameter(
         0.02, 0.002, 0.3, "1", "of the modes", one_sign=OneSign.DAMPING
     )
+    falls: float = parameter(
+        0.0,
+        -2.0,
+        4.0,
+        "1",
+        "power of the frequency with which the strength falls",
+        one_sign="short waves are lost first",
+        forms=(1.0,),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the modes beside what its water remembers."""
-        tank = Tank(self.breadth_m, self.depth_m, MODES, self.strength, self.damping_ratio)
+        tank = Tank(
+            self.breadth_m,
+            self.depth_m,
+            MODES,
+            self.strength,
+            self.damping_ratio,
+            falls=self.falls,
+            reference_rad_s=omega_rad_s(rig),
+        )
         walls = with_walls(
             radiation_of(rig),
             tank,

@@ -21,7 +21,8 @@ class GroundSuction(Effect):
     """``F U^2 (h^2/(h - y)^2 - 1)``: it goes with U^2 and e = a/h.
 
     ``(1 - e^2)^(-3/2) - 1`` as a mean, about ``2 e`` in phase and ``-3/2 e^2`` as the cosine at
-    order 2.
+    order 2. Other powers than that of a point source at a wall have the same slope at rest: 1 of a
+    long hull's sources, 3 of a couple of them.
     """
 
     code: ClassVar[str] = "H9"
@@ -34,6 +35,15 @@ class GroundSuction(Effect):
         0.2, 0.01, 10.0, "m", "h, below the keel at rest", one_sign=OneSign.LENGTH
     )
     at_struts: float = parameter(1.0, 0.0, 1.0, "1", AT_STRUTS, one_sign=OneSign.SHARE)
+    power: float = parameter(
+        2.0,
+        0.5,
+        5.0,
+        "1",
+        "of the clearance",
+        one_sign="it falls with the clearance",
+        forms=(1.0, 3.0),
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the suction along the hull.
@@ -50,8 +60,8 @@ class GroundSuction(Effect):
             )
 
         def suction(share: float) -> Proximity:
-            size = share * self.suction_n_s2_m2
-            return Proximity(size, self.clearance_m, reference_speed_m_s=1.0)
+            size = share * self.suction_n_s2_m2 * 2.0 / self.power
+            return Proximity(size, self.clearance_m, self.power, reference_speed_m_s=1.0)
 
         return along_hull(rig, suction, self.at_struts)
 

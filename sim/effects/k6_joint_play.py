@@ -8,6 +8,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import UNLIKE, share_at
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -31,12 +32,14 @@ class JointPlay(Effect):
     half_play_m: float = parameter(
         5e-5, 0.0, 1e-3, "m", "clearance to either side, h", one_sign=OneSign.PLAY
     )
+    unlike: float = parameter(0.0, -1.0, 1.0, "1", UNLIKE, forms=(0.3,))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both struts."""
+        shares = (share_at(strut, self.unlike) for strut in range(2))
         aft, fore = (
-            replace(setting, half_play_m=setting.half_play_m + self.half_play_m)
-            for setting in (rig.linkage_aft, rig.linkage_fore)
+            replace(setting, half_play_m=setting.half_play_m + share * self.half_play_m)
+            for setting, share in zip((rig.linkage_aft, rig.linkage_fore), shares, strict=True)
         )
         return replace(rig, linkage_aft=aft, linkage_fore=fore)
 

@@ -1,7 +1,7 @@
 """K6b: play in the last joint of the struts, where only forces take the model across it."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -9,11 +9,14 @@ from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
 from sim.effects.flights import POINTS, Clearances, flight_harmonics
+from sim.effects.friction import UNLIKE
 from sim.effects.situation import Situation, at_struts
 from sim.model.mounting import Mounting, StrutJoint
 from sim.rig import SimulatedRig
 
 HIGHEST = 3
+_SOFTEST_N_M: Final = 1e5
+_MOST_DAMPED_N_S_M: Final = 5e4
 
 
 @dataclass(frozen=True)
@@ -41,17 +44,34 @@ class FreePlay(Effect):
         0.0, -1000.0, 1000.0, "N", "force that presses the joint to one side, or to the other"
     )
     stiffness_n_m: float = parameter(
-        2e6, 1e5, 2e7, "N/m", "of a gauge, where it is rigid", held=True, one_sign=OneSign.SPRING
+        2e6,
+        _SOFTEST_N_M,
+        2e7,
+        "N/m",
+        "of a gauge, where it is rigid",
+        held=True,
+        one_sign=OneSign.SPRING,
     )
     damping_n_s_m: float = parameter(
         5000.0,
         100.0,
-        5e4,
+        _MOST_DAMPED_N_S_M,
         "N s/m",
         "of a gauge, where it is rigid",
         held=True,
         one_sign=OneSign.DAMPING,
     )
+
+    unlike: float = parameter(0.0, -0.9, 0.9, "1", UNLIKE, forms=(0.3,))
+
+    def forms(self) -> tuple[Effect, ...]:
+        """Return joints that are unlike, and sides that are softer, or bounce less.
+
+        The sides are the gauges', where these give way; the last two are then the effect itself.
+        """
+        softer = replace(self, stiffness_n_m=max(self.stiffness_n_m / 1.5, _SOFTEST_N_M))
+        damped = replace(self, damping_n_s_m=min(self.damping_n_s_m * 2.0, _MOST_DAMPED_N_S_M))
+        return (*super().forms(), softer, damped)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the play in both joints; play that is there already is added to."""
@@ -60,7 +80,8 @@ class FreePlay(Effect):
         half, preload = self.half_play_m, self.preload_n
         if old is not None:
             half, preload = half + old.half_play_m, preload + old.preload_n
-        return replace(rig, mounting=replace(mounting, joint=StrutJoint(half, preload)))
+        joint = StrutJoint(half, preload, self.unlike)
+        return replace(rig, mounting=replace(mounting, joint=joint))
 
     def _gauges(self, mounting: Mounting) -> Mounting:
         if mounting.gauge_stiffness_n_m is not None:

@@ -1,6 +1,5 @@
 """M3: a dynamometer whose characteristic is curved."""
 
-import math
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -9,7 +8,7 @@ from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.friction import UNLIKE, share_at
 from sim.effects.measurement import of_forces, squared, with_gauges
 from sim.effects.situation import Situation
-from sim.effects.typical import force_n
+from sim.effects.typical import even_share, force_n
 from sim.gauges.characteristic import Curve
 from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
@@ -55,7 +54,7 @@ class QuadraticGauge(Effect):
             q = self.curvature_1_n * share_at(strut, self.unlike)
             if self.power == 2.0 and not self.cubic:
                 return replace(gauge, curvature_1_n=gauge.curvature_1_n + q)
-            as_large = _second(2.0) / _second(self.power)
+            as_large = even_share(2.0) / even_share(self.power)
             even = Curve(as_large * q * force, force, self.power)
             odd = Curve(self.cubic * q * force, force, 3.0, odd=True)
             return replace(gauge, curves=(*gauge.curves, even, odd))
@@ -66,9 +65,3 @@ class QuadraticGauge(Effect):
         """Return q times the harmonics of the force squared."""
         squares = squared(situation)
         return of_forces(situation, lambda order, _: self.curvature_1_n * squares[order])
-
-
-def _second(power: float) -> float:
-    """Return the second harmonic of ``|cos|^p``: 4/(3 pi), 1/2 for p = 1, 2."""
-    upper = 2.0 ** (1.0 - power) * math.gamma(power + 1.0)
-    return float(upper / (math.gamma(power / 2.0 + 2.0) * math.gamma(power / 2.0)))

@@ -1,5 +1,6 @@
 """M8: a day that gets warmer, or colder, over a campaign."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -10,12 +11,13 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.hydrodynamics import radiation_of, scaled, through_water
-from sim.effects.measurement import of_forces, with_gauges
+from sim.effects.measurement import of_forces, settled_more, with_gauges
 from sim.effects.situation import Situation
 from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 SECONDS_AN_HOUR = 3600.0
+_AS_FAR_H = 4.0
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Temperature(Effect):
     ``1 + b D`` besides: the viscosity falls by 2 % a kelvin, and friction with about its 0.15th
     power. The stated signature is that of the linear loads. In a campaign the hours are
     those of the run: one that is repeated at the end shows it, and a random order makes it
-    scatter.
+    scatter. A hall that was heated settles; it is as warm after four hours.
     """
 
     code: ClassVar[str] = "M8"
@@ -57,11 +59,23 @@ class Temperature(Effect):
         "density of the water",
         one_sign="water grows lighter as it warms, above 4 degrees",
     )
+    settling_h: float = parameter(
+        0.0,
+        0.0,
+        240.0,
+        "h",
+        "time constant with which the rise dies out, 0 for never",
+        one_sign=OneSign.TIME,
+        forms=(2.0,),
+    )
 
     @property
     def rise_k(self) -> float:
         """Rise of the temperature."""
-        return self.rate_k_h * self.hours
+        if not self.settling_h:
+            return self.rate_k_h * self.hours
+        sooner = settled_more(self.settling_h, _AS_FAR_H) * self.rate_k_h
+        return -sooner * self.settling_h * math.expm1(-self.hours / self.settling_h)
 
     def at_run(self, run: CampaignRun) -> Self:
         """Return the effect at the run's time."""

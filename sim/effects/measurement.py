@@ -3,6 +3,7 @@
 No effect itself.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -37,6 +38,14 @@ def with_force_channels(
     aft = None if old.force_aft is None else change(old.force_aft, 0)
     fore = None if old.force_fore is None else change(old.force_fore, 1)
     return replace(rig, acquisition=replace(old, force_aft=aft, force_fore=fore))
+
+
+def settled_more(settling_s: float, as_far_s: float) -> float:
+    """Return by how much faster what settles has to begin, to be as far after a time.
+
+    That is ``t/(T (1 - exp(-t/T)))``, T its time constant.
+    """
+    return -as_far_s / (settling_s * math.expm1(-as_far_s / settling_s))
 
 
 def later(rig: SimulatedRig, delay_s: float) -> SimulatedRig:

@@ -7,6 +7,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.friction import UNLIKE
 from sim.effects.situation import Situation
 from sim.effects.springs import in_series, yielding_signature
 from sim.rig import SimulatedRig
@@ -31,13 +32,20 @@ class GaugeCompliance(Effect):
     damping_n_s_m: float = parameter(
         200.0, 0.0, 5e3, "N s/m", "its damping", one_sign=OneSign.DAMPING
     )
+    unlike: float = parameter(0.0, -0.9, 0.9, "1", UNLIKE, forms=(0.3,))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig on these springs, in series with those that it has."""
         mounting = rig.mounting
         stiffness = in_series(mounting.gauge_stiffness_n_m, self.stiffness_n_m)
         damping = mounting.gauge_damping_n_s_m + self.damping_n_s_m
-        soft = replace(mounting, gauge_stiffness_n_m=stiffness, gauge_damping_n_s_m=damping)
+        before, own = (1.0 - stiffness / self.stiffness_n_m), stiffness / self.stiffness_n_m
+        soft = replace(
+            mounting,
+            gauge_stiffness_n_m=stiffness,
+            gauge_damping_n_s_m=damping,
+            gauge_unlike=before * mounting.gauge_unlike + own * self.unlike,
+        )
         return replace(rig, mounting=soft)
 
     def signature(self, situation: Situation) -> Signature:

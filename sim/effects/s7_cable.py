@@ -8,16 +8,18 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
+from sim.effects.typical import amplitude_m, omega_rad_s
 from sim.model.force_law import ForceLaw
 from sim.model.friction import Coulomb, RubbingSpring
 from sim.model.law_point import Acting, Point
-from sim.model.laws import Spring
+from sim.model.laws import Spring, Viscous
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray
 
 STANDS_M: Final = 1e-12
+SLIP_M: Final = 1e-3  # way in which strands begin to slip
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,9 @@ class Cable(Effect):
     """``F_0 + k x + k_2 x^2 + k_3 x^3 + k_h |x| sgn(v)``, x midway between the struts or at each.
 
     Independent of frequency: in phase ``k x + 3 k_3 x^3/4``, in quadrature ``2 k_h x/pi`` from the
-    strands that rub on each other, and ``4 F/pi`` where they slide throughout.
+    strands that rub on each other, and ``4 F/pi`` where they slide throughout. What rubs may as
+    well be a viscous sheath, or strands that slip over a millimetre; a cable that hangs slack
+    stiffens with the cube of its way. Those are as large at a typical motion.
     """
 
     code: ClassVar[str] = "S7"
@@ -54,23 +58,63 @@ class Cable(Effect):
         one_sign=OneSign.SHARE,
     )
 
+    sheath: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share of the rubbing that is viscous",
+        one_sign=OneSign.SHARE,
+        forms=(1.0,),
+    )
+    slip: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share of the rest that slips throughout",
+        one_sign=OneSign.SHARE,
+        forms=(1.0,),
+    )
+    slack: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share of the stiffness that goes with the cube",
+        one_sign=OneSign.SHARE,
+        forms=(0.5,),
+    )
+
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the cable between the struts, or on them."""
         places = [(Point.TRANSLATION, 1.0 - self.at_struts)]
         places += [(point, self.at_struts / 2.0) for point in (Point.AFT, Point.FORE)]
-        added = [Acting(law, at) for at, share in places if share for law in self._laws(share)]
+        added = [Acting(law, at) for at, share in places if share for law in self._laws(rig, share)]
         return replace(rig, forces=(*rig.forces, *added))
 
-    def _laws(self, share: float) -> tuple[ForceLaw, ...]:
+    def _laws(self, rig: SimulatedRig, share: float) -> tuple[ForceLaw, ...]:
+        taut, slack = (1.0 - self.slack) * self.stiffness_n_m, self.slack * self.stiffness_n_m
+        cubic = slack / (0.75 * amplitude_m(rig) ** 2)
         spring = Spring(
-            share * self.stiffness_n_m,
+            share * taut,
             share * self.stiffness_n_m2,
-            share * self.stiffness_n_m3,
+            share * (self.stiffness_n_m3 + cubic),
             share * self.preload_n,
         )
-        rubbing = [RubbingSpring(share * self.rubbing_n_m)] if self.rubbing_n_m else []
         sliding = [Coulomb(share * self.sliding_n)] if self.sliding_n else []
-        return (spring, *rubbing, *sliding)
+        return (spring, *self._rubbing(rig, share * self.rubbing_n_m), *sliding)
+
+    def _rubbing(self, rig: SimulatedRig, rubbing_n_m: float) -> list[ForceLaw]:
+        """Return what rubs: each part loses as much per cycle, ``2 k_h x^2``."""
+        viscous, dry = self.sheath * rubbing_n_m, (1.0 - self.sheath) * rubbing_n_m
+        slips, rubs = self.slip * dry, (1.0 - self.slip) * dry
+        laws: list[ForceLaw] = [RubbingSpring(rubs)] if rubs else []
+        if viscous:
+            laws.append(Viscous(viscous * 2.0 / (np.pi * omega_rad_s(rig))))
+        if slips:
+            laws.append(Coulomb(slips * amplitude_m(rig) / 2.0, 0.0, SLIP_M))
+        return laws
 
     def signature(self, situation: Situation) -> Signature:
         """Return the powers of a sine, and the loop of the rubbing strands; exact."""

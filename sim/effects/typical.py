@@ -51,3 +51,9 @@ def power_share(exponent: float) -> float:
         * math.gamma(exponent / 2.0 + 1.0)
         / math.gamma(exponent / 2.0 + 1.5)
     )
+
+
+def even_share(exponent: float) -> float:
+    """Return the second harmonic of ``|cos|^n``: 4/(3 pi), 1/2 for n = 1, 2."""
+    upper = 2.0 ** (1.0 - exponent) * math.gamma(exponent + 1.0)
+    return float(upper / (math.gamma(exponent / 2.0 + 2.0) * math.gamma(exponent / 2.0)))

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
+import numpy as np
+
 from hardware.description.arrays import FloatArray
 from sim import signals
 from sim.gauges.characteristic import Curve, Loop, LoopState, PowerLoop, follow, limited
@@ -33,6 +35,8 @@ class Dynamometer:
         Slope of the zero.
     zero_drifted_n
         What it has drifted by before time 0; 0 where the zero is taken then.
+    zero_settling_s
+        Time constant with which the drift dies out; ``None`` for a straight one.
     lowest_n, highest_n
         Where the reading stops: a mechanical stop, or an amplifier that saturates.
     limit_knee
@@ -49,6 +53,7 @@ class Dynamometer:
     lowest_n: float | None = None
     highest_n: float | None = None
     limit_knee: float = 0.0
+    zero_settling_s: float | None = None
     curves: tuple[Curve, ...] = ()
     loops: tuple[Loop, ...] = ()
 
@@ -69,7 +74,7 @@ class Dynamometer:
                 force = force - loop.lag(true, branch)
         reading = self.gain * force + self.offset_n
         if self._drifts:
-            reading = reading + (self.zero_drifted_n + self.zero_drift_n_s * block.time_s)
+            reading = reading + (self.zero_drifted_n + self._drift_n(block.time_s))
         if self.lowest_n is not None or self.highest_n is not None:
             reading = limited(reading, self.lowest_n, self.highest_n, self.limit_knee)
         return state, reading
@@ -96,7 +101,16 @@ class Dynamometer:
         """Return the gauge with a zero that drifts by as much at this time as before at time 0."""
         if not self.zero_drift_n_s:
             return self
-        return replace(self, zero_drifted_n=self.zero_drifted_n - self.zero_drift_n_s * time_s)
+        before = float(self._drift_n(np.array(time_s)))
+        return replace(self, zero_drifted_n=self.zero_drifted_n - before)
+
+    def _drift_n(self, time_s: FloatArray) -> FloatArray:
+        """Return what the zero has drifted by since time 0."""
+        settling_s = self.zero_settling_s
+        if settling_s is None:
+            return self.zero_drift_n_s * time_s
+        drift = -self.zero_drift_n_s * settling_s * np.expm1(-time_s / settling_s)
+        return np.asarray(drift, dtype=np.float64)
 
 
 @dataclass(frozen=True)

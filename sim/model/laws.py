@@ -143,6 +143,29 @@ class Spring(NumberedLaw):
     )
 
 
+def _stiffening(p: Parameters, at: LawInput) -> Value:
+    size = p[0] * np.abs(at.position / p[1]) ** p[2]
+    return size if p[3] > 0.0 else np.sign(at.position) * size
+
+
+@dataclass(frozen=True)
+class Stiffening(NumberedLaw):
+    """``F |x/X|^n sgn(x)``: F at the displacement X; without the sign where it is ``even``."""
+
+    stiffening_n: float
+    reference_m: float
+    exponent: float
+    even: bool = False
+
+    kernel = staticmethod(_stiffening)
+    strengths: ClassVar[tuple[str, ...]] = ("stiffening_n",)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Return the middle, where it bends."""
+        return (Corner(Argument.POSITION),)
+
+
 def _proximity(p: Parameters, at: LawInput) -> Value:
     return p[0] * dynamic(p[3], at) * ((p[1] / (p[1] - at.position)) ** p[2] - 1.0)
 
@@ -214,6 +237,7 @@ AnyLaw = (
     | LoadFriction
     | RubbingSpring
     | Power
+    | Stiffening
 )
 LAWS: Final[tuple[type[NumberedLaw], ...]] = get_args(AnyLaw)
 
@@ -242,4 +266,6 @@ def law_value(number: int, p: Parameters, at: LawInput) -> Value:  # noqa: C901 
         return load_friction(p, at)
     if number == 10:
         return rubbing_spring(p, at)
-    return _power(p, at)
+    if number == 11:
+        return _power(p, at)
+    return _stiffening(p, at)

@@ -34,10 +34,13 @@ class StrutJoint:
     preload_n
         Force that presses it to one side, or to the other where it is negative: it opens where the
         strut's force is larger, and at rest lies at that side.
+    unlike
+        By which share the aft joint has more clearance than that, and the fore one less.
     """
 
     half_play_m: float
     preload_n: float = 0.0
+    unlike: float = 0.0
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
@@ -61,6 +64,8 @@ class Mounting:
     ----------
     gauge_stiffness_n_m, gauge_damping_n_s_m
         Of each strut's gauge; a stiffness of ``None`` for rigid ones.
+    gauge_unlike
+        By which share the aft gauge gives way more than that, and the fore one less.
     frame_stiffness_n_m, frame_damping_n_s_m, frame_mass_kg
         Of the frame; a stiffness of ``None`` for a rigid one.
     joint
@@ -79,10 +84,16 @@ class Mounting:
     frame_damping_n_s_m: float = 0.0
     frame_mass_kg: float = 500.0
     joint: StrutJoint | None = None
+    gauge_unlike: float = 0.0
 
     __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
+        if not abs(self.gauge_unlike) < 1.0:
+            raise ConfigurationError(
+                f"gauge_unlike = {self.gauge_unlike:g} must be between -1 and 1: "
+                "no gauge is rigid, nor pushes back"
+            )
         for key in ("gauge_stiffness_n_m", "frame_stiffness_n_m", "frame_mass_kg"):
             value = getattr(self, key)
             if value is not None and not value > 0.0:
@@ -102,7 +113,9 @@ class Mounting:
         properties: list[tuple[float, float, float]] = []
         if self.gauge_stiffness_n_m is not None:
             shapes += [(1.0, 0.0), (0.0, 1.0)]
-            properties += [(0.0, self.gauge_damping_n_s_m, self.gauge_stiffness_n_m)] * 2
+            for more in (1.0 + self.gauge_unlike, 1.0 - self.gauge_unlike):
+                stiffness = self.gauge_stiffness_n_m / more
+                properties.append((0.0, self.gauge_damping_n_s_m, stiffness))
         if self.frame_stiffness_n_m is not None:
             shapes += [(1.0, 1.0)]
             properties += [(self.frame_mass_kg, self.frame_damping_n_s_m, self.frame_stiffness_n_m)]

@@ -63,9 +63,9 @@ def _model_loads(
         for i in range(2):
             for j in range(2):
                 room[0, 2 + i] += extra * by_speed[i, j] * work[1, j]
-    if gap[1] > 0.0:
+    if gap[0, 1] > 0.0:
         for i in range(2):
-            room[0, 4 + i] += joint_return(gap, work[1, 8 + i])
+            room[0, 4 + i] += joint_return(gap[i], work[1, 8 + i])
 
 
 @compile_loop

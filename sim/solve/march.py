@@ -37,7 +37,8 @@ class ModelLoop(NamedTuple):
     by_speed
         Velocities through the water per speed beyond the mean and per displacement: ``(2, 2)``.
     gap
-        Stiffness, half clearance and preload of the gauges' joints; a clearance of zero for none.
+        Stiffness, half clearance and preload of the gauges' joints, a row each; clearances of zero
+        for none.
     """
 
     step: FloatArray

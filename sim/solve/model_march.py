@@ -76,10 +76,12 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
     weights[:, :, : by_load.weights.shape[2]] = by_load.weights
     from_loads = np.zeros((LOADS, OUTPUTS))
     from_loads[: len(by_loads), :8] = by_loads
-    gap = np.zeros(3)
-    if system.joint is not None:
-        stiffness = system.elastic.stiffness[0, 0]
-        gap[:] = (stiffness, system.joint.half_play_m, system.joint.preload_n)
+    gap = np.zeros((2, 3))
+    joint = system.joint
+    if joint is not None:
+        for strut, more in enumerate((1.0 + joint.unlike, 1.0 - joint.unlike)):
+            stiffness = system.elastic.stiffness[strut, strut]
+            gap[strut] = (stiffness, more * joint.half_play_m, joint.preload_n)
     arrays = (
         by_motion.step,
         by_motion.weights[0],

@@ -10,7 +10,7 @@ from pmm.gap.case import CASE_FILE, Case
 from tests.sealed.generator.toml import as_toml
 from tests.sealed.scoring.by_world import ORACLE
 
-TABLE = "priors"
+TABLE = "tolerances"
 """Table of the case's file that states tolerances."""
 
 

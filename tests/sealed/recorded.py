@@ -229,7 +229,9 @@ def _thinned(source: Path, target: Path, first: float, last: float, rate_hz: flo
     ratio = Fraction(1)
     if rate_hz:
         ratio = Fraction(rate_hz * float(np.mean(np.diff(own[:, 0])))).limit_denominator(100)
-    columns = [resampled(own[:, i], ratio, ramp=i == 0) for i in range(own.shape[1])]
+    columns = [resampled(own[:, i], ratio) for i in range(own.shape[1])]
+    if rate_hz:
+        columns[0] = own[0, 0] + np.arange(len(columns[0])) / rate_hz
     np.savetxt(target, np.column_stack(columns), fmt="%.12g", delimiter=",", header=header,
                comments="")  # fmt: skip
 

@@ -108,3 +108,8 @@ def test_slow_tail_and_standing_wave_are_where_they_belong() -> None:
     q[P.ECHO], q[P.ECHO_DELAY], q[P.ECHO_SHAPE] = 0.2, 1.0, 1.0
     spectrum = np.abs(np.fft.rfft(retardation(q, 0.01)[0], 2048))
     assert np.argmax(spectrum) / 2048 / 0.01 == pytest.approx(1.0, abs=0.06)
+
+
+def test_no_wave_is_radiated_at_frequency_0() -> None:
+    damping = of_memory(2.2, 4.5, np.array([1e-4, 4.5]))[1]
+    assert damping[0] < 1e-8 * damping[1]

@@ -14,7 +14,7 @@ from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
 from sim.model.friction import Coulomb, LoadFriction, RubbingSpring, Stribeck
 from sim.model.law_point import Acting, Point
 from sim.model.law_table import table_of
-from sim.model.laws import Power, Quadratic
+from sim.model.laws import Power, Quadratic, Stiffening
 from sim.model.numbers import corners_only, geometry_only
 from sim.model.system import HullSystem
 from sim.model.water.force_laws import CrossFlow
@@ -39,6 +39,8 @@ CORNERED: list[ForceLaw] = [
     LoadFriction(0.1, 5.0, 0.8, presliding_m=4e-4),
     Power(2.0, 0.1, 0.6, 0.01),
     Power(2.0, 0.1, 2.5),
+    Stiffening(2.0, 0.02, 1.5),
+    Stiffening(2.0, 0.02, 1.5, even=True),
 ]
 COUPLED = CrossFlow(((30.0, 5.0, 7.0, 2.0), (4.0, 6.0, 3.0, 9.0)), ((80.0, 9.0, 8.0, 7.0),) * 2)
 SET_POINT = SetPoint(0.8, 0.03, 0.7, SPEED_M_S)
@@ -158,5 +160,5 @@ def test_a_law_that_jumps_has_corners() -> None:
         )
         if short != long:
             jumping.add(type(law))
-    assert jumping == {type(law) for law in CORNERED} - {Quadratic}
+    assert jumping == {type(law) for law in CORNERED} - {Quadratic, Stiffening}
     assert all(law.corners for law in CORNERED)

@@ -26,6 +26,7 @@ from sim.model.laws import (
     Proximity,
     Quadratic,
     Spring,
+    Stiffening,
     Tone,
     Viscous,
 )
@@ -49,6 +50,8 @@ EXAMPLES: list[ForceLaw] = [
     LoadFriction(0.02, 3.0, 0.7),
     RubbingSpring(4.0),
     Power(2.0, 0.1, 1.5, 0.02),
+    Stiffening(2.0, 0.02, 2.5),
+    Stiffening(2.0, 0.02, 1.5, even=True),
     Coulomb(0.5, 0.1, presliding_m=3e-4),
     Coulomb(0.5, film_m_s=5e-3),
     Stribeck(0.4, 0.02, presliding_m=3e-4),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from pmm.cli.gap.options import LOOKS, Looks, engine, progress
+from pmm.cli.gap.options import LOOKS, Looks, engine
 from pmm.cli.options import JSON, jobs_option
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
 
     from hardware.description.errors import ConfigurationError
     from pmm.campaign.file_names import CAMPAIGN_FILE
-    from pmm.cli.hints import pasted
+    from pmm.cli.screen import pasted
     from pmm.gap.appending import Added
     from pmm.gap.load import campaign_of
 
@@ -67,12 +67,13 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
 def _examined(looks: Looks, path: Path, effect: str | None, jobs: int | None) -> "Examined":
     from dataclasses import replace
 
+    from pmm.cli.screen import doing
     from pmm.gap.examine import examine
 
     options = looks.options
     if effect is not None:
         options = replace(options, effects=(effect, *looks.files))
-    with progress() as told, engine(looks, jobs) as executor:
+    with doing("reading") as told, engine(looks, jobs) as executor:
         return examine(path, options, executor, told)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 from pmm.cli.gap.add import add_and_say, check_appendable
-from pmm.cli.gap.options import CATALOGUE, MOST, Chosen, progress
+from pmm.cli.gap.options import CATALOGUE, MOST, Chosen
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def add_pendulum(
 
     Exit status: 0 added; 1 no cause is found; 2 the request was wrong.
     """
-    from pmm.cli.hints import pasted
+    from pmm.cli.screen import pasted
     from pmm.gap.appending import Added, refuse_twice
     from pmm.gap.pendulum_examine import PendulumOptions
     from pmm.gap.pendulum_file import read_case
@@ -57,13 +57,14 @@ def add_pendulum(
 def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") -> "Settled":
     """Return the causes to add, fitted."""
     from hardware.description.errors import DataError
+    from pmm.cli.screen import doing
     from pmm.gap.pendulum_conclusion import conclusion_of
     from pmm.gap.pendulum_examine import examine_pendulum, fitted_causes
     from pmm.gap.pendulum_words import what_is_wrong
 
     if causes:
         return fitted_causes(path, causes, options)
-    with progress() as shown:
+    with doing("reading") as shown:
         found = examine_pendulum(path, options, shown).diagnosis
     concluded = conclusion_of(found)
     if not concluded.adds:

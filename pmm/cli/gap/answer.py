@@ -116,20 +116,13 @@ def _answered(
     tasks: "Sequence[CaseTask]", target: Path, jobs: int | None, scheduler: str | None
 ) -> list[str]:
     """Write each answer as it comes; return why cases have none, in their order."""
-    from rich.progress import Progress
-
-    from pmm.cli.screen import messages
+    from pmm.cli.screen import show_progress
     from pmm.parallel import as_done, open_executor
     from pmm.whole_file import write_whole
 
-    console, failed = messages(), list[str]()
-    with (
-        Progress(console=console, transient=True, disable=not console.is_terminal) as progress,
-        open_executor(jobs, scheduler) as executor,
-    ):
-        bar = progress.add_task("cases", total=len(tasks))
-        for one in as_done(executor, answer_one, tasks):
-            progress.advance(bar)
+    failed: list[str] = []
+    with open_executor(jobs, scheduler) as executor:
+        for one in show_progress(as_done(executor, answer_one, tasks), "cases", len(tasks)):
             if one.failed:
                 failed.append(one.failed)
             else:

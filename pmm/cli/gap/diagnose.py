@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap.options import LOOKS, Looks, engine, progress
+from pmm.cli.gap.options import LOOKS, Looks, engine
 from pmm.cli.options import JSON, SCHEDULER, jobs_option
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ def diagnose(
 
     one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.files import check_files, tell_damaged, tell_unchecked, tell_writers
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import messages, output, show
+    from pmm.cli.screen import doing, messages, pasted, say, show
     from pmm.document.page import write_page
     from pmm.gap.case import CASE_FILE
     from pmm.gap.document import document
@@ -73,7 +72,7 @@ def diagnose(
     if tolerances:
         show(tolerance_document(path, looks.options), as_json=as_json)
         return
-    with progress() as told, engine(looks, jobs, scheduler) as executor:
+    with doing("reading") as told, engine(looks, jobs, scheduler) as executor:
         found = examine(path, looks.options, executor, told)
     report = gap_report(found)
     content = document(report)
@@ -85,7 +84,7 @@ def diagnose(
         _write_plan(found, Path(plan))
     show(content, as_json=as_json)
     if report.conclusion.adds and not as_json:
-        output().print(pasted("gap", "add", campaign, *looks.words()), soft_wrap=True)
+        say(pasted("gap", "add", campaign, *looks.words()))
     tell_unchecked(_read_files(found, file.parent))
     if tell_damaged(found.ready.damaged.items()):
         click.get_current_context().exit(1)

@@ -12,7 +12,6 @@ from hardware.description.errors import ConfigurationError
 from pmm.cli.options import with_options
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from concurrent.futures import Executor
 
     from pmm.gap.examine import Options
@@ -148,16 +147,3 @@ def engine(
         return
     with open_executor(jobs, scheduler) as executor:
         yield executor
-
-
-@contextmanager
-def progress() -> "Iterator[Callable[[str], None]]":
-    """Say what is being done, on a terminal, for as long as the context lasts."""
-    from pmm.cli.screen import messages
-
-    console = messages()
-    if not console.is_terminal:
-        yield lambda _: None
-        return
-    with console.status("reading") as status:
-        yield lambda said: status.update(said)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap.options import CATALOGUE, MOST, Chosen, progress
+from pmm.cli.gap.options import CATALOGUE, MOST, Chosen
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
@@ -40,8 +40,7 @@ def pendulum(
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
     """  # noqa: D301
     from pmm.cli.files import check_files, check_folder
-    from pmm.cli.hints import pasted
-    from pmm.cli.screen import messages, output, show
+    from pmm.cli.screen import doing, messages, pasted, say, show
     from pmm.document.page import write_page
     from pmm.gap.pendulum_conclusion import conclusion_of
     from pmm.gap.pendulum_document import document
@@ -52,13 +51,13 @@ def pendulum(
     if plot is not None:
         check_folder(Path(plot), "--plot")
     options = PendulumOptions(given.effects, given.without, most)
-    with progress() as shown:
+    with doing("reading") as shown:
         examined = examine_pendulum(path, options, shown)
     told = document(path.stem, examined)
     words = ("--most", str(most), *given.words())
     show(told, as_json=as_json)
     if conclusion_of(examined.diagnosis).adds and not as_json:
-        output().print(f"\n{pasted('gap', 'add-pendulum', file, *words)}", soft_wrap=True)
+        say("", pasted("gap", "add-pendulum", file, *words))
     if plot is not None:
         _draw(told, Path(plot))
     if page is not None:
@@ -75,4 +74,4 @@ def _draw(told: "Document", folder: Path) -> None:
     records = (one for one in told.figures if one.name.startswith(RECORD))
     for at, one in enumerate(records, 1):
         for path in write_figure(one.draw(), folder, f"gap-{at}", ("svg",)):
-            messages().print(str(path), soft_wrap=True)
+            messages().print(str(path))

@@ -41,6 +41,9 @@ class Tank:
         Damping that a mode adds at its frequency, relative to the open water's there: some tenths.
     damping_ratio
         zeta of the modes: how soon waves between the walls die or run away along the tank.
+    falls, reference_rad_s
+        Power of the frequency with which a mode's strength falls, and where it is ``strength``:
+        beaches and rough walls take more of short waves.
 
     Raises
     ------
@@ -54,6 +57,8 @@ class Tank:
     strength: float = 0.3
     damping_ratio: float = 0.02
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2
+    falls: float = 0.0
+    reference_rad_s: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("breadth_m", "depth_m", "gravity_m_s2"):
@@ -94,7 +99,8 @@ def with_walls(
     omega = tank.mode_frequencies_rad_s(plane)
     radiated = radiation.damping(omega) + np.asarray(constant_damping)
     for omega_k, damping in zip(omega, radiated, strict=True):
-        shapes = _factor(tank.strength * damping)
+        strength = tank.strength * (omega_k / tank.reference_rad_s) ** -tank.falls
+        shapes = _factor(strength * damping)
         gain = math.sqrt(2.0 * tank.damping_ratio * omega_k)
         for shape in shapes:
             state = np.array([[0.0, omega_k], [-omega_k, -2.0 * tank.damping_ratio * omega_k]])

@@ -83,7 +83,7 @@ def struts_of(rig: ExactRig, name: str, orders: int) -> StrutCycle:
     whole = np.concatenate((moved, gauges(rig, orders, tared=True)), axis=1)
     channels = (*DISPLACEMENTS, *FORCES, FORCE_X.name)
     units = ("m", "m", "N", "N", "N") * (orders + 1)
-    phasors = Phasors(labels(channels, orders), units, whole.ravel())
+    phasors = Phasors.of(labels(channels, orders), units, whole.ravel())
     of_plane = VERTICAL_1963 if rig.plane is Plane.VERTICAL else HORIZONTAL_1963
     oscillator = replace(of_plane, half_spacing_m=rig.half_spacing_m, **vars(rig.arrangement))
     point = SetPoint(rig.frequency_hz, 0.1, 0.0, rig.speed_m_s, drift_rad=rig.drift_rad)

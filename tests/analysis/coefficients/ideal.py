@@ -11,8 +11,9 @@ import numpy as np
 
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
+from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.body import Body
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
@@ -42,7 +43,7 @@ def ideal_struts(
 ) -> StrutCycle:
     found = ideal_run(oscillator(plane), set_point, BODY, HULL)
     values = np.concatenate((np.zeros(4), found.displacements[1], found.forces[1]))
-    phasors = Phasors(READ, ("m", "m", "N", "N") * 2, values)
+    phasors = Phasors.of(READ, ("m", "m", "N", "N") * 2, values)
     return StrutCycle(name, oscillator(plane), set_point, set_point.frequency_hz, phasors, 1)
 
 
@@ -57,7 +58,7 @@ def scattered(
     every = np.zeros((periods, len(values)))
     every[:, _FIRST] = draws
     source = of_draws(f"scatter of {run.name}", every)
-    phasors = replace(run.phasors, values=from_interleaved(values), sources=(source,))
+    phasors = replace(run.phasors, real=UncertainValues(values, (source,)))
     return replace(run, phasors=phasors)
 
 

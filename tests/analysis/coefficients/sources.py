@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from analysis.coefficients.phasors import Phasors
 from analysis.uncertainty.values import Contribution
 
 
@@ -10,6 +11,14 @@ def of_covariance(label: str, covariance: np.ndarray, degrees_of_freedom: float)
     values, vectors = np.linalg.eigh(covariance)
     root = vectors * np.sqrt(np.clip(values, 0.0, None))
     return Contribution(label, degrees_of_freedom, np.arange(len(root)), root)
+
+
+def scattering(
+    phasors: Phasors, *sources: Contribution, values: np.ndarray | None = None
+) -> Phasors:
+    """Return phasors whose scatter comes from these sources alone; other values, where given."""
+    own = phasors.values if values is None else values
+    return Phasors.of(phasors.names, phasors.units, own, sources)
 
 
 def of_draws(label: str, draws: np.ndarray) -> Contribution:

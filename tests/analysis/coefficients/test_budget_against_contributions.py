@@ -68,7 +68,7 @@ def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
 def test_the_mass_acts_in_full_on_the_added_mass() -> None:
     lines = {line.source: line for line in budget(campaign(0.8), campaign(0.8).row("a33")).lines}
     assert lines["mass"].contribution == pytest.approx(0.1, rel=1e-6)
-    assert lines["harmonic scatter"].degrees_of_freedom == 7.0
+    assert lines["harmonic scatter"].degrees_of_freedom == pytest.approx(7.0)
 
 
 def test_what_two_coefficients_share_is_their_correlation() -> None:

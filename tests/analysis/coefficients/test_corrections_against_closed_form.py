@@ -36,6 +36,7 @@ from tests.analysis.coefficients.ideal import (
     scattered,
     with_factors,
 )
+from tests.analysis.coefficients.sources import scattering
 
 HEAVE = SetPoint(0.8, ECCENTRICITY_M)
 OMEGA = 2.0 * math.pi * 0.8
@@ -139,7 +140,7 @@ def test_zero_runs_are_interpolated_in_time() -> None:
     np.testing.assert_allclose(spread, white, rtol=0.6)
     means = np.where([name in ("force_aft 0", "force_fore 0") for name in READ], 7.0, 0.0)
     read = ideal_struts(HEAVE)
-    read = replace(read, phasors=replace(read.phasors, values=read.phasors.values + means))
+    read = replace(read, phasors=scattering(read.phasors, values=read.phasors.values + means))
     left = read.without_zero(offsets).phasors.values - read.phasors.values
     np.testing.assert_allclose(left[2:4], -offsets.values)
     np.testing.assert_array_equal(np.delete(left, [2, 3]), 0.0)
@@ -160,7 +161,7 @@ def test_referred_to_its_own_motion_against_trials() -> None:
     generator = np.random.default_rng(8)
     run = scattered(ideal_struts(HEAVE), covariance() * 25.0, 50, generator)
     first = run.phasors.select(READ[4:])
-    turned = replace(first, values=first.values * np.exp(0.7j))
+    turned = scattering(first, *first.real.contributions, values=first.values * np.exp(0.7j))
     referred = turned.referred_to("displacement_aft 1")
     assert referred["displacement_aft 1"].imag == pytest.approx(0.0, abs=SMALL * 1e-15)
     spread = referred.standard_uncertainty
@@ -174,7 +175,7 @@ def test_referred_to_its_own_motion_against_trials() -> None:
 
 
 def test_a_phasor_at_rest_has_no_phase() -> None:
-    still = Phasors(("a", "b"), ("m", "N"), np.array([0.0, 1.0 + 1j]))
+    still = Phasors.of(("a", "b"), ("m", "N"), np.array([0.0, 1.0 + 1j]))
     with pytest.raises(ConfigurationError, match="a does not move"):
         still.referred_to("a")
     with pytest.raises(ConfigurationError, match="cannot be taken off"):
@@ -186,15 +187,15 @@ def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
     samples = np.random.default_rng(6).standard_normal((2, 400))
     rest = Recording("zero", (FORCE_AFT, FORCE_FORE), samples, 100.0)
     offsets = zero_reading(rest, 0.0).offsets
-    few = Phasors(FORCES, ("N", "N"), np.array([5.0, 6.0]))
-    more = Phasors(("a", *FORCES), ("m", "N", "N"), np.array([1.0, 5.0, 6.0]))
-    first = few.minus(offsets).sources[-1].dense(4)
+    few = Phasors.of(FORCES, ("N", "N"), np.array([5.0, 6.0]))
+    more = Phasors.of(("a", *FORCES), ("m", "N", "N"), np.array([1.0, 5.0, 6.0]))
+    first = few.minus(offsets).real.contributions[-1].dense(4)
     place = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     taken = offsets.mapped(place, more.names, more.units)
-    other = more.minus(taken).select(FORCES).sources[-1].dense(4)
+    other = more.minus(taken).select(FORCES).real.contributions[-1].dense(4)
     np.testing.assert_allclose(first, other, atol=1e-15)
     np.testing.assert_allclose(first @ other.T, offsets.covariance, atol=1e-15)
-    np.testing.assert_allclose(first, -offsets.sources[0].dense(4), atol=1e-15)
+    np.testing.assert_allclose(first, -offsets.real.contributions[0].dense(4), atol=1e-15)
 
 
 @pytest.mark.parametrize("angle", [0.7, -2.0])

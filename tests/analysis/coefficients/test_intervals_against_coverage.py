@@ -20,7 +20,7 @@ from tests.analysis.coefficients.ideal import (
     pair,
     scattered,
 )
-from tests.analysis.coefficients.sources import of_covariance
+from tests.analysis.coefficients.sources import of_covariance, scattering
 
 TRUTH = {
     "Z_wdot": -75.0, "Z_qdot": -3.0, "M_wdot": -3.0, "M_qdot": -22.0,
@@ -77,7 +77,7 @@ def test_joint_covariance_matters() -> None:
     joint = run.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
     variance = np.diag(np.diagonal(run.phasors.covariance))
     source = of_covariance("each by itself", variance, np.inf)
-    alone = replace(run, phasors=replace(run.phasors, sources=(source,)))
+    alone = replace(run, phasors=scattering(run.phasors, source))
     independent = alone.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
     # force: 1 + rho, moment: 1 - rho
     assert joint[0].real / independent[0].real == pytest.approx(1.9**0.5, rel=0.03)

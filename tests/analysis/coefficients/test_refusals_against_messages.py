@@ -17,7 +17,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium, SetPoint
 from tests.analysis.coefficients.ideal import BODY, ECCENTRICITY_M, SMALL, ideal_struts, net, pair
-from tests.analysis.coefficients.sources import of_covariance
+from tests.analysis.coefficients.sources import of_covariance, scattering
 
 HEAVE = SetPoint(0.8, ECCENTRICITY_M, 0.0, 1.2)
 
@@ -88,7 +88,7 @@ def test_runs_that_do_not_belong_together(other: BodyCycle, words: str) -> None:
 
 def test_values_that_are_not_finite_are_refused() -> None:
     broken = run()
-    bad = replace(broken.phasors, values=broken.phasors.values * np.nan)
+    bad = scattering(broken.phasors, values=broken.phasors.values * np.nan)
     with pytest.raises(ConfigurationError, match="not finite"):
         fit_cycles([replace(broken, phasors=bad)], ("Z_w",), FIRST)
     with pytest.raises(ConfigurationError, match="no run was given"):
@@ -114,7 +114,7 @@ def test_a_run_without_scatter_gives_values_and_no_interval() -> None:
     single = run()
     size = 2 * len(single.phasors.values)
     source = Contribution("scatter", 0.0, np.arange(size), np.full((size, 1), np.nan))
-    phasors = replace(single.phasors, sources=(source,))
+    phasors = scattering(single.phasors, source)
     result = solve([replace(single, phasors=phasors)])
     assert result.fit["a33"] == pytest.approx(75.0)
     assert np.isnan(result.fit.uncertain.half_width()).all()
@@ -128,7 +128,7 @@ def test_runs_that_disagree_are_flagged() -> None:
         one = run(point, f"{k}")
         size = [SMALL * spread.get(name.removesuffix(" 1"), 0.0) for name in one.phasors.names]
         source = of_covariance(f"scatter of {k}", np.diag(np.repeat(size, 2)) ** 2, 9.0)
-        runs.append(replace(one, phasors=replace(one.phasors, sources=(source,))))
+        runs.append(replace(one, phasors=scattering(one.phasors, source)))
     good = solve(runs)
     assert good.misfit < 0.1
     assert "runs_disagree" not in {flag.code for flag in good.flags}

@@ -36,7 +36,9 @@ def repeats(
             if name.split()[0] in ("force", "moment"):
                 draws = generator.standard_normal(2)
                 factors[place] += between * complex(*draws)
-        renamed = replace(one.phasors, sources=(replace(one.phasors.sources[0], label=f"s {k}"),))
+        real = one.phasors.real
+        own = replace(real.contributions[0], label=f"s {k}")
+        renamed = replace(one.phasors, real=replace(real, contributions=(own,)))
         found.append(
             replace(one, name=f"{frequency_hz:g} {k}", phasors=renamed.mapped(np.diag(factors)))
         )

@@ -52,7 +52,7 @@ def towed(
         held = np.array([0.0, 0.0, -hull(v), -N_V * v]) + noise * generator.normal(size=4)
         held[2] += between_n * generator.normal()
         struts = np.array([*held[:2], u, v, *held[2:]])
-        phasors = Phasors(
+        phasors = Phasors.of(
             labels(CHANNELS[:-1], 0),
             UNITS[:-1],
             struts.astype(np.complex128),

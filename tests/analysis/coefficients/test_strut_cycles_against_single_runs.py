@@ -166,4 +166,4 @@ def test_a_run_that_stands_still() -> None:
     assert cycle.phasors["force 0"].real == pytest.approx(15.0, abs=0.01)
     assert cycle.phasors["moment 0"].real == pytest.approx(5.0 * 0.5, abs=0.01)
     assert math.isclose(cycle.drift_rad, 0.1)
-    assert len(cycle.phasors.sources) == 2
+    assert len(cycle.phasors.real.contributions) == 2

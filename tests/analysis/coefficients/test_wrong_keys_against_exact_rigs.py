@@ -15,8 +15,8 @@ from analysis.coefficients.arrangements import BETTER, NOT_COMPARED, OPEN, SAME,
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.phasors import from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
+from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrangement import Arrangement, Gauges, Joint
 from hardware.description.oscillator import Plane
 from tests.analysis.coefficients.exact_campaigns import afloat, less_known, struts_of
@@ -73,8 +73,8 @@ def noisy(struts: StrutCycle, generator: np.random.Generator) -> StrutCycle:
     spread[1 : 2 * len(moved) // (ORDERS + 1) : 2] = 0.0  # a mean has no quadrature
     draws = spread * generator.standard_normal((PERIODS, len(spread)))
     source = of_draws(f"scatter of {struts.name}", draws)
-    values = from_interleaved(interleaved(struts.phasors.values) + draws.mean(axis=0))
-    return replace(struts, phasors=replace(struts.phasors, values=values, sources=(source,)))
+    real = UncertainValues(struts.phasors.real.values + draws.mean(axis=0), (source,))
+    return replace(struts, phasors=replace(struts.phasors, real=real))
 
 
 def analysed(

@@ -40,7 +40,7 @@ def cycle(
     values = (draws[0] + 1j * draws[1]) * sizes / (1 + np.arange(ORDERS + 1)[:, None]) ** 2
     values[0, 2] += SPEED
     units = UNITS[: len(channels)] * (ORDERS + 1)
-    phasors = Phasors(labels(channels, ORDERS), units, values.ravel())
+    phasors = Phasors.of(labels(channels, ORDERS), units, values.ravel())
     return BodyCycle("yaw-1", plane, 0.5, FREQUENCY, SPEED, phasors, ORDERS, drift_rad=drift_rad)
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.body_axes import labels, of_struts
-from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
+from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.ideal_rig import mass_matrix, motion, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as moved
 from analysis.kinematics.rigid_body import inertia, weight
-from analysis.uncertainty.values import Contribution
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
@@ -51,10 +51,10 @@ def test_slopes_follow_every_channel(joint: Joint) -> None:
 
     def phasors(values: np.ndarray) -> Phasors:
         one = Contribution("each", np.inf, np.arange(len(values)), np.eye(len(values)))
-        struts = Phasors(names, ("",) * len(names), from_interleaved(values), (one,))
+        struts = Phasors(names, ("",) * len(names), UncertainValues(values, (one,)))
         return of_struts(struts, geometry_of(rig), hertz, 3, asked=False).phasors
 
-    found = phasors(parts).sources[0].parts
+    found = phasors(parts).real.contributions[0].parts
     for k in range(len(parts)):
         step = 1e-4 * np.eye(len(parts))[k]
         more, less = (interleaved(phasors(parts + one).values) for one in (step, -step))

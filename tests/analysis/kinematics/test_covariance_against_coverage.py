@@ -62,7 +62,7 @@ def test_intervals_in_body_axes_cover_95_percent(arrangement: Arrangement) -> No
     inside = []
     for seed in range(DRAWS):
         found = resolved(rig, seed)
-        factor = student_factor(np.array([found.sources[0].degrees_of_freedom]), 0.95)
+        factor = student_factor(np.array([found.real.contributions[0].degrees_of_freedom]), 0.95)
         width = factor * found.real.standard_uncertainty
         inside.append(np.abs(interleaved(found.values) - true) < width)
     uncertain = [k for k, name in enumerate(PARTS) if name not in KNOWN]

@@ -260,8 +260,8 @@ def test_resistance_is_against_the_motion(tmp_path: Path) -> None:
     assert [one.speed_m_s for one in found.straight] == [0.4, 0.8]
     for one in found.straight:
         truth = 5.0 * one.speed_m_s**2
-        assert abs(one.resistance_n - truth) < 2.0 * one.half_width(one.resistance_u)
-        assert one.half_width(one.resistance_u) < 0.05
+        assert abs(one.resistance_n - truth) < 2.0 * one.resistance_half_width
+        assert one.resistance_half_width < 0.05
 
 
 def test_a_tow_without_zeros_says_which_are_missing(tmp_path: Path) -> None:
